@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Three helpers, so that every folder's CMakeLists.txt is a list of files and a list of arrows.
+
+add_library(axial_flags INTERFACE)
+target_compile_features(axial_flags INTERFACE cxx_std_20)
+target_compile_options(axial_flags INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Werror
+  # Same bytes whatever the optimiser contracts; see "Same input, same options" in CONTRIBUTING.md.
+  -ffp-contract=off)
+if(AXIAL_SANITIZE)
+  target_compile_options(axial_flags INTERFACE -fsanitize=address,undefined
+    -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# add_axial_library(depth SOURCES a.cpp LINK scene OpenCV...) makes libs/<name> as target axial_<name>.
+# Names of our own libraries in LINK are written without the prefix.
+function(axial_link target)
+  foreach(item IN LISTS ARGN)
+    if(TARGET axial_${item})
+      target_link_libraries(${target} PUBLIC axial_${item})
+    elseif(TARGET ${item} OR item MATCHES "^opencv_")
+      target_link_libraries(${target} PUBLIC ${item})
+    else()
+      message(FATAL_ERROR "${target} links '${item}', which is no target")
+    endif()
+  endforeach()
+endfunction()
+
+function(add_axial_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(axial_${name} STATIC ${ARG_SOURCES})
+  target_include_directories(axial_${name} PUBLIC ${PROJECT_SOURCE_DIR}/libs)
+  target_link_libraries(axial_${name} PUBLIC axial_flags)
+  axial_link(axial_${name} ${ARG_LINK})
+endfunction()
+
+function(add_axial_app name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/libs)
+  target_link_libraries(${name} PRIVATE axial_flags)
+  axial_link(${name} ${ARG_LINK})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+endfunction()
+
+# add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [LABELS unit]) : tests/io/ply_test.cpp as the
+# CTest cases "io/ply_test/...". LABELS unit (the default) also runs under the sanitizers.
+function(add_axial_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  string(REPLACE "/" "_" target ${name})
+  add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${name}.cpp ${ARG_SOURCES})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${target} PRIVATE AXIAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(${target} PRIVATE axial_flags rapidcheck GTest::gmock GTest::gtest_main)
+  axial_link(${target} ${ARG_LINK})
+  gtest_discover_tests(${target} TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()

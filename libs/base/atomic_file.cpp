@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.h"
+
+namespace axial {
+namespace {
+
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+  std::filesystem::path name = path.filename();
+  const std::string extension = name.extension().string();
+  name.replace_extension();
+  name += fmt::format(".{}.tmp{}", ::getpid(), extension);
+  return path.parent_path() / name;
+}
+
+// Libraries that write files by name do not all report a full disk at close; asking the kernel to
+// finish the file does.
+void flush_to_disk(const std::filesystem::path& temporary) {
+  const int descriptor = ::open(temporary.c_str(), O_RDONLY);
+  if (descriptor < 0) fail("the temporary file vanished");
+  const int result = ::fsync(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  if (result != 0 && error != EINVAL && error != EROFS) fail("{}", std::strerror(error));
+}
+
+}  // namespace
+
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path& temporary)>& write) {
+  const std::filesystem::path temporary = temporary_beside(path);
+  std::error_code ignored;
+  try {
+    write(temporary);
+    flush_to_disk(temporary);
+    std::filesystem::rename(temporary, path);
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::filesystem::remove(temporary, ignored);
+    fail("{}: cannot be written: {}", path.string(), error.code().message());
+  } catch (const std::exception& error) {
+    std::filesystem::remove(temporary, ignored);
+    fail("{}: cannot be written: {}", path.string(), error.what());
+  }
+}
+
+void write_atomically(const std::filesystem::path& path, std::string_view bytes) {
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    errno = 0;
+    std::ofstream out(temporary, std::ios::binary);
+    if (out) out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (out) out.close();
+    if (!out) fail("{}", errno ? std::strerror(errno) : "write failed");
+  });
+}
+
+std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    fail("{}: is a folder, not a file", path.string());
+  errno = 0;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) fail("{}: cannot be opened: {}", path.string(), std::strerror(errno));
+  const auto size = static_cast<std::uintmax_t>(in.tellg());
+  if (size > max_bytes)
+    fail("{}: {} bytes is too large for this kind of file", path.string(), size);
+  std::string bytes(size, '\0');
+  in.seekg(0);
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!in) fail("{}: cannot be read to its end", path.string());
+  return bytes;
+}
+
+}  // namespace axial

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Output files that exist whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace axial {
+
+// Writes `path` through a temporary file beside it, which is renamed over `path` once `write` has
+// returned and everything reached the disk. On any failure (unwritable folder, full disk, an
+// exception out of `write`) the temporary is removed, `path` keeps what it held before, and an
+// Error that names `path` is thrown. `write` gets the temporary's name: for libraries that open
+// files themselves. The temporary's name ends in `path`'s own extension, because such libraries
+// read it.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path& temporary)>& write);
+
+// The same for bytes that are in memory.
+void write_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+// The whole file. Error that names `path` if it cannot be read or is larger than `max_bytes`.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
+
+}  // namespace axial

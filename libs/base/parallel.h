@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one place that knows about threads. Whatever runs here gives the same result for any number
+// of threads: work items are independent, and each writes only what belongs to it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace axial {
+
+// Calls body(i) for every i in [0, count), in any order, on any thread. The first exception thrown
+// by a body is rethrown here. `grain`: how many consecutive items a thread takes at once.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
+                  std::size_t grain = 1);
+
+// Limits all parallel work to `threads` (0: all cores) while it lives.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(unsigned threads);
+  ~ThreadLimit();
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
+}  // namespace axial

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/program.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <new>
+
+#include "base/error.h"
+
+namespace axial {
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+
+namespace {
+
+po::options_description common_options(CommonOptions& common, const std::string& name,
+                                       std::string& working_folder) {
+  po::options_description generic("Generic options");
+  generic.add_options()("help,h", "print this help")(
+      "working-folder,w", po::value(&working_folder),
+      "base of relative paths (default: current folder)")(
+      "config-file,c", po::value(&common.config_file)->default_value(name + ".cfg"),
+      "file with option values, 'name = value' a line")(
+      "archive-type", po::value(&common.archive_type)->default_value(-1),
+      "scene format; only -1 (interchange .mvs) is supported")(
+      "process-priority", po::value(&common.process_priority)->default_value(-1),
+      "below zero lowers the process's priority")(
+      "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
+      "verbosity,v", po::value(&common.verbosity)->default_value(2), "how much is logged");
+  return generic;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+void apply(const CommonOptions& common) {
+  if (common.archive_type != -1)
+    fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
+  if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
+  spdlog::set_level(common.verbosity <= 0   ? spdlog::level::warn
+                    : common.verbosity <= 2 ? spdlog::level::info
+                                            : spdlog::level::debug);
+}
+
+}  // namespace
+
+bool given(const po::variables_map& values, const std::string& name) {
+  return values.count(name) > 0 && !values[name].defaulted();
+}
+
+fs::path in_working_folder(const CommonOptions& common, const std::string& path) {
+  if (path.empty()) return {};
+  return (common.working_folder / path).lexically_normal();
+}
+
+ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program) {
+  ParsedOptions parsed;
+  std::string working_folder;
+  po::options_description command_line;
+  command_line.add(common_options(parsed.common, program.name, working_folder));
+  command_line.add(program.visible).add(program.hidden);
+  po::options_description config;
+  config.add(program.visible).add(program.hidden);
+  po::positional_options_description positional;
+  positional.add("input-file", -1);
+
+  try {
+    po::command_line_parser parser(argc, argv);
+    parser.options(command_line);
+    const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
+    if (has_input) parser.positional(positional);
+    po::store(parser.run(), parsed.values);
+
+    if (parsed.values.count("working-folder"))
+      working_folder = parsed.values["working-folder"].as<std::string>();
+    std::error_code error;
+    parsed.common.working_folder = fs::absolute(working_folder.empty() ? "." : working_folder);
+    if (!fs::is_directory(parsed.common.working_folder, error))
+      fail("--working-folder {}: is not a folder", working_folder);
+
+    const fs::path cfg =
+        parsed.common.working_folder / parsed.values["config-file"].as<std::string>();
+    if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
+      try {
+        po::store(po::parse_config_file(in, config), parsed.values);
+      } catch (const po::error& cfg_error) {
+        fail("{}: {}", cfg.string(), one_line(cfg_error.what()));
+      }
+    } else if (given(parsed.values, "config-file")) {
+      fail("{}: cannot be opened", cfg.string());
+    }
+    po::notify(parsed.values);
+
+    const bool help = parsed.values.count("help") > 0;
+    const bool no_input = has_input && !parsed.values.count("input-file");
+    if (help || no_input) {
+      po::options_description shown;
+      std::string unused_folder;
+      CommonOptions unused;
+      shown.add(common_options(unused, program.name, unused_folder)).add(program.visible);
+      std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
+      parsed.exit_code = help ? 0 : 1;
+      if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";
+      return parsed;
+    }
+  } catch (const po::error& error) {
+    fail("command line: {}", one_line(error.what()));
+  }
+  apply(parsed.common);
+  parsed.run = true;
+  return parsed;
+}
+
+int run_program(const std::string& name, const std::function<int()>& body) {
+  const auto log =
+      std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
+  log->set_pattern("%H:%M:%S [%n] %v");
+  log->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(log);
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    std::cerr << name << ": out of memory\n";
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << one_line(error.what()) << "\n";
+  }
+  return 1;
+}
+
+}  // namespace axial

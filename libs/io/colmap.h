@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// COLMAP sparse models, text and binary, as COLMAP 3.8 to 4.1 write them (see docs/formats.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/pose.h"
+#include "scene/scene.h"
+
+namespace axial::io {
+
+inline constexpr std::uint64_t kNoPoint3D = ~std::uint64_t{0};
+
+struct ColmapCamera {
+  std::uint32_t id = 0;
+  std::string model;  // "PINHOLE", "OPENCV", ...
+  std::uint64_t width = 0, height = 0;
+  std::vector<double> params;  // pixel centres at 0.5, as in the file
+};
+
+struct ColmapPoint2D {
+  double x = 0, y = 0;  // pixel centres at 0.5
+  std::uint64_t point3d = kNoPoint3D;
+};
+
+struct ColmapImage {
+  std::uint32_t id = 0;
+  std::uint32_t camera = 0;
+  std::string name;
+  Pose pose;
+  std::vector<ColmapPoint2D> points;
+};
+
+struct ColmapTrackElement {
+  std::uint32_t image = 0;
+  std::uint32_t point2d = 0;
+};
+
+struct ColmapPoint3D {
+  std::uint64_t id = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Rgb color{};
+  double error = 0;
+  std::vector<ColmapTrackElement> track;
+};
+
+struct ColmapModel {
+  std::vector<ColmapCamera> cameras;  // file order, unique ids
+  std::vector<ColmapImage> images;
+  std::vector<ColmapPoint3D> points;
+};
+
+// The folder that holds the model: DIR/sparse, DIR/sparse/0 or DIR itself, the first with a cameras
+// file. Error listing the places looked in.
+std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
+
+// Reads cameras, images, points3D, each from .txt or .bin (text preferred where both exist). All of
+// COLMAP's camera models are parsed; Error for an unknown model, a wrong number of parameters, a
+// NaN, a reference to a camera, image or point that does not exist, a truncated file.
+ColmapModel read_colmap_model(const std::filesystem::path& folder);
+
+void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
+void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
+
+// Number of parameters of a camera model by name; -1 if unknown.
+int colmap_parameter_count(std::string_view model);
+
+}  // namespace axial::io

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Housing files: which port each camera looks through (DESIGN section 5).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "refractive/flat_port.h"
+#include "scene/scene.h"
+
+namespace axial::io {
+
+struct Housing {
+  std::map<std::string, refractive::FlatPort<double>> ports;
+  std::string default_port = "none";             // "none": dry
+  std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name
+  std::map<std::string, std::string> images;     // image name -> port name
+
+  // The port name for an image: its own entry, else its camera's, else the default.
+  const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
+};
+
+// Error that names file, key and value: unknown keys, wrong types or units (an index below 1,
+// negative thickness, zero or backward normal, distance over 1 m), a port name that is not defined,
+// a version other than 1, a port type this build cannot do. A normal off unit length by more than
+// 1e-6 is normalised with a warning.
+Housing read_housing(const std::filesystem::path& path);
+
+void write_housing(const std::filesystem::path& path, const Housing& housing);
+
+// "<scene without extension>.housing.json".
+std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
+
+// Attaches ports to the scene's images: entries of `images` match the last components of the image
+// path, or its file name; `cameras` must be resolved already (InterfaceCOLMAP writes per-image
+// entries where cameras differ).
+void attach_ports(Scene& scene, const Housing& housing);
+
+}  // namespace axial::io

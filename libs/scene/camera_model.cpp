@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/camera_model.h"
+
+namespace axial {
+
+CameraModel CameraModel::resized(int new_width, int new_height) const {
+  const double sx = static_cast<double>(new_width) / width;
+  const double sy = static_cast<double>(new_height) / height;
+  CameraModel model = *this;
+  model.width = new_width;
+  model.height = new_height;
+  model.lens = {lens.fx * sx, lens.fy * sy, (lens.cx + 0.5) * sx - 0.5, (lens.cy + 0.5) * sy - 0.5};
+  return model;
+}
+
+template <class T>
+CameraVariant<T> make_camera(const CameraModel& model) {
+  const auto lens = model.lens.cast<T>();
+  if (!model.port) return refractive::PinholeCamera<T>(lens);
+  return refractive::FlatPortCamera<T>(lens, model.port->cast<T>(), model.width, model.height);
+}
+
+template CameraVariant<float> make_camera<float>(const CameraModel&);
+template CameraVariant<double> make_camera<double>(const CameraModel&);
+
+}  // namespace axial

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+namespace axial {
+
+// x_in_camera = rotation * (x_in_world - centre). Camera axes: x right, y down, z forward.
+struct Pose {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d to_camera(const Eigen::Vector3d& x_in_world) const {
+    return rotation * (x_in_world - centre);
+  }
+  Eigen::Vector3d to_world(const Eigen::Vector3d& x_in_camera) const {
+    return rotation.transpose() * x_in_camera + centre;
+  }
+};
+
+}  // namespace axial

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as plain data: calibrated images and a sparse cloud.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/camera_model.h"
+#include "scene/pose.h"
+
+namespace axial {
+
+inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
+
+// How well another image of the scene suits as source view (OPENMVS format's ViewScore).
+struct ViewScore {
+  std::uint32_t image = 0;   // index into Scene::images
+  std::uint32_t points = 0;  // sparse points seen by both
+  float scale = 1;           // mean ratio of pixel footprints
+  float angle = 0;           // mean triangulation angle [rad]
+  float area = 0;            // fraction of the image covered by shared points
+  float score = 0;
+};
+
+struct SceneImage {
+  std::string path;          // absolute or relative to the working folder
+  std::string mask_path;     // empty: none
+  std::uint32_t id = kNoId;  // global id: names the depth map file
+  bool calibrated = true;    // false: camera and pose mean nothing, skip the image
+  CameraModel camera;        // at the resolution the scene file records
+  std::string port_name;     // name of camera.port in the housing file; empty: dry
+  Pose pose;
+  float min_depth = 0, average_depth = 0, max_depth = 0;
+  std::vector<ViewScore> neighbours;  // decreasing score
+};
+
+struct SparseView {
+  std::uint32_t image = 0;  // index into Scene::images
+  float confidence = 0;     // 0: not available
+};
+
+struct SparsePoint {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  std::vector<SparseView> views;  // sorted by image; repeated images are tolerated
+};
+
+// Region of interest: |rotation * (X - centre)| <= half_extent, componentwise.
+struct OrientedBox {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rows: the box axes in the world
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half_extent = Eigen::Vector3d::Zero();
+
+  bool contains(const Eigen::Vector3d& x) const {
+    return ((rotation * (x - centre)).cwiseAbs().array() <= half_extent.array()).all();
+  }
+};
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+struct Scene {
+  std::vector<SceneImage> images;
+  std::vector<SparsePoint> points;
+  std::vector<Eigen::Vector3f> point_normals;  // empty or one a point
+  std::vector<Rgb> point_colors;               // empty or one a point
+  std::optional<OrientedBox> region;
+};
+
+}  // namespace axial

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one notion of camera the project is built on: an axial camera.
+//
+// Every pixel's ray in the scene medium meets one fixed axis through the camera centre. A camera is
+// any type with
+//
+//     AxialRay<T>   ray(pixel)                      back-projection
+//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with derivatives by the pixel
+//     Projection<T> project(X)                      exact forward projection
+//     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
+//
+// Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres at
+// integers.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace axial::refractive {
+
+template <class T>
+using Vector2 = Eigen::Matrix<T, 2, 1>;
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Matrix2 = Eigen::Matrix<T, 2, 2>;
+template <class T>
+using Matrix3 = Eigen::Matrix<T, 3, 3>;
+template <class T>
+using Matrix23 = Eigen::Matrix<T, 2, 3>;
+template <class T>
+using Matrix32 = Eigen::Matrix<T, 3, 2>;
+
+// A ray in the scene medium: X = origin + lambda * direction (the paper's eq. 4). The origin lies
+// on the camera's axis (for a pinhole it is the centre itself), the direction is of unit length.
+template <class T>
+struct AxialRay {
+  Vector3<T> origin;
+  Vector3<T> direction;
+
+  Vector3<T> at(const T& lambda) const { return origin + lambda * direction; }
+};
+
+// Derivatives of the ray by the pixel (u, v).
+template <class T>
+struct AxialRayJacobian {
+  Matrix32<T> origin;
+  Matrix32<T> direction;
+};
+
+// The image of a point. `pixel` is finite even where `visible` is false, but means nothing there.
+// `visible` says that light from X reaches the lens within the camera's field: it is not a test
+// against the image rectangle, which may be a little smaller.
+template <class T>
+struct Projection {
+  Vector2<T> pixel;
+  bool visible;
+};
+
+}  // namespace axial::refractive

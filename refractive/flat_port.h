@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A flat port: two parallel planes between the lens and the water (DESIGN: "Flat port in closed
+// form").
+//
+// Axis frame: origin at the camera centre, z along the port's normal, metres. An in-air direction
+// is (x, y, 1) there and s = x^2 + y^2 = tan^2 of the in-air angle. With mu relative to air and
+//
+//     q_g = sqrt(mu_g^2 + (mu_g^2 - 1) s)        q_w = sqrt(mu_w^2 + (mu_w^2 - 1) s)
+//
+// Snell's law reads tan(theta_glass) = sqrt(s)/q_g and tan(theta_water) = sqrt(s)/q_w.
+#pragma once
+
+#include <cmath>
+
+#include "refractive/axial_ray.h"
+
+namespace axial::refractive {
+
+// The port as it is measured, in the camera frame. Requirements, checked where housings are read
+// and not here: unit normal with normal.z > 0, distance and thickness >= 0, n_glass and n_water >=
+// n_air > 0.
+template <class T>
+struct FlatPort {
+  Vector3<T> normal{T(0), T(0), T(1)};  // from the camera to the water
+  T distance = T(0);                    // camera centre to the inner (air/glass) plane [m]
+  T thickness = T(0);                   // of the glass [m]
+  T n_air = T(1);
+  T n_glass = T(1);
+  T n_water = T(1);
+
+  template <class U>
+  FlatPort<U> cast() const {
+    return {normal.template cast<U>(), static_cast<U>(distance), static_cast<U>(thickness),
+            static_cast<U>(n_air),     static_cast<U>(n_glass),  static_cast<U>(n_water)};
+  }
+};
+
+// q of one medium: b = mu^2, c = mu^2 - 1.
+template <class T>
+struct Medium {
+  T b, c;
+
+  explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)) {}
+
+  T q(const T& s) const {
+    using std::sqrt;
+    return sqrt(b + c * s);
+  }
+};
+
+// The port's physics in the axis frame, where only the distances and the indices matter.
+template <class T>
+struct FlatPortOptics {
+  T distance, thickness;
+  Medium<T> glass, water;
+
+  explicit FlatPortOptics(const FlatPort<T>& port)
+      : distance(port.distance),
+        thickness(port.thickness),
+        glass(port.n_glass / port.n_air),
+        water(port.n_water / port.n_air) {}
+
+  // Height of the outer (glass/water) plane on the axis.
+  T outer() const { return distance + thickness; }
+
+  // Distance from the axis of the point at height `z_water` above the outer plane on the ray whose
+  // in-air tangent is t. Strictly increasing in t.
+  T radius(const T& t, const T& z_water) const {
+    const T s = t * t;
+    return t * (distance + thickness / glass.q(s) + z_water / water.q(s));
+  }
+
+  // Height on the axis of the virtual camera centre C_v of the rays with s = tan^2(theta_air).
+  T virtual_centre(const T& s) const {
+    const T q_w = water.q(s);
+    return outer() - (distance + thickness / glass.q(s)) * q_w;
+  }
+};
+
+}  // namespace axial::refractive
