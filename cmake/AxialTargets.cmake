@@ -45,11 +45,20 @@ function(add_axial_app name)
 endfunction()
 
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [LABELS unit]) : tests/io/ply_test.cpp as the
-# CTest cases "io/ply_test/...". LABELS unit (the default) also runs under the sanitizers.
+# CTest cases "io/ply_test/...". LABELS unit (the default) also runs under the sanitizers, as
+# "sanitized/io/ply_test/..."; tests with other labels exist in the release build alone.
+add_custom_target(axial_tests)
 function(add_axial_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
+  endif()
+  set(prefix "")
+  if(AXIAL_SANITIZE)
+    if(NOT "unit" IN_LIST ARG_LABELS)
+      return()
+    endif()
+    set(prefix "sanitized/")
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
@@ -61,6 +70,7 @@ function(add_axial_test name)
     AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${target} PRIVATE axial_flags rapidcheck GTest::gmock GTest::gtest_main)
   axial_link(${target} ${ARG_LINK})
-  gtest_discover_tests(${target} TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST
+  add_dependencies(axial_tests ${target})
+  gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs the Debian 12 packages that building, testing and the demo need. Does nothing, and says
+# nothing, where they all are installed already.
+set -euo pipefail
+
+packages=(
+  # to build
+  g++ cmake ninja-build
+  libeigen3-dev libopencv-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+  libnanoflann-dev libembree-dev libboost-dev libboost-program-options-dev
+  # to test
+  libgtest-dev libgmock-dev librapidcheck-dev libceres-dev
+  # to run the pipeline
+  colmap python3
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+  command -v sudo >/dev/null || {
+    echo "install-deps.sh: not root and no sudo; as root, run: apt-get install ${missing[*]}" >&2
+    exit 1
+  }
+  as_root=(sudo)
+fi
+
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+quietly() {
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive "$@" </dev/null >"$log" 2>&1; then
+    cat "$log" >&2
+    echo "install-deps.sh: failed: $*" >&2
+    exit 1
+  fi
+}
+quietly apt-get update -qq
+quietly apt-get install -y -qq --no-install-recommends "${missing[@]}"
