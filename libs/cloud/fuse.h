@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth maps to one point cloud (OPENMVS_FACTS 6.7).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+#include "scene/depth_map.h"
+#include "scene/point_cloud.h"
+#include "scene/scene.h"
+
+namespace axial::cloud {
+
+// One image that has a depth map.
+struct FusionView {
+  std::uint32_t image = 0;                // index into Scene::images
+  std::vector<std::uint32_t> neighbours;  // images to join, best first (filter_neighbours); those
+                                          // without a FusionView of their own are ignored
+  std::size_t rank =
+      0;  // views are fused in decreasing rank (unfiltered neighbours), ties by image
+};
+
+// Both are called with an index into Scene::images, from one thread, at most once a view and as
+// late as possible; what they return is dropped after the last view that needs it.
+struct FusionProviders {
+  std::function<DepthMap(std::size_t image)> load_map;
+  // B G R at the depth map's size. Empty function: no colours.
+  std::function<cv::Mat3b(std::size_t image)> load_color;
+};
+
+struct FuseOptions {
+  // Images that must agree on a point (their own included; capped by the number of views). Below 2:
+  // plain merge, every valid pixel is a point with one view.
+  std::size_t min_views = 3;
+  double depth_threshold = 0.01;                              // relative, along the neighbour's ray
+  double normal_threshold = 25.0 * std::numbers::pi / 180.0;  // [rad]
+  // Distance of the neighbour's point to the pixel that asks, seen there [px]; 0: not tested.
+  double reprojection_threshold = 0;
+  bool normals = true;  // fill PointCloud::normals
+};
+
+// Every pixel that belongs to no point yet asks its view's neighbours: those whose depth at the
+// projection agrees in depth and normal join, and their pixels are used up. A point with enough
+// views is the mean of the back-projected pixels (eq. 4), weighted with
+// 1 / (max(1 - confidence, 0.03) depth^2), as are its colour and normal; depths that it proves
+// wrong (a neighbour sees behind it) are deleted. Each pixel of a depth map supports at most one
+// point. Positions, weights and views (sorted by image) are always filled. Maps without normals get
+// them from depth (estimate_map_normals); pixels without a normal skip the normal test. The same
+// bytes for any number of threads. Error for a map whose size, image and normals disagree.
+PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
+                const FusionProviders& providers, const FuseOptions& options = {},
+                const ProgressSink& progress = {});
+
+// Normals from 3x3 neighbourhoods of back-projected points with depths within 3 % of the pixel's
+// (at least 3 of them), camera frame, facing the camera; 0 where that fails or depth is 0.
+cv::Mat3f estimate_map_normals(const DepthMap& map);
+
+}  // namespace axial::cloud
