@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of the matching stage. Lengths in pixels of the level that is worked on, angles in
+// radians.
+#pragma once
+
+#include <numbers>
+
+namespace axial::depth {
+
+// How a patch is carried from the reference view into a source view.
+enum class Warp {
+  affine,     // the exact centre and the exact first derivative (DESIGN section 3)
+  homography  // the paper's virtual-camera homography, eqs. (1)-(3), with rounded lookup
+};
+
+inline constexpr float radians(float degrees) {
+  return degrees * std::numbers::pi_v<float> / 180.0f;
+}
+
+struct PatchMatchOptions {
+  Warp warp = Warp::affine;
+  int sub_resolution_levels = 2;  // coarser levels before the working resolution
+  int iterations = 3;             // sweeps per level
+  int coarsest_side = 64;         // no level gets a shorter side below this
+
+  float sigma_color = 0.1f;  // bilateral weight: intensity, in [0, 1]
+  float sigma_space = 3.0f;  // and distance [px]
+  float min_texture =
+      4e-4f;  // weighted sum of squared deviations below which a patch is textureless
+
+  float smoothness_depth_sigma = 0.02f;  // relative distance of the neighbour to the plane
+  float smoothness_depth_bonus = 0.07f;
+  float smoothness_normal_sigma = radians(13);
+  float smoothness_normal_bonus = 0.0672f;
+
+  float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
+
+  int refinement_trials = 6;
+  float refinement_pixels = 1.5f;        // depth trial: largest motion in a source view
+  float refinement_angle = radians(16);  // normal trial
+  int refinement_views = 3;              // best views in which trials are scored
+  float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
+
+  float keep_cost_before_geometric = 1.2f;  // hypotheses at or above are cleared
+  float keep_cost = 0.9f;
+
+  float geometric_weight = 0.1f;
+  float geometric_limit = 4.0f;
+};
+
+}  // namespace axial::depth

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/patch_match.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "depth/matcher.h"
+#include "depth/sparse_init.h"
+#include "depth/sweep.h"
+#include "scene/camera_list.h"
+
+namespace axial::depth {
+namespace {
+
+// The views at one resolution level.
+struct Level {
+  std::vector<CameraModel> cameras;  // reference first
+  std::vector<cv::Mat1b> images;
+  std::vector<QuadImage> quads;  // of the sources
+};
+
+struct DepthRange {
+  float min = 0, max = 0;
+};
+
+// What one level starts from and is held to.
+struct LevelState {
+  PlaneMap planes;
+  cv::Mat1f prior;
+  cv::Mat1b mask;  // empty: all
+};
+
+Level make_level(const MatchInput& input, int halvings) {
+  Level level;
+  const auto add = [&](const MatchImage& view) {
+    const int width = std::max(1, view.grey.cols >> halvings);
+    const int height = std::max(1, view.grey.rows >> halvings);
+    cv::Mat1b image = view.grey;
+    if (halvings > 0) cv::resize(view.grey, image, {width, height}, 0, 0, cv::INTER_AREA);
+    level.cameras.push_back(view.camera.resized(width, height));
+    level.images.push_back(image);
+  };
+  add(*input.reference);
+  for (const MatchImage* source : input.sources) add(*source);
+  for (std::size_t i = 1; i < level.images.size(); ++i) level.quads.emplace_back(level.images[i]);
+  return level;
+}
+
+template <class Camera>
+std::vector<SourceView<Camera>> make_sources(const MatchInput& input, const Level& level,
+                                             const std::vector<Camera>& cameras,
+                                             std::span<const DepthMap* const> maps) {
+  std::vector<SourceView<Camera>> sources;
+  for (std::size_t i = 0; i < input.sources.size(); ++i) {
+    const DepthMap* map = i < maps.size() ? maps[i] : nullptr;
+    sources.push_back({cameras[i + 1], RelativePose(input.reference->pose, input.sources[i]->pose),
+                       &level.quads[i], map ? &map->depth : nullptr});
+  }
+  return sources;
+}
+
+// Runs `sweeps` sweeps of one level with the camera type and the warp chosen once.
+void run_sweeps(const MatchInput& input, const Level& level, std::span<const DepthMap* const> maps,
+                const PatchMatchOptions& options, const SweepInput& first, int sweeps,
+                PlaneMap& planes) {
+  std::visit(
+      [&](const auto& cameras) {
+        using Camera = typename std::decay_t<decltype(cameras)>::value_type;
+        const Matcher<Camera, AffineWarp> matcher(
+            level.images[0], cameras[0], make_sources(input, level, cameras, maps), options);
+        SweepInput sweep = first;
+        for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
+          Sweep<Camera, AffineWarp>(matcher, planes, options, sweep).run();
+          sweep.first = false;
+        }
+      },
+      make_camera_list<float>(level.cameras));
+}
+
+std::vector<Eigen::Vector3f> points_in_camera(const MatchInput& input) {
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3f& point : input.sparse_points)
+    points.push_back(input.reference->pose.to_camera(point.cast<double>()).cast<float>());
+  return points;
+}
+
+DepthRange depth_range(const CameraModel& model, std::span<const Eigen::Vector3f> points) {
+  DepthRange range{std::numeric_limits<float>::max(), 0};
+  std::visit(
+      [&](const auto& camera) {
+        for (const Eigen::Vector3f& point : points) {
+          const auto image = camera.project(point);
+          if (!image.visible) continue;
+          const float depth = (point - camera.ray(image.pixel).origin).norm();
+          range.min = std::min(range.min, depth);
+          range.max = std::max(range.max, depth);
+        }
+      },
+      make_camera<float>(model));
+  if (!(range.max > 0)) fail("none of the sparse points is visible in the reference view");
+  return {0.9f * range.min, 1.1f * range.max};
+}
+
+// Every fine pixel takes the plane of the coarse pixel it lies in, met by its own ray (eq. 8).
+LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const DepthRange& range,
+                        float keep_cost) {
+  LevelState state{
+      PlaneMap(fine.width, fine.height), cv::Mat1f::zeros(fine.height, fine.width), {}};
+  std::visit(
+      [&](const auto& camera) {
+        for (int y = 0; y < fine.height; ++y) {
+          for (int x = 0; x < fine.width; ++x) {
+            const PlanePixel& from =
+                coarse.at(std::min(x / 2, coarse.width - 1), std::min(y / 2, coarse.height - 1));
+            if (!(from.plane.depth > 0) || !(from.cost < keep_cost)) continue;
+            const auto ray = camera.ray({static_cast<float>(x), static_cast<float>(y)});
+            const float along = from.plane.normal.dot(ray.direction);
+            float depth = from.plane.depth;
+            if (along < -0.1f) depth = from.plane.normal.dot(from.point - ray.origin) / along;
+            depth = std::clamp(depth, range.min, range.max);
+            PlanePixel& to = state.planes.at(x, y);
+            to.plane = {depth, from.plane.normal};
+            to.point = ray.at(depth);
+            to.cost = from.cost;
+            state.prior(y, x) = depth;
+          }
+        }
+      },
+      make_camera<float>(fine));
+  return state;
+}
+
+DepthMap to_depth_map(const MatchInput& input, const PlaneMap& planes, const DepthRange& range,
+                      float keep_cost) {
+  DepthMap map;
+  map.camera = input.reference->camera;
+  map.pose = input.reference->pose;
+  map.ids.push_back(input.reference->id);
+  for (const MatchImage* source : input.sources) map.ids.push_back(source->id);
+  map.min_depth = range.min;
+  map.max_depth = range.max;
+  map.depth = cv::Mat1f::zeros(planes.height, planes.width);
+  map.normal = cv::Mat3f::zeros(planes.height, planes.width);
+  map.confidence = cv::Mat1f::zeros(planes.height, planes.width);
+  for (int y = 0; y < planes.height; ++y) {
+    for (int x = 0; x < planes.width; ++x) {
+      const PlanePixel& pixel = planes.at(x, y);
+      if (!(pixel.plane.depth > 0) || !(pixel.cost < keep_cost)) continue;
+      map.depth(y, x) = pixel.plane.depth;
+      map.normal(y, x) = {pixel.plane.normal.x(), pixel.plane.normal.y(), pixel.plane.normal.z()};
+      map.confidence(y, x) = std::max(0.0f, 1.0f - pixel.cost);
+    }
+  }
+  return map;
+}
+
+PlaneMap to_planes(const DepthMap& map) {
+  PlaneMap planes(map.width(), map.height());
+  std::visit(
+      [&](const auto& camera) {
+        for (int y = 0; y < planes.height; ++y) {
+          for (int x = 0; x < planes.width; ++x) {
+            const float depth = map.depth(y, x);
+            if (!(depth > 0)) continue;
+            const cv::Vec3f& n = map.normal(y, x);
+            PlanePixel& pixel = planes.at(x, y);
+            pixel.plane = {depth, {n[0], n[1], n[2]}};
+            pixel.point = camera.ray({static_cast<float>(x), static_cast<float>(y)}).at(depth);
+            pixel.cost = 1.0f - map.confidence(y, x);
+          }
+        }
+      },
+      make_camera<float>(map.camera));
+  return planes;
+}
+
+int usable_levels(const MatchInput& input, const PatchMatchOptions& options) {
+  const int side = std::min(input.reference->grey.cols, input.reference->grey.rows);
+  int levels = options.sub_resolution_levels;
+  while (levels > 0 && (side >> levels) < options.coarsest_side) --levels;
+  return levels;
+}
+
+cv::Mat1b mask_at(const MatchInput& input, const CameraModel& camera) {
+  cv::Mat1b mask;
+  if (input.mask)
+    cv::resize(*input.mask, mask, {camera.width, camera.height}, 0, 0, cv::INTER_NEAREST);
+  return mask;
+}
+
+void check(const MatchInput& input) {
+  if (input.sources.empty() || input.sources.size() > kMaxSources)
+    fail("a reference view needs 1 to {} source views, not {}", kMaxSources, input.sources.size());
+}
+
+constexpr std::uint32_t kSweepsPerLevel = 64;  // even, so that every level starts forwards
+
+}  // namespace
+
+DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& options) {
+  check(input);
+  const std::vector<Eigen::Vector3f> points = points_in_camera(input);
+  const DepthRange range = depth_range(input.reference->camera, points);
+  std::optional<PlaneMap> coarser;
+  for (int halvings = usable_levels(input, options); halvings >= 0; --halvings) {
+    const Level level = make_level(input, halvings);
+    LevelState state =
+        coarser
+            ? refine_level(*coarser, level.cameras[0], range, options.keep_cost_before_geometric)
+            : LevelState{
+                  planes_from_points(level.cameras[0], points, range.min, range.max), {}, {}};
+    state.mask = mask_at(input, level.cameras[0]);
+    SweepInput sweep;
+    sweep.image_id = input.reference->id;
+    sweep.sweep = static_cast<std::uint32_t>(halvings) * kSweepsPerLevel;
+    sweep.min_depth = range.min;
+    sweep.max_depth = range.max;
+    sweep.prior = state.prior.empty() ? nullptr : &state.prior;
+    sweep.mask = state.mask.empty() ? nullptr : &state.mask;
+    sweep.first = true;
+    run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
+    coarser = std::move(state.planes);
+  }
+  return to_depth_map(input, *coarser, range, options.keep_cost_before_geometric);
+}
+
+DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
+                          std::span<const DepthMap* const> source_maps, int pass, bool last,
+                          const PatchMatchOptions& options) {
+  check(input);
+  const Level level = make_level(input, 0);
+  PlaneMap planes = to_planes(current);
+  const cv::Mat1b mask = mask_at(input, level.cameras[0]);
+  SweepInput sweep;
+  sweep.image_id = input.reference->id;
+  sweep.sweep = static_cast<std::uint32_t>(options.iterations + pass);
+  sweep.min_depth = current.min_depth;
+  sweep.max_depth = current.max_depth;
+  sweep.textureless_prior = &current.depth;
+  sweep.mask = mask.empty() ? nullptr : &mask;
+  run_sweeps(input, level, source_maps, options, sweep, 1, planes);
+  const DepthRange range{current.min_depth, current.max_depth};
+  return to_depth_map(input, planes, range,
+                      last ? options.keep_cost : options.keep_cost_before_geometric);
+}
+
+}  // namespace axial::depth

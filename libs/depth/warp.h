@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Carries the reference window into a source view, under a plane hypothesis.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "depth/patch.h"
+#include "depth/plane_map.h"
+#include "depth/zncc.h"
+#include "refractive/affine_warp.h"
+#include "refractive/axial_ray.h"
+#include "scene/pose.h"
+
+namespace axial::depth {
+
+// x_in_source = rotation * x_in_reference + translation.
+struct RelativePose {
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f translation = Eigen::Vector3f::Zero();
+
+  RelativePose() = default;
+  RelativePose(const Pose& reference, const Pose& source)
+      : rotation((source.rotation * reference.rotation.transpose()).cast<float>()),
+        translation((source.rotation * (reference.centre - source.centre)).cast<float>()) {}
+
+  Eigen::Vector3f apply(const Eigen::Vector3f& x) const { return rotation * x + translation; }
+  Eigen::Vector3f inverse(const Eigen::Vector3f& x) const {
+    return rotation.transpose() * (x - translation);
+  }
+};
+
+// The hypothesis' surface point at the window's centre and its derivative by the reference pixel.
+struct PatchDerivative {
+  Eigen::Vector3f point;
+  refractive::Matrix32<float> by_pixel;
+};
+
+inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
+                                        const refractive::AxialRayJacobian<float>& jacobian,
+                                        const PlaneHypothesis& plane) {
+  return {ray.at(plane.depth),
+          refractive::plane_point_derivative(ray, jacobian, plane.depth, plane.normal)};
+}
+
+// Exact centre and exact first derivative: no division per texel.
+struct AffineWarp {
+  // False if the centre is not visible in the source view.
+  template <class Camera>
+  static bool texels(const Camera&, int, int, const refractive::AxialRay<float>&,
+                     const PlaneHypothesis&, const PatchDerivative& patch, const Camera& source,
+                     const RelativePose& from_reference, TexelPositions& at) {
+    refractive::Matrix23<float> jacobian;
+    const auto centre = source.project(from_reference.apply(patch.point), &jacobian);
+    if (!centre.visible) return false;
+    const Eigen::Matrix2f a = jacobian * (from_reference.rotation * patch.by_pixel);
+    for (std::size_t k = 0; k < kPaddedTexels; ++k) {
+      at.x[k] = centre.pixel.x() + a(0, 0) * kTexelOffsets.x[k] + a(0, 1) * kTexelOffsets.y[k];
+      at.y[k] = centre.pixel.y() + a(1, 0) * kTexelOffsets.x[k] + a(1, 1) * kTexelOffsets.y[k];
+    }
+    return true;
+  }
+};
+
+}  // namespace axial::depth

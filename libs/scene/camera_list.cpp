@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/camera_list.h"
+
+#include <algorithm>
+
+namespace axial {
+
+template <class T>
+CameraList<T> make_camera_list(std::span<const CameraModel> models) {
+  const bool all_dry =
+      std::none_of(models.begin(), models.end(), [](const auto& model) { return model.port; });
+  if (all_dry) {
+    std::vector<refractive::PinholeCamera<T>> cameras;
+    for (const CameraModel& model : models) cameras.emplace_back(model.lens.template cast<T>());
+    return cameras;
+  }
+  std::vector<refractive::FlatPortCamera<T>> cameras;
+  for (const CameraModel& model : models)
+    cameras.emplace_back(model.lens.template cast<T>(),
+                         model.port.value_or(refractive::FlatPort<double>{}).template cast<T>(),
+                         model.width, model.height);
+  return cameras;
+}
+
+template CameraList<float> make_camera_list<float>(std::span<const CameraModel>);
+template CameraList<double> make_camera_list<double>(std::span<const CameraModel>);
+
+}  // namespace axial

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cameras that work on one task together (a reference view and its source views), as one type.
+#pragma once
+
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "scene/camera_model.h"
+
+namespace axial {
+
+template <class T>
+using CameraList = std::variant<std::vector<refractive::PinholeCamera<T>>,
+                                std::vector<refractive::FlatPortCamera<T>>>;
+
+// All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
+// ones is a port of index 1, which is the pinhole exactly. Same order as `models`.
+template <class T>
+CameraList<T> make_camera_list(std::span<const CameraModel> models);
+
+extern template CameraList<float> make_camera_list<float>(std::span<const CameraModel>);
+extern template CameraList<double> make_camera_list<double>(std::span<const CameraModel>);
+
+}  // namespace axial
