@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/region.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace axial {
+namespace {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Where the cameras look, and how far the farthest of them is from there.
+struct Attention {
+  Eigen::Vector3d centre;
+  double radius = 0;
+  double agreement = 0;  // length of the mean viewing direction: 1 if all are parallel
+};
+
+Attention centre_of_attention(const std::vector<const Pose*>& poses) {
+  Eigen::Vector3d middle, direction = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Pose* pose : poses) values.push_back(pose->centre(axis));
+    middle(axis) = median(std::move(values));
+  }
+  std::vector<double> distances;
+  for (const Pose* pose : poses) {
+    direction += pose->rotation.row(2).transpose();
+    distances.push_back((pose->centre - middle).norm());
+  }
+  Attention attention;
+  attention.agreement = direction.norm() / static_cast<double>(poses.size());
+  const double ahead = std::tan(std::asin(std::min(attention.agreement, 0.999)));
+  attention.centre = middle + ahead * median(std::move(distances)) * direction.stableNormalized();
+  for (const Pose* pose : poses) {
+    attention.radius = std::max(attention.radius, (pose->centre - attention.centre).norm());
+  }
+  return attention;
+}
+
+bool surrounds(const std::vector<const Pose*>& poses, const Attention& attention) {
+  if (attention.agreement > std::numbers::sqrt2 / 2) return false;
+  return std::all_of(poses.begin(), poses.end(),
+                     [&](const Pose* pose) { return pose->to_camera(attention.centre).z() > 0; });
+}
+
+bool seen_within(const Scene& scene, const SparsePoint& point, double limit) {
+  const Eigen::Vector3d position = point.position.cast<double>();
+  return std::any_of(point.views.begin(), point.views.end(), [&](const SparseView& view) {
+    if (view.image >= scene.images.size() || !scene.images[view.image].calibrated) return false;
+    return scene.images[view.image].pose.to_camera(position).z() < limit;
+  });
+}
+
+}  // namespace
+
+std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode) {
+  std::vector<const Pose*> poses;
+  for (const SceneImage& image : scene.images) {
+    if (image.calibrated) poses.push_back(&image.pose);
+  }
+  if (mode == RegionMode::off || poses.size() < 3) return std::nullopt;
+  const Attention attention = centre_of_attention(poses);
+  if (mode == RegionMode::adaptive && !surrounds(poses, attention)) return std::nullopt;
+
+  Eigen::AlignedBox3d box;
+  for (const SparsePoint& point : scene.points) {
+    if (!point.position.allFinite() || !seen_within(scene, point, 2 * attention.radius)) continue;
+    box.extend(point.position.cast<double>());
+  }
+  if (box.isEmpty()) return std::nullopt;
+  constexpr double kEnlarged = 1.1;
+  OrientedBox region;
+  region.centre = box.center();
+  region.half_extent = kEnlarged / 2 * box.sizes();
+  return region;
+}
+
+OrientedBox with_border(const OrientedBox& region, double border) {
+  OrientedBox result = region;
+  if (border > 0) result.half_extent *= border;
+  if (border < 0) result.half_extent.array() -= border;
+  return result;
+}
+
+}  // namespace axial
