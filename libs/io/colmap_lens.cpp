@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/colmap_lens.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace axial::io {
+
+namespace {
+
+using Eigen::Vector2d;
+using Parameters = std::span<const double>;  // the distortion's: behind the principal point
+
+// a[0] x + a[1] x^2 + ...
+double power_series(Parameters a, double x) {
+  double sum = 0;
+  for (std::size_t i = a.size(); i-- > 0;) sum = (sum + a[i]) * x;
+  return sum;
+}
+
+// Tangential distortion (Brown): added to the radially distorted point.
+Vector2d tangential(const Vector2d& p, double p1, double p2) {
+  const double r2 = p.squaredNorm(), xy = p.x() * p.y();
+  return {2 * p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), 2 * p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
+}
+
+Vector2d pinhole(Parameters, const Vector2d& p) {
+  return p;
+}
+
+Vector2d radial(Parameters k, const Vector2d& p) {
+  return p * (1 + power_series(k, p.squaredNorm()));
+}
+
+Vector2d opencv(Parameters k, const Vector2d& p) {
+  return radial(k.first(2), p) + tangential(p, k[2], k[3]);
+}
+
+Vector2d full_opencv(Parameters k, const Vector2d& p) {
+  const double r2 = p.squaredNorm();
+  const std::array<double, 3> above{k[0], k[1], k[4]};
+  const double ratio = (1 + power_series(above, r2)) / (1 + power_series(k.subspan(5, 3), r2));
+  return p * ratio + tangential(p, k[2], k[3]);
+}
+
+// The point at the distance theta from the centre, in the direction of p: the equidistant fisheye.
+Vector2d equidistant(const Vector2d& p) {
+  const double r = p.norm();
+  return r > 0 ? Vector2d(p * (std::atan(r) / r)) : p;
+}
+
+Vector2d fisheye(Parameters k, const Vector2d& p) {
+  return radial(k, equidistant(p));
+}
+
+Vector2d thin_prism_fisheye(Parameters k, const Vector2d& p) {
+  const Vector2d e = equidistant(p);
+  const double r2 = e.squaredNorm();
+  const std::array<double, 4> series{k[0], k[1], k[4], k[5]};
+  return radial(series, e) + tangential(e, k[2], k[3]) + Vector2d(k[6], k[7]) * r2;
+}
+
+Vector2d rad_tan_thin_prism_fisheye(Parameters k, const Vector2d& p) {
+  const Vector2d e = radial(k.first(6), equidistant(p));
+  const double r2 = e.squaredNorm();
+  // Its first tangential parameter acts as Brown's second.
+  return e + tangential(e, k[7], k[6]) + Vector2d(k[8], k[10]) * r2 +
+         Vector2d(k[9], k[11]) * r2 * r2;
+}
+
+Vector2d field_of_view(Parameters k, const Vector2d& p) {
+  const double omega = k[0], r = p.norm();
+  if (omega == 0 || r == 0) return p;
+  return p * (std::atan(2 * r * std::tan(omega / 2)) / (omega * r));
+}
+
+// Division model: undistorted = distorted / (1 + k r_distorted^2), solved for the distorted point.
+Vector2d division(Parameters k, const Vector2d& p) {
+  return p * (2 / (1 + std::sqrt(1 - 4 * k[0] * p.squaredNorm())));
+}
+
+// Enhanced unified camera model; (alpha, beta) = (0, 1) is the pinhole.
+Vector2d eucm(Parameters k, const Vector2d& p) {
+  const double below = k[0] * std::sqrt(k[1] * p.squaredNorm() + 1) + 1 - k[0];
+  return below > 0 ? Vector2d(p / below) : Vector2d::Constant(std::nan(""));
+}
+
+struct Lens {
+  std::string_view model;
+  int focal_lengths;  // 1: f cx cy ..., 2: fx fy cx cy ...
+  Vector2d (*distort)(Parameters, const Vector2d&);
+  bool flat;  // the pinhole where all distortion parameters are zero
+};
+
+constexpr std::array kLenses = {
+    Lens{"SIMPLE_PINHOLE", 1, pinhole, true},
+    Lens{"PINHOLE", 2, pinhole, true},
+    Lens{"SIMPLE_RADIAL", 1, radial, true},
+    Lens{"RADIAL", 1, radial, true},
+    Lens{"OPENCV", 2, opencv, true},
+    Lens{"FULL_OPENCV", 2, full_opencv, true},
+    Lens{"OPENCV_FISHEYE", 2, fisheye, false},
+    Lens{"SIMPLE_RADIAL_FISHEYE", 1, fisheye, false},
+    Lens{"RADIAL_FISHEYE", 1, fisheye, false},
+    Lens{"SIMPLE_FISHEYE", 1, fisheye, false},
+    Lens{"FISHEYE", 2, fisheye, false},
+    Lens{"THIN_PRISM_FISHEYE", 2, thin_prism_fisheye, false},
+    Lens{"RAD_TAN_THIN_PRISM_FISHEYE", 2, rad_tan_thin_prism_fisheye, false},
+    Lens{"FOV", 2, field_of_view, true},
+    Lens{"SIMPLE_DIVISION", 1, division, true},
+    Lens{"DIVISION", 2, division, true},
+    Lens{"EUCM", 2, eucm, false},
+};
+
+// A camera's parameters taken apart: focal lengths and principal point (pixel centres at
+// integers), and the distortion.
+struct Parts {
+  const Lens* lens;
+  refractive::PinholeLens<double> pinhole;
+  Parameters distortion;
+};
+
+Parts take_apart(const ColmapCamera& camera) {
+  const auto lens = std::find_if(kLenses.begin(), kLenses.end(),
+                                 [&](const Lens& l) { return l.model == camera.model; });
+  if (lens == kLenses.end())
+    fail("camera {}: model {} is not supported; undistort its images with COLMAP first", camera.id,
+         camera.model);
+  const Parameters p(camera.params);
+  if (static_cast<int>(p.size()) != colmap_parameter_count(camera.model))
+    fail("camera {}: model {} has {} parameters, not {}", camera.id, camera.model,
+         colmap_parameter_count(camera.model), p.size());
+  const std::size_t n = static_cast<std::size_t>(lens->focal_lengths);
+  return {&*lens, {p[0], p[n - 1], p[n] - 0.5, p[n + 1] - 0.5}, p.subspan(n + 2)};
+}
+
+Vector2d image_point(const Parts& parts, const Vector2d& direction) {
+  const Vector2d p = parts.lens->distort(parts.distortion, direction);
+  return {parts.pinhole.fx * p.x() + parts.pinhole.cx, parts.pinhole.fy * p.y() + parts.pinhole.cy};
+}
+
+bool inside(const ColmapCamera& camera, const Vector2d& pixel) {
+  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= static_cast<double>(camera.width) - 1 &&
+         pixel.y() <= static_cast<double>(camera.height) - 1;  // false for NaN
+}
+
+// True if everything between the principal ray and (u, v) is imaged inside, ever farther from the
+// principal point: polynomials fold back beyond the field they were fitted to, and a folded ray
+// can land inside again.
+bool seen(const ColmapCamera& camera, const Parts& parts, const Vector2d& direction) {
+  constexpr int kSteps = 50;
+  const Vector2d centre = image_point(parts, Vector2d::Zero());
+  double distance = 0;
+  for (int i = 1; i <= kSteps; ++i) {
+    const Vector2d pixel = image_point(parts, direction * (double(i) / kSteps));
+    const double next = (pixel - centre).norm();
+    if (!inside(camera, pixel) || !(next > distance)) return false;
+    distance = next;
+  }
+  return true;
+}
+
+bool whole_border_seen(const ColmapCamera& camera, const Parts& parts,
+                       const refractive::PinholeLens<double>& lens) {
+  const double right = static_cast<double>(camera.width) - 1;
+  const double bottom = static_cast<double>(camera.height) - 1;
+  constexpr int kSamples = 64;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double x = right * i / kSamples, y = bottom * i / kSamples;
+    for (const Vector2d& pixel :
+         {Vector2d(x, 0), Vector2d(x, bottom), Vector2d(0, y), Vector2d(right, y)})
+      if (!seen(camera, parts, {(pixel.x() - lens.cx) / lens.fx, (pixel.y() - lens.cy) / lens.fy}))
+        return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Vector2d image_direction(const ColmapCamera& camera, double u, double v) {
+  return image_point(take_apart(camera), {u, v});
+}
+
+std::optional<refractive::PinholeLens<double>> pinhole_lens(const ColmapCamera& camera) {
+  const Parts parts = take_apart(camera);
+  const bool straight = std::all_of(parts.distortion.begin(), parts.distortion.end(),
+                                    [](double k) { return k == 0; });
+  if (!parts.lens->flat || !straight) return std::nullopt;
+  return parts.pinhole;
+}
+
+refractive::PinholeLens<double> pinhole_inside(const ColmapCamera& camera,
+                                               const std::string& name) {
+  const Parts parts = take_apart(camera);
+  const auto zoomed = [&](double zoom) {
+    auto lens = parts.pinhole;
+    lens.fx *= zoom;
+    lens.fy *= zoom;
+    return lens;
+  };
+  double narrow = 4, wide = 0.5;
+  if (!whole_border_seen(camera, parts, zoomed(narrow)))
+    fail(
+        "{}: camera {} ({}) cannot be undistorted: its image shows less than a quarter of a "
+        "pinhole's",
+        name, camera.id, camera.model);
+  if (whole_border_seen(camera, parts, zoomed(wide))) return zoomed(wide);
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (narrow + wide) / 2;
+    (whole_border_seen(camera, parts, zoomed(middle)) ? narrow : wide) = middle;
+  }
+  return zoomed(narrow);
+}
+
+cv::Mat2f undistortion_map(const ColmapCamera& camera,
+                           const refractive::PinholeLens<double>& pinhole) {
+  const Parts parts = take_apart(camera);
+  cv::Mat2f map(static_cast<int>(camera.height), static_cast<int>(camera.width));
+  for (int y = 0; y < map.rows; ++y)
+    for (int x = 0; x < map.cols; ++x) {
+      const Vector2d direction((x - pinhole.cx) / pinhole.fx, (y - pinhole.cy) / pinhole.fy);
+      const Vector2d pixel = image_point(parts, direction);
+      map(y, x) = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+    }
+  return map;
+}
+
+}  // namespace axial::io

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/colmap_scene.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/colmap_lens.h"
+#include "io/image.h"
+
+namespace axial::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_jpeg(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+// What replaces one camera of the model. Images are resampled where `map` is not empty.
+struct ImportedCamera {
+  CameraModel camera;
+  cv::Mat2f map;
+};
+
+ImportedCamera import_camera(const ColmapCamera& camera, const fs::path& model_folder) {
+  constexpr std::uint64_t kLargest = 1u << 16;
+  if (camera.width == 0 || camera.height == 0 || camera.width > kLargest ||
+      camera.height > kLargest)
+    fail("{}: camera {}: size {} x {} is out of range", model_folder.string(), camera.id,
+         camera.width, camera.height);
+  ImportedCamera imported;
+  imported.camera.width = static_cast<int>(camera.width);
+  imported.camera.height = static_cast<int>(camera.height);
+  const auto lens = pinhole_lens(camera);
+  imported.camera.lens = lens ? *lens : pinhole_inside(camera, model_folder.string());
+  if (const auto& l = imported.camera.lens; !(l.fx > 0 && l.fy > 0))
+    fail("{}: camera {}: focal length ({}, {}) is not positive", model_folder.string(), camera.id,
+         l.fx, l.fy);
+  if (!lens) imported.map = undistortion_map(camera, imported.camera.lens);
+  return imported;
+}
+
+std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
+                                                       const fs::path& model_folder) {
+  std::set<std::uint32_t> used;
+  for (const ColmapImage& image : model.images) used.insert(image.camera);
+  std::map<std::uint32_t, ImportedCamera> imported;
+  for (const ColmapCamera& camera : model.cameras)
+    if (used.contains(camera.id)) imported.emplace(camera.id, import_camera(camera, model_folder));
+  return imported;
+}
+
+void check_size(const fs::path& path, const CameraModel& camera) {
+  const cv::Size size = read_image_size(path);
+  if (size.width != camera.width || size.height != camera.height)
+    fail("{}: image is {} x {}, but its camera is {} x {}", path.string(), size.width, size.height,
+         camera.width, camera.height);
+}
+
+// Names come from a file: none may lead out of the folder that is written to, or back to the
+// photographs.
+void check_undistorted_names(const ColmapModel& model, const ColmapImport& import) {
+  std::error_code error;
+  if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
+    fail("{}: holds the images to undistort, and would be overwritten",
+         import.undistorted_folder.string());
+  for (const ColmapImage& image : model.images) {
+    const fs::path name = image.name;
+    if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+      fail("{}: image {}: name '{}' is not below the image folder", import.model_folder.string(),
+           image.id, image.name);
+  }
+}
+
+// Writes the undistorted image and returns its path.
+fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
+                   const fs::path& folder) {
+  const cv::Mat3b distorted = read_color_image(source);
+  cv::Mat3b straight;
+  cv::remap(distorted, straight, camera.map, cv::noArray(), cv::INTER_LANCZOS4,
+            cv::BORDER_REPLICATE);
+  fs::path target = folder / name;
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
+  constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
+  if (is_jpeg(target)) {
+    write_jpeg(target, straight, kQuality);
+  } else {
+    target.replace_extension(".png");
+    write_png(target, straight);
+  }
+  return target;
+}
+
+void import_points(const ColmapModel& model, Scene& scene) {
+  std::unordered_map<std::uint32_t, std::uint32_t> index_of;
+  for (std::size_t i = 0; i < model.images.size(); ++i)
+    index_of.emplace(model.images[i].id, static_cast<std::uint32_t>(i));
+  for (const ColmapPoint3D& point : model.points) {
+    SparsePoint sparse;
+    sparse.position = point.position.cast<float>();
+    for (const ColmapTrackElement& element : point.track)
+      sparse.views.push_back({index_of.at(element.image), 0.0f});
+    std::sort(sparse.views.begin(), sparse.views.end(),
+              [](const SparseView& a, const SparseView& b) { return a.image < b.image; });
+    scene.points.push_back(std::move(sparse));
+    scene.point_colors.push_back(point.color);
+  }
+}
+
+// True if `key` is `name`, or its last components.
+bool matches(const std::string& name, const std::string& key) {
+  return name == key || (name.size() > key.size() && name.ends_with(key) &&
+                         name[name.size() - key.size() - 1] == '/');
+}
+
+}  // namespace
+
+Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
+                          const ProgressSink& progress) {
+  if (model.images.size() < 2)
+    fail("{}: the model has {} registered images, at least 2 are needed",
+         import.model_folder.string(), model.images.size());
+  const auto cameras = import_cameras(model, import.model_folder);
+  const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
+                                     [](const ColmapImage& image) { return image.id == 0; });
+
+  Scene scene;
+  for (const ColmapImage& image : model.images) {
+    SceneImage imported;
+    imported.path = (import.image_folder / image.name).lexically_normal().string();
+    imported.id = from_zero ? image.id : image.id - 1;
+    imported.camera = cameras.at(image.camera).camera;
+    imported.pose = image.pose;
+    scene.images.push_back(std::move(imported));
+  }
+
+  // Everything is checked before the first file is written.
+  parallel_for(scene.images.size(),
+               [&](std::size_t i) { check_size(scene.images[i].path, scene.images[i].camera); });
+  const bool all_straight = std::all_of(
+      cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
+  if (!all_straight) check_undistorted_names(model, import);
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(scene.images.size(), [&](std::size_t i) {
+    const ImportedCamera& camera = cameras.at(model.images[i].camera);
+    if (camera.map.empty()) return;
+    SceneImage& image = scene.images[i];
+    image.path =
+        undistort(image.path, model.images[i].name, camera, import.undistorted_folder).string();
+    const std::scoped_lock lock(mutex);
+    if (progress) progress(++done, scene.images.size());
+  });
+  import_points(model, scene);
+  return scene;
+}
+
+Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
+                         const ColmapImport& import, std::vector<std::string>* unused) {
+  Housing resolved;
+  resolved.ports = housing.ports;
+  resolved.default_port = housing.default_port;
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    const ColmapImage& image = model.images[i];
+    std::string key;  // the longest entry that matches: the most specific
+    for (const auto& [name, port] : housing.images) {
+      if (!matches(image.name, name)) continue;
+      used.insert("images." + name);
+      if (name.size() > key.size()) key = name;
+    }
+    const std::string camera_key = "cameras." + std::to_string(image.camera);
+    if (housing.cameras.contains(image.camera)) used.insert(camera_key);
+    const std::string& port =
+        key.empty() ? housing.port_of(image.name, image.camera) : housing.images.at(key);
+    if (port == housing.default_port) continue;
+    const fs::path path = scene.images[i].path;
+    const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
+    resolved.images[undistorted ? fs::path(image.name).replace_extension(path.extension()).string()
+                                : image.name] = port;
+  }
+  if (!unused) return resolved;
+  for (const auto& [name, port] : housing.images)
+    if (!used.contains("images." + name)) unused->push_back("images." + name);
+  for (const auto& [id, port] : housing.cameras)
+    if (!used.contains("cameras." + std::to_string(id)))
+      unused->push_back("cameras." + std::to_string(id));
+  return resolved;
+}
+
+}  // namespace axial::io

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: what a PLY header declares, and the scalars that follow it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/byte_reader.h"
+
+namespace axial::io {
+
+enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+std::size_t ply_size(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::kFloat32;
+  bool is_list = false;
+  PlyType count_type = PlyType::kUint8;  // of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t body = 0;  // where the data begin
+};
+
+// Error that names `file` for anything that is not a well-formed header.
+PlyHeader parse_ply_header(std::string_view bytes, const std::string& file);
+
+// The body's scalars, in any of the three formats, as double (which holds all PLY types exactly).
+class PlyBody {
+ public:
+  PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header);
+
+  // Error if `element` cannot have as many rows as it declares in the bytes left. Call before its
+  // rows are read; allocations may trust the count afterwards.
+  void require_rows(const PlyElement& element) const;
+
+  // Error for a value that does not fit the type; infinite and NaN values are returned.
+  double scalar(PlyType type, const std::string& name);
+
+  // Length of a list whose values are still to be read; checked against the bytes left.
+  std::size_t list_size(const PlyProperty& property);
+
+  // Error if data follow the last element.
+  void require_end() const;
+
+ private:
+  template <class T>
+  T binary(const std::string& name);
+  double ascii(PlyType type, const std::string& name);
+
+  ByteReader reader_;
+  PlyFormat format_;
+  std::string_view text_;  // what is left of an ascii body
+};
+
+}  // namespace axial::io
