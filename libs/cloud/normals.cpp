@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloud/normals.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <nanoflann.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace axial::cloud {
+namespace {
+
+// What nanoflann asks of a point set.
+struct Positions {
+  const std::vector<Eigen::Vector3f>& points;
+
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i](static_cast<Eigen::Index>(axis));
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Positions>,
+                                                 Positions, 3, std::size_t>;
+
+Eigen::Vector3d smallest_component(const std::vector<Eigen::Vector3f>& points,
+                                   std::span<const std::size_t> chosen) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const std::size_t i : chosen) mean += points[i].cast<double>();
+  mean /= static_cast<double>(chosen.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const std::size_t i : chosen) {
+    const Eigen::Vector3d d = points[i].cast<double>() - mean;
+    covariance += d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  return solver.eigenvectors().col(0);
+}
+
+Eigen::Vector3d mean_camera(const Scene& scene) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (const SceneImage& image : scene.images) {
+    if (!image.calibrated) continue;
+    sum += image.pose.centre;
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector3d(sum / count) : sum;
+}
+
+}  // namespace
+
+void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbours) {
+  const bool has_views = cloud.view_begin.size() == cloud.size() + 1;
+  for (const std::uint32_t image : cloud.view_images) {
+    if (image >= scene.images.size()) {
+      fail("cloud: view of image {}, but there are {} images", image, scene.images.size());
+    }
+  }
+  cloud.normals.assign(cloud.size(), Eigen::Vector3f(0, 0, 1));
+  if (cloud.size() == 0) return;
+  const Positions positions{cloud.positions};
+  const Tree tree(3, positions, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  const std::size_t count = std::min(std::max<std::size_t>(neighbours, 3), cloud.size());
+  const Eigen::Vector3d middle = mean_camera(scene);
+  constexpr std::size_t kGrain = 1024;
+  parallel_for(
+      cloud.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3f& point = cloud.positions[i];
+        const bool seen = has_views && !cloud.views_of(i).empty();
+        const Eigen::Vector3d camera =
+            seen ? scene.images[cloud.views_of(i).front()].pose.centre : middle;
+        const Eigen::Vector3d to_camera = camera - point.cast<double>();
+        Eigen::Vector3d normal = to_camera.stableNormalized();
+        if (count >= 3) {
+          std::vector<std::size_t> chosen(count);
+          std::vector<float> distances(count);
+          tree.knnSearch(point.data(), count, chosen.data(), distances.data());
+          normal = smallest_component(cloud.positions, chosen);
+          if (normal.dot(to_camera) < 0) normal = -normal;
+        }
+        cloud.normals[i] = normal.cast<float>();
+      },
+      kGrain);
+}
+
+}  // namespace axial::cloud
