@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/housing.h"
+
+#include <spdlog/spdlog.h>
+
+#include <set>
+
+#include "base/error.h"
+#include "io/port_json.h"
+#include "io/text_reader.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kDry = "none";
+
+std::string port_name(const JsonPlace& place, const char* key, const Housing& housing) {
+  const std::string name = place.text(key);
+  if (name != kDry && !housing.ports.contains(name))
+    fail("{}.{} is '{}', a port that is not defined", place.where, key, name);
+  return name;
+}
+
+void read_ports(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  for (const auto& [name, unused] : place.json.items()) {
+    if (name == kDry || name.empty())
+      fail("{}: '{}' cannot be the name of a port ('none' means dry)", place.where, name);
+    housing.ports[name] = port_from_json(place.at(name));
+  }
+}
+
+void read_cameras(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    const auto id = parse_number<std::uint32_t>(key);
+    if (!id) fail("{}: key '{}' is no COLMAP camera id", place.where, key);
+    if (housing.cameras.contains(*id)) fail("{}: camera {} occurs twice", place.where, *id);
+    housing.cameras[*id] = port_name(place, key.c_str(), housing);
+  }
+}
+
+void read_images(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    if (key.empty()) fail("{}: an image name is empty", place.where);
+    housing.images[key] = port_name(place, key.c_str(), housing);
+  }
+}
+
+// The longest tail of the path, in whole components, that `images` has an entry for.
+std::map<std::string, std::string>::const_iterator find_entry(const Housing& housing,
+                                                              const fs::path& image) {
+  const auto whole = housing.images.find(image.generic_string());
+  if (whole != housing.images.end()) return whole;
+  const std::string path = image.generic_string();
+  for (std::size_t slash = path.find('/'); slash != std::string::npos;
+       slash = path.find('/', slash + 1)) {
+    const auto found = housing.images.find(path.substr(slash + 1));
+    if (found != housing.images.end()) return found;
+  }
+  return housing.images.end();
+}
+
+void attach(SceneImage& image, const std::string& name, const Housing& housing) {
+  image.camera.port.reset();
+  image.port_name.clear();
+  if (name == kDry) return;
+  const auto port = housing.ports.find(name);
+  if (port == housing.ports.end()) fail("{}: its port '{}' is not defined", image.path, name);
+  image.camera.port = port->second;
+  image.port_name = name;
+}
+
+}  // namespace
+
+const std::string& Housing::port_of(const std::string& image_name, std::uint32_t camera_id) const {
+  if (const auto image = images.find(image_name); image != images.end()) return image->second;
+  if (const auto camera = cameras.find(camera_id); camera != cameras.end()) return camera->second;
+  return default_port;
+}
+
+Housing read_housing(const fs::path& path) {
+  const nlohmann::json json = read_json(path);
+  const JsonPlace root{json, path.string() + ": housing"};
+  root.require_object({"version", "ports", "default", "cameras", "images"});
+  if (root.at("version").json != 1)
+    fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
+  Housing housing;
+  read_ports(root.at("ports"), housing);
+  housing.default_port = port_name(root, "default", housing);
+  if (root.has("cameras")) read_cameras(root.at("cameras"), housing);
+  if (root.has("images")) read_images(root.at("images"), housing);
+  return housing;
+}
+
+void write_housing(const fs::path& path, const Housing& housing) {
+  const std::string where = path.string() + ": housing";
+  nlohmann::json json{{"version", 1}, {"default", housing.default_port}};
+  json["ports"] = nlohmann::json::object();
+  for (const auto& [name, port] : housing.ports) {
+    check_port(port, fmt::format("{}.ports.{}", where, name));
+    json["ports"][name] = port_to_json(port);
+  }
+  const auto checked = [&](const std::string& name) {
+    if (name != kDry && !housing.ports.contains(name))
+      fail("{}: port '{}' is not defined", where, name);
+    return name;
+  };
+  checked(housing.default_port);
+  for (const auto& [id, name] : housing.cameras)
+    json["cameras"][std::to_string(id)] = checked(name);
+  for (const auto& [image, name] : housing.images) json["images"][image] = checked(name);
+  write_json(path, json);
+}
+
+fs::path housing_beside(const fs::path& scene_path) {
+  fs::path path = scene_path;
+  path.replace_extension();
+  path += ".housing.json";
+  return path;
+}
+
+void attach_ports(Scene& scene, const Housing& housing) {
+  std::set<std::string> used;
+  for (SceneImage& image : scene.images) {
+    const auto entry = find_entry(housing, image.path);
+    if (entry != housing.images.end()) {
+      used.insert(entry->first);
+      attach(image, entry->second, housing);
+    } else if (housing.cameras.empty()) {
+      attach(image, housing.default_port, housing);
+    } else {
+      fail(
+          "{}: the housing names ports by COLMAP camera, which a scene does not know: give this "
+          "image an entry under 'images' (InterfaceCOLMAP --housing writes them)",
+          image.path);
+    }
+  }
+  for (const auto& [name, unused] : housing.images)
+    if (!used.contains(name)) spdlog::warn("housing: image '{}' is not in the scene", name);
+}
+
+}  // namespace axial::io

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: JSON files, and a port in JSON (housing files, side files of depth maps).
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "refractive/flat_port.h"
+
+namespace axial::io {
+
+// The file as JSON. Error that names the file for anything else, duplicate keys included.
+nlohmann::json read_json(const std::filesystem::path& path);
+
+// One JSON text, indented, with a newline at the end; written whole or not at all.
+void write_json(const std::filesystem::path& path, const nlohmann::json& json);
+
+// A value inside a JSON file, with its place for error messages: `where` is "file: key.key".
+struct JsonPlace {
+  const nlohmann::json& json;
+  std::string where;
+
+  // Error unless this is an object whose keys are all among `known`.
+  void require_object(std::initializer_list<const char*> known) const;
+  bool has(const char* key) const { return json.contains(key); }
+  JsonPlace at(const std::string& key) const;  // Error if the key is missing
+  double number(const char* key) const;        // Error unless a finite number
+  std::string text(const char* key) const;
+};
+
+// Reads a port object. Error for unknown keys, values no port has, and types other than "flat". A
+// normal off unit length by more than 1e-6 is normalised with a warning.
+refractive::FlatPort<double> port_from_json(const JsonPlace& place);
+nlohmann::json port_to_json(const refractive::FlatPort<double>& port);
+
+// Error that starts with `where` for values no port has.
+void check_port(const refractive::FlatPort<double>& port, const std::string& where);
+
+}  // namespace axial::io
