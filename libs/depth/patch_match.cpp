@@ -77,7 +77,7 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
           sweep.first = false;
         }
       },
-      make_camera_list<float>(level.cameras));
+      make_camera_list<float>(level.cameras, input.projection));
 }
 
 std::vector<Eigen::Vector3f> points_in_camera(const MatchInput& input) {
@@ -108,7 +108,7 @@ DepthRange depth_range(const CameraModel& model, std::span<const Eigen::Vector3f
 LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const DepthRange& range,
                         float keep_cost) {
   LevelState state{
-      PlaneMap(fine.width, fine.height), cv::Mat1f::zeros(fine.height, fine.width), {}};
+      PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
   std::visit(
       [&](const auto& camera) {
         for (int y = 0; y < fine.height; ++y) {
@@ -142,9 +142,9 @@ DepthMap to_depth_map(const MatchInput& input, const PlaneMap& planes, const Dep
   for (const MatchImage* source : input.sources) map.ids.push_back(source->id);
   map.min_depth = range.min;
   map.max_depth = range.max;
-  map.depth = cv::Mat1f::zeros(planes.height, planes.width);
-  map.normal = cv::Mat3f::zeros(planes.height, planes.width);
-  map.confidence = cv::Mat1f::zeros(planes.height, planes.width);
+  map.depth = cv::Mat1f(planes.height, planes.width, 0.0f);
+  map.normal = cv::Mat3f(planes.height, planes.width, cv::Vec3f::all(0));
+  map.confidence = cv::Mat1f(planes.height, planes.width, 0.0f);
   for (int y = 0; y < planes.height; ++y) {
     for (int x = 0; x < planes.width; ++x) {
       const PlanePixel& pixel = planes.at(x, y);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "depth/options.h"
+#include "scene/camera_list.h"
 #include "scene/depth_map.h"
 
 namespace axial::depth {
@@ -26,6 +27,7 @@ struct MatchInput {
   std::span<const MatchImage* const> sources;      // 1 to 32, best first
   std::span<const Eigen::Vector3f> sparse_points;  // world frame, seen by the reference view
   const cv::Mat1b* mask = nullptr;                 // non-zero: match this pixel; null: all
+  ProjectionMethod projection = ProjectionMethod::exact;
 };
 
 // Photometric depth map: sub-resolution levels, then the working resolution. The depth range is

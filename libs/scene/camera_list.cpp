@@ -6,7 +6,7 @@
 namespace axial {
 
 template <class T>
-CameraList<T> make_camera_list(std::span<const CameraModel> models) {
+CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMethod) {
   const bool all_dry =
       std::none_of(models.begin(), models.end(), [](const auto& model) { return model.port; });
   if (all_dry) {
@@ -22,7 +22,8 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models) {
   return cameras;
 }
 
-template CameraList<float> make_camera_list<float>(std::span<const CameraModel>);
-template CameraList<double> make_camera_list<double>(std::span<const CameraModel>);
+template CameraList<float> make_camera_list<float>(std::span<const CameraModel>, ProjectionMethod);
+template CameraList<double> make_camera_list<double>(std::span<const CameraModel>,
+                                                     ProjectionMethod);
 
 }  // namespace axial

@@ -10,6 +10,12 @@
 
 namespace axial {
 
+// How points are projected behind a port.
+enum class ProjectionMethod {
+  exact,
+  line_search  // the paper's Algorithm 1, for comparison
+};
+
 template <class T>
 using CameraList = std::variant<std::vector<refractive::PinholeCamera<T>>,
                                 std::vector<refractive::FlatPortCamera<T>>>;
@@ -17,9 +23,12 @@ using CameraList = std::variant<std::vector<refractive::PinholeCamera<T>>,
 // All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
 // ones is a port of index 1, which is the pinhole exactly. Same order as `models`.
 template <class T>
-CameraList<T> make_camera_list(std::span<const CameraModel> models);
+CameraList<T> make_camera_list(std::span<const CameraModel> models,
+                               ProjectionMethod method = ProjectionMethod::exact);
 
-extern template CameraList<float> make_camera_list<float>(std::span<const CameraModel>);
-extern template CameraList<double> make_camera_list<double>(std::span<const CameraModel>);
+extern template CameraList<float> make_camera_list<float>(std::span<const CameraModel>,
+                                                          ProjectionMethod);
+extern template CameraList<double> make_camera_list<double>(std::span<const CameraModel>,
+                                                            ProjectionMethod);
 
 }  // namespace axial

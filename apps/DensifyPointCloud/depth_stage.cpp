@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth_stage.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <functional>
+#include <list>
+#include <memory>
+
+#include "base/progress.h"
+#include "depth/filters.h"
+#include "depth/patch_match.h"
+#include "io/dmap.h"
+
+namespace densify {
+namespace fs = std::filesystem;
+using axial::DepthMap;
+
+namespace {
+
+// One round over all images. The files of a stage that is not the last carry its name and go once
+// the next stage is complete.
+struct Stage {
+  std::string name;
+  std::string title;
+  std::function<DepthMap(std::size_t image)> make;
+};
+
+// Maps of the stage before, read from their files (never handed over in memory: a resumed run must
+// see the same bytes), the most recent ones kept.
+class MapCache {
+ public:
+  using Load = std::function<DepthMap(std::size_t image)>;
+  MapCache(Load load, std::size_t capacity) : load_(std::move(load)), capacity_(capacity) {}
+
+  std::shared_ptr<const DepthMap> get(std::size_t image) {
+    for (auto it = recent_.begin(); it != recent_.end(); ++it) {
+      if (it->first != image) continue;
+      recent_.splice(recent_.begin(), recent_, it);
+      return recent_.front().second;
+    }
+    recent_.emplace_front(image, std::make_shared<const DepthMap>(load_(image)));
+    if (recent_.size() > capacity_) recent_.pop_back();
+    return recent_.front().second;
+  }
+
+ private:
+  Load load_;
+  std::size_t capacity_;
+  std::list<std::pair<std::size_t, std::shared_ptr<const DepthMap>>> recent_;
+};
+
+class DepthMapRun {
+ public:
+  DepthMapRun(const Project& project, const Options& options)
+      : project_(project), options_(options) {
+    add_stages();
+  }
+
+  void run() {
+    const std::size_t first = first_incomplete_stage();
+    if (first == stages_.size()) {
+      spdlog::info("All {} depth maps are there already", project_.references.size());
+      return;
+    }
+    for (std::size_t s = first; s < stages_.size(); ++s) {
+      run_stage(s);
+      if (s > 0) remove_stage(s - 1);
+    }
+  }
+
+ private:
+  fs::path path(std::size_t stage, std::size_t image) const {
+    fs::path file = depth_map_path(project_, options_, image);
+    if (stage + 1 < stages_.size()) file.replace_extension("." + stages_[stage].name + ".dmap");
+    return file;
+  }
+
+  std::string made_from(std::size_t stage) const {
+    return project_.fingerprint + " " + stages_[stage].name;
+  }
+
+  bool finished(std::size_t stage, std::size_t image) const {
+    return axial::io::dmap_made_from(path(stage, image)) == made_from(stage);
+  }
+
+  std::size_t first_incomplete_stage() const {
+    for (std::size_t s = stages_.size(); s > 0; --s) {
+      bool complete = true;
+      for (const std::size_t image : project_.references) complete &= finished(s - 1, image);
+      if (complete) return s;
+    }
+    return 0;
+  }
+
+  void run_stage(std::size_t stage) {
+    previous_ = std::make_unique<MapCache>(
+        [this, stage](std::size_t image) {
+          return axial::io::read_dmap(path(stage - 1, image)).map;
+        },
+        32);
+    const axial::ProgressSink progress = axial::console_progress(stages_[stage].title);
+    std::size_t done = 0;
+    std::size_t reused = 0;
+    for (const std::size_t image : project_.references) {
+      if (finished(stage, image))
+        ++reused;
+      else
+        axial::io::write_dmap(path(stage, image), stages_[stage].make(image), made_from(stage));
+      progress(++done, project_.references.size());
+    }
+    if (reused > 0) spdlog::info("{}: {} maps were there already", stages_[stage].title, reused);
+  }
+
+  void remove_stage(std::size_t stage) const {
+    for (const std::size_t image : project_.references) {
+      const fs::path file = path(stage, image);
+      std::error_code ignored;
+      fs::remove(file, ignored);
+      fs::remove(file.string() + ".json", ignored);
+    }
+  }
+
+  // The images of `list` that have depth maps themselves.
+  std::vector<std::size_t> with_maps(const std::vector<axial::ViewScore>& list) const {
+    std::vector<std::size_t> images;
+    for (const axial::ViewScore& neighbour : list)
+      if (!project_.sources[neighbour.image].empty()) images.push_back(neighbour.image);
+    return images;
+  }
+
+  struct Task {
+    std::vector<const axial::depth::MatchImage*> sources;
+    std::vector<Eigen::Vector3f> points;
+    axial::depth::MatchInput input;
+  };
+
+  std::unique_ptr<Task> task(std::size_t image) const {
+    auto result = std::make_unique<Task>();
+    for (const axial::ViewScore& source : project_.sources[image])
+      result->sources.push_back(&project_.views[source.image]);
+    for (const std::uint32_t point : project_.preparations[image].init_points)
+      result->points.push_back(project_.scene.points[point].position);
+    const cv::Mat1b& mask = project_.masks[image];
+    result->input = {&project_.views[image], result->sources, result->points,
+                     mask.empty() ? nullptr : &mask, options_.projection};
+    return result;
+  }
+
+  DepthMap named(DepthMap map, std::size_t image) const {
+    map.image_path = project_.scene.images[image].path;
+    return map;
+  }
+
+  DepthMap estimate(std::size_t image) const {
+    return named(axial::depth::estimate_depth_map(task(image)->input, options_.matching), image);
+  }
+
+  DepthMap refine(std::size_t image, int pass) const {
+    const std::unique_ptr<Task> work = task(image);
+    const bool last = pass + 1 == options_.geometric_iterations;
+    std::vector<std::shared_ptr<const DepthMap>> held;
+    std::vector<const DepthMap*> maps;
+    for (const axial::ViewScore& source : project_.sources[image]) {
+      const bool has_map = !project_.sources[source.image].empty();
+      held.push_back(has_map ? previous_->get(source.image) : nullptr);
+      maps.push_back(held.back().get());
+    }
+    const DepthMap map = axial::depth::refine_depth_map(work->input, *previous_->get(image), maps,
+                                                        pass, last, options_.matching);
+    return named(last ? clean(map, image) : map, image);
+  }
+
+  DepthMap clean(DepthMap map, std::size_t image) const {
+    if (options_.postprocess & kSpeckles) map = axial::depth::remove_speckles(map);
+    if (options_.postprocess & kGaps) {
+      cv::Mat1b ignored;
+      if (!project_.masks[image].empty())
+        cv::compare(project_.masks[image], 0, ignored, cv::CMP_EQ);
+      map = axial::depth::fill_gaps(map, {}, ignored);
+    }
+    return map;
+  }
+
+  DepthMap adjust(std::size_t image) const {
+    std::vector<DepthMap> neighbours;
+    for (const std::size_t neighbour : with_maps(project_.neighbours[image]))
+      if (neighbours.size() < axial::depth::AdjustOptions().max_neighbours)
+        neighbours.push_back(*previous_->get(neighbour));
+    return named(axial::depth::adjust_with_neighbours(*previous_->get(image), neighbours), image);
+  }
+
+  void add_stages() {
+    stages_.push_back({"photometric", "Estimated depth maps", [this](std::size_t image) {
+                         const DepthMap map = estimate(image);
+                         return options_.geometric_iterations == 0 ? clean(map, image) : map;
+                       }});
+    for (int pass = 0; pass < options_.geometric_iterations; ++pass)
+      stages_.push_back({fmt::format("geometric{}", pass + 1),
+                         fmt::format("Geometric-consistency pass {}", pass + 1),
+                         [this, pass](std::size_t image) { return refine(image, pass); }});
+    if (options_.postprocess & kAdjust)
+      stages_.push_back(
+          {"adjusted", "Adjusted depth maps", [this](std::size_t image) { return adjust(image); }});
+  }
+
+  const Project& project_;
+  const Options& options_;
+  std::vector<Stage> stages_;
+  std::unique_ptr<MapCache> previous_;
+};
+
+}  // namespace
+
+fs::path depth_map_path(const Project& project, const Options& options, std::size_t image) {
+  return options.parsed.common.working_folder /
+         fmt::format("depth{:04}.dmap", project.views[image].id);
+}
+
+void make_depth_maps(const Project& project, const Options& options) {
+  DepthMapRun(project, options).run();
+}
+
+}  // namespace densify

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth maps of all images, stage by stage, each map a file: a killed run goes on where it stopped.
+#pragma once
+
+#include "project.h"
+
+namespace densify {
+
+// depthNNNN.dmap in the working folder, NNNN the image's global id.
+std::filesystem::path depth_map_path(const Project& project, const Options& options,
+                                     std::size_t image);
+
+// Makes the final depth map of every reference image, in order:
+//   photometric matching, geometric passes, speckle and gap filters (after the last pass), adjust.
+// Every stage reads only complete files of the stage before, so that an interrupted run gives the
+// same bytes; a file counts only if its side file carries this run's fingerprint and stage.
+void make_depth_maps(const Project& project, const Options& options);
+
+}  // namespace densify

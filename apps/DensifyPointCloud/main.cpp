@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
+#include "base/parallel.h"
+#include "depth_stage.h"
+#include "fusion_stage.h"
+#include "io/mvs.h"
+#include "io/ply.h"
+#include "options.h"
+#include "project.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
+axial::PointCloud sparse_cloud(const axial::Scene& scene) {
+  axial::PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  for (const axial::SparsePoint& point : scene.points) {
+    cloud.positions.push_back(point.position);
+    for (const axial::SparseView& view : point.views) {
+      cloud.view_images.push_back(view.image);
+      cloud.view_weights.push_back(view.confidence);
+    }
+    cloud.view_begin.push_back(cloud.view_images.size());
+  }
+  cloud.normals = scene.point_normals;
+  cloud.colors = scene.point_colors;
+  return cloud;
+}
+
+void remove_depth_maps(const densify::Project& project, const densify::Options& options) {
+  for (const std::size_t image : project.references) {
+    const fs::path file = densify::depth_map_path(project, options, image);
+    fs::remove(file);
+    fs::remove(file.string() + ".json");
+  }
+}
+
+int run(int argc, char** argv) {
+  const densify::Options options = densify::parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const axial::ThreadLimit threads(options.parsed.common.max_threads);
+
+  const densify::Project project = densify::load_project(options);
+  densify::make_depth_maps(project, options);
+  const axial::PointCloud cloud =
+      options.fuse ? densify::make_cloud(project, options) : sparse_cloud(project.scene);
+
+  fs::path ply = options.output;
+  ply.replace_extension(".ply");
+  axial::io::write_cloud_ply(ply, cloud);
+  axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
+  spdlog::info("{}: {} points", ply.string(), cloud.size());
+  if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return axial::run_program("DensifyPointCloud", [&] { return run(argc, argv); });
+}

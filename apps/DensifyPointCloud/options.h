@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DensifyPointCloud's options: OpenMVS's names and defaults, and the refractive ones.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/program.h"
+#include "cloud/fuse.h"
+#include "depth/options.h"
+#include "scene/camera_list.h"
+#include "scene/region.h"
+#include "scene/resolution.h"
+#include "scene/view_selection.h"
+
+namespace densify {
+
+enum class CameraChoice { automatic, pinhole, flat_port };
+
+// Bits of --postprocess-dmaps.
+inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
+
+struct Options {
+  axial::ParsedOptions parsed;
+  std::filesystem::path input, output;  // scene files
+  std::filesystem::path housing;        // empty: beside the scene
+  std::filesystem::path mask_folder;
+  int ignore_mask_label = -1;  // below 0: no masks
+
+  CameraChoice camera = CameraChoice::automatic;
+  bool refractive = false;  // demand a housing
+  axial::ProjectionMethod projection = axial::ProjectionMethod::exact;
+
+  axial::ResolutionOptions resolution;
+  axial::ViewSelectionOptions selection;
+  axial::depth::PatchMatchOptions matching;
+  unsigned number_views = 5;
+  int geometric_iterations = 2;
+  unsigned postprocess = kSpeckles | kGaps | kAdjust;
+
+  axial::cloud::FuseOptions fusion;
+  bool fuse = true;  // --fusion-mode 0
+  unsigned estimate_colors = 2;
+  unsigned estimate_normals = 2;
+  axial::RegionMode region = axial::RegionMode::adaptive;
+  double roi_border = 0;
+  bool crop_to_roi = true;
+  bool remove_dmaps = false;
+};
+
+// Error for an unknown option, a value out of range, or an OpenMVS option that is not built yet and
+// has another than its default or "off" value.
+Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace densify

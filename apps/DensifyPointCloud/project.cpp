@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "project.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/parallel.h"
+#include "io/housing.h"
+#include "io/image.h"
+#include "io/mvs.h"
+
+namespace densify {
+namespace fs = std::filesystem;
+using axial::fail;
+
+namespace {
+
+// Image paths in a scene count from the working folder; a scene that was moved whole is found
+// beside its own file.
+void find_images(axial::Scene& scene, const Options& options) {
+  for (axial::SceneImage& image : scene.images) {
+    std::error_code error;
+    if (fs::exists(image.path, error)) continue;
+    const fs::path relative =
+        fs::path(image.path).lexically_relative(options.parsed.common.working_folder);
+    const fs::path beside = options.input.parent_path() / relative;
+    if (fs::exists(beside, error)) image.path = beside.string();
+  }
+}
+
+void attach_housing(axial::Scene& scene, const Options& options) {
+  if (options.camera == CameraChoice::pinhole) return;
+  const bool demanded = options.refractive || options.camera == CameraChoice::flat_port;
+  const fs::path file =
+      options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    if (demanded || !options.housing.empty())
+      fail("{}: no such housing file; --refractive needs one (see --housing)", file.string());
+    return;
+  }
+  axial::io::attach_ports(scene, axial::io::read_housing(file));
+  std::size_t wet = 0;
+  for (const axial::SceneImage& image : scene.images) wet += image.camera.port ? 1 : 0;
+  if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
+  if (wet < scene.images.size() && options.camera == CameraChoice::flat_port)
+    fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
+         wet, scene.images.size());
+  spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
+               scene.images.size());
+}
+
+cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_size,
+                         const Options& options) {
+  const double recorded = static_cast<double>(image.camera.width) / image.camera.height;
+  const double found = static_cast<double>(file_size.width) / file_size.height;
+  // One pixel of rounding on the shorter side, at the smaller of the two resolutions.
+  const int side =
+      std::min({file_size.width, file_size.height, image.camera.width, image.camera.height});
+  if (std::abs(recorded / found - 1) > 1.5 / side)
+    fail("{}: is {}x{}, but its camera is {}x{}", image.path, file_size.width, file_size.height,
+         image.camera.width, image.camera.height);
+  return axial::working_size(file_size.width, file_size.height, options.resolution);
+}
+
+fs::path mask_path(const axial::SceneImage& image, const Options& options) {
+  const fs::path name = fs::path(image.path).stem().string() + ".mask.png";
+  if (!options.mask_folder.empty()) {
+    if (!image.mask_path.empty())
+      fail("--mask-path {}: image {} names a mask of its own, {}", options.mask_folder.string(),
+           image.path, image.mask_path);
+    const fs::path path = options.mask_folder / name;
+    std::error_code error;
+    if (!fs::exists(path, error)) fail("{}: no such mask for image {}", path.string(), image.path);
+    return path;
+  }
+  return image.mask_path.empty() ? fs::path(image.path).parent_path() / name
+                                 : fs::path(image.mask_path);
+}
+
+cv::Mat1b load_mask(const axial::SceneImage& image, const cv::Size& size, const Options& options) {
+  const fs::path path = mask_path(image, options);
+  if (options.ignore_mask_label < 0) return {};
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    spdlog::warn("{}: no mask", image.path);
+    return {};
+  }
+  const cv::Mat1w labels = axial::resized_labels(axial::io::read_label_image(path), size);
+  cv::Mat1b mask;
+  cv::compare(labels, options.ignore_mask_label, mask, cv::CMP_NE);
+  return mask;
+}
+
+void load_views(Project& project, const Options& options) {
+  const std::size_t count = project.scene.images.size();
+  project.views.resize(count);
+  project.masks.resize(count);
+  axial::parallel_for(count, [&](std::size_t i) {
+    const axial::SceneImage& image = project.scene.images[i];
+    if (!image.calibrated) return;
+    const cv::Mat3b color = axial::io::read_color_image(image.path);
+    const cv::Size size = size_to_work_on(image, color.size(), options);
+    axial::depth::MatchImage& view = project.views[i];
+    view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(i) : image.id;
+    view.camera = image.camera.resized(size.width, size.height);
+    view.pose = image.pose;
+    cv::cvtColor(axial::resized_image(color, size), view.grey, cv::COLOR_BGR2GRAY);
+    project.masks[i] = load_mask(image, size, options);
+  });
+}
+
+void check_ids(const Project& project) {
+  std::set<std::uint32_t> seen;
+  for (std::size_t i = 0; i < project.views.size(); ++i)
+    if (project.scene.images[i].calibrated && !seen.insert(project.views[i].id).second)
+      fail("image {}: ID {} is used twice, depth maps would overwrite each other",
+           project.scene.images[i].path, project.views[i].id);
+}
+
+void select_views(Project& project, const Options& options) {
+  axial::Scene& scene = project.scene;
+  if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
+  if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
+  project.preparations = axial::score_neighbours(scene, options.selection);
+  project.neighbours.resize(scene.images.size());
+  project.sources.resize(scene.images.size());
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    if (!scene.images[i].calibrated) continue;
+    if (!project.preparations[i].usable()) {
+      spdlog::warn("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
+      continue;
+    }
+    project.neighbours[i] = axial::filter_neighbours(scene.images[i].neighbours, options.selection);
+    project.sources[i] =
+        axial::choose_source_views(project.neighbours[i], options.number_views, options.selection);
+    if (project.sources[i].size() > 32) project.sources[i].resize(32);
+    if (project.sources[i].empty())
+      spdlog::warn("{}: left out: no good images in view", scene.images[i].path);
+    else
+      project.references.push_back(i);
+  }
+  if (project.references.empty())
+    fail("{}: no image has neighbours to be matched with", options.input.string());
+}
+
+void add_camera(axial::Fingerprint& print, const axial::CameraModel& camera) {
+  print.add(static_cast<std::uint64_t>(camera.width))
+      .add(static_cast<std::uint64_t>(camera.height));
+  print.add(camera.lens.fx).add(camera.lens.fy).add(camera.lens.cx).add(camera.lens.cy);
+  print.add(std::uint64_t{camera.port.has_value()});
+  if (!camera.port) return;
+  const auto& port = *camera.port;
+  for (const double value : {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
+                             port.thickness, port.n_air, port.n_glass, port.n_water})
+    print.add(value);
+}
+
+void add_options(axial::Fingerprint& print, const Options& options) {
+  const axial::depth::PatchMatchOptions& matching = options.matching;
+  for (const std::uint64_t value :
+       {static_cast<std::uint64_t>(matching.warp), static_cast<std::uint64_t>(options.projection),
+        static_cast<std::uint64_t>(matching.sub_resolution_levels),
+        static_cast<std::uint64_t>(matching.iterations),
+        static_cast<std::uint64_t>(options.geometric_iterations),
+        static_cast<std::uint64_t>(options.postprocess)})
+    print.add(value);
+}
+
+void add_pixels(axial::Fingerprint& print, const cv::Mat1b& image) {
+  for (int y = 0; y < image.rows; ++y)
+    print.add(std::string_view(image.ptr<char>(y), static_cast<std::size_t>(image.cols)));
+}
+
+// Everything the depth maps depend on; not what only fusion uses, nor the number of threads.
+std::string fingerprint(const Project& project, const Options& options) {
+  axial::Fingerprint print;
+  print.add("AxialMVS depth maps 1");
+  add_options(print, options);
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    const axial::depth::MatchImage& view = project.views[i];
+    print.add(std::uint64_t{view.id});
+    add_camera(print, view.camera);
+    for (const double value : view.pose.rotation.reshaped()) print.add(value);
+    for (const double value : view.pose.centre) print.add(value);
+    add_pixels(print, view.grey);
+    add_pixels(print, project.masks[i]);
+    for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
+      print.add(static_cast<std::uint64_t>(list->size()));
+      for (const axial::ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});
+    }
+    for (const std::uint32_t point : project.preparations[i].init_points)
+      for (const float value : project.scene.points[point].position)
+        print.add(static_cast<double>(value));
+  }
+  return print.hex();
+}
+
+}  // namespace
+
+Project load_project(const Options& options) {
+  Project project;
+  project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
+  find_images(project.scene, options);
+  attach_housing(project.scene, options);
+  spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
+               project.scene.images.size(), project.scene.points.size());
+  load_views(project, options);
+  check_ids(project);
+  select_views(project, options);
+  project.fingerprint = fingerprint(project, options);
+  return project;
+}
+
+cv::Mat3b load_color(const Project& project, std::size_t image) {
+  return axial::resized_image(axial::io::read_color_image(project.scene.images[image].path),
+                              project.views[image].grey.size());
+}
+
+}  // namespace densify
