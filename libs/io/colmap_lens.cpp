@@ -162,7 +162,9 @@ bool seen(const ColmapCamera& camera, const Parts& parts, const Vector2d& direct
     if (!inside(camera, pixel) || !(next > distance)) return false;
     distance = next;
   }
-  return true;
+  // The steps are coarse: a fold within the last one shows only in the slope at its end.
+  const Vector2d beyond = image_point(parts, direction * (1 + 1e-6));
+  return (beyond - centre).norm() > distance;
 }
 
 bool whole_border_seen(const ColmapCamera& camera, const Parts& parts,

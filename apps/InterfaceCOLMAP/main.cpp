@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/colmap.h"
+#include "io/colmap_scene.h"
+#include "io/housing.h"
+#include "io/mvs.h"
+#include "options.h"
+
+namespace fs = std::filesystem;
+using namespace axial;
+
+namespace {
+
+std::size_t count_behind_ports(const Scene& scene) {
+  std::size_t count = 0;
+  for (const SceneImage& image : scene.images) count += image.camera.port.has_value();
+  return count;
+}
+
+void make_parent_folder(const fs::path& file) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) fail("{}: cannot be made: {}", file.parent_path().string(), error.message());
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const ThreadLimit threads(options.parsed.common.max_threads);
+
+  io::Housing housing;
+  if (!options.housing_file.empty()) housing = io::read_housing(options.housing_file);
+  const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
+  const io::ColmapModel model = io::read_colmap_model(model_folder);
+  spdlog::info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
+               model.cameras.size(), model.points.size());
+  spdlog::info("Images in {}", options.image_folder.string());
+
+  make_parent_folder(options.scene_file);
+  const fs::path folder = options.scene_file.parent_path();
+  const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted"};
+  Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"));
+
+  // The housing goes first: a scene without the one it was made with would count as dry.
+  const fs::path housing_file = io::housing_beside(options.scene_file);
+  if (options.housing_file.empty()) {
+    std::error_code error;
+    if (fs::exists(housing_file, error))
+      spdlog::warn("{}: is left as it is, and goes with this scene", housing_file.string());
+  } else {
+    std::vector<std::string> unused;
+    const io::Housing by_image = io::housing_by_image(housing, model, scene, import, &unused);
+    for (const std::string& entry : unused)
+      spdlog::warn("{}: {}: not in the model", options.housing_file.string(), entry);
+    io::attach_ports(scene, by_image);
+    io::write_housing(housing_file, by_image);
+    spdlog::info("{}: {} of {} images behind a port", housing_file.string(),
+                 count_behind_ports(scene), scene.images.size());
+  }
+  io::write_mvs(options.scene_file, scene, folder);
+  spdlog::info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
+               scene.points.size());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_program("InterfaceCOLMAP", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include "base/error.h"
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using axial::fail;
+
+namespace {
+
+// Relative to the working folder, as in OpenMVS; if that does not exist, to the COLMAP folder.
+fs::path find_image_folder(const axial::CommonOptions& common, const fs::path& colmap_folder,
+                           const std::string& name) {
+  const fs::path candidates[] = {axial::in_working_folder(common, name),
+                                 (colmap_folder / name).lexically_normal()};
+  std::error_code error;
+  for (const fs::path& candidate : candidates)
+    if (fs::is_directory(candidate, error)) return candidate;
+  fail("--image-folder {}: no such folder (looked for {} and {})", name, candidates[0].string(),
+       candidates[1].string());
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  std::string input, output, image_folder, housing, point_cloud;
+  bool normalize = false, force_points = false;
+  axial::ProgramOptions program{
+      "InterfaceCOLMAP", "turns a COLMAP model and its images into a scene (.mvs)", {}, {}};
+  program.visible.add_options()  //
+      ("input-file,i", po::value(&input),
+       "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR")                //
+      ("output-file,o", po::value(&output), "scene to write (default: DIR/scene.mvs)")  //
+      ("image-folder", po::value(&image_folder)->default_value("images/"),
+       "folder of the images, in the working folder or else in DIR; images must have the size of "
+       "their cameras")  //
+      ("housing", po::value(&housing),
+       "housing file: ports the cameras look through; written as <scene>.housing.json")        //
+      ("pointcloud-file,p", po::value(&point_cloud), "only to export a scene: not built yet")  //
+      ("normalize,f", po::value(&normalize)->default_value(false),
+       "only 0: intrinsics are always written in pixels")  //
+      ("force-points,e", po::value(&force_points)->default_value(false),
+       "accepted and without effect: sparse points are always written");
+
+  Options options;
+  options.parsed = axial::parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  const axial::CommonOptions& common = options.parsed.common;
+
+  options.colmap_folder = axial::in_working_folder(common, input);
+  if (options.colmap_folder.extension() == ".mvs")
+    fail("{}: exporting a scene to COLMAP is not built yet", options.colmap_folder.string());
+  if (normalize) fail("--normalize is 1: only 0 is supported (intrinsics are written in pixels)");
+  if (!point_cloud.empty())
+    fail("--pointcloud-file {}: is for exporting a scene, which is not built yet", point_cloud);
+  std::error_code error;
+  if (!fs::is_directory(options.colmap_folder, error))
+    fail("{}: is not a folder", options.colmap_folder.string());
+  options.scene_file = output.empty() ? options.colmap_folder / "scene.mvs"
+                                      : axial::in_working_folder(common, output);
+  options.housing_file = axial::in_working_folder(common, housing);
+  options.image_folder = find_image_folder(common, options.colmap_folder, image_folder);
+  return options;
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "base/program.h"
+
+struct Options {
+  axial::ParsedOptions parsed;
+  std::filesystem::path colmap_folder;
+  std::filesystem::path scene_file;    // output
+  std::filesystem::path image_folder;  // exists
+  std::filesystem::path housing_file;  // empty: no housing
+};
+
+// Parses and checks the command line; what is left to do is in `parsed.run`.
+Options parse_command_line(int argc, const char* const* argv);

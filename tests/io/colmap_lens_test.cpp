@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lens models against OpenCV's own projection where it has them, and against the equation that
+// defines them where it has not.
+#include "io/colmap_lens.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "base/error.h"
+
+namespace axial::io {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kFx = 700, kFy = 650, kCx = 330.5, kCy = 236.5;  // pixel centres at 0.5
+
+ColmapCamera two_focal_camera(const std::string& model, std::vector<double> distortion) {
+  ColmapCamera camera{1, model, 640, 480, {kFx, kFy, kCx, kCy}};
+  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
+  return camera;
+}
+
+ColmapCamera one_focal_camera(const std::string& model, std::vector<double> distortion) {
+  ColmapCamera camera{1, model, 640, 480, {kFx, kCx, kCy}};
+  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
+  return camera;
+}
+
+cv::Matx33d opencv_k() {
+  return {kFx, 0, kCx - 0.5, 0, kFy, kCy - 0.5, 0, 0, 1};
+}
+
+double within(double limit) {
+  return limit * (static_cast<double>(*rc::gen::inRange(-1000000, 1000001)) / 1e6);
+}
+
+// The distorted point, without focal lengths and principal point.
+Vector2d distorted(const ColmapCamera& camera, double u, double v) {
+  const Vector2d pixel = image_direction(camera, u, v);
+  const bool one = camera.params.size() == 4 || camera.params.size() == 3;
+  return {(pixel.x() - (kCx - 0.5)) / kFx, (pixel.y() - (kCy - 0.5)) / (one ? kFx : kFy)};
+}
+
+// Both sides evaluate the same polynomial in double: 1e-9 px is rounding.
+constexpr double kRounding = 1e-9;
+
+RC_GTEST_PROP(ColmapLens, FullOpencvAgreesWithOpencv, ()) {
+  const double u = within(1), v = within(1);
+  std::vector<double> k;
+  for (int i = 0; i < 8; ++i) k.push_back(within(i == 2 || i == 3 ? 0.01 : 0.1));
+  std::vector<cv::Point2d> expected;
+  cv::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, cv::Vec3d(), cv::Vec3d(), opencv_k(), k,
+                    expected);
+  const Vector2d pixel = image_direction(two_focal_camera("FULL_OPENCV", k), u, v);
+  RC_ASSERT(std::abs(pixel.x() - expected[0].x) < kRounding);
+  RC_ASSERT(std::abs(pixel.y() - expected[0].y) < kRounding);
+  k.resize(4);
+  cv::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, cv::Vec3d(), cv::Vec3d(), opencv_k(), k,
+                    expected);
+  const Vector2d shorter = image_direction(two_focal_camera("OPENCV", k), u, v);
+  RC_ASSERT(std::abs(shorter.x() - expected[0].x) < kRounding);
+  RC_ASSERT(std::abs(shorter.y() - expected[0].y) < kRounding);
+}
+
+RC_GTEST_PROP(ColmapLens, FisheyesAgreeWithOpencv, ()) {
+  const double u = within(2), v = within(2);
+  std::vector<double> k{within(0.1), within(0.1), within(0.1), within(0.1)};
+  std::vector<cv::Point2d> expected;
+  cv::fisheye::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, expected, cv::Vec3d(),
+                             cv::Vec3d(), opencv_k(), k);
+  const Vector2d reference(expected[0].x, expected[0].y);
+  const auto agrees = [&](const ColmapCamera& camera) {
+    return (image_direction(camera, u, v) - reference).norm() < kRounding;
+  };
+  RC_ASSERT(agrees(two_focal_camera("OPENCV_FISHEYE", k)));
+  RC_ASSERT(agrees(two_focal_camera("THIN_PRISM_FISHEYE", {k[0], k[1], 0, 0, k[2], k[3], 0, 0})));
+  RC_ASSERT(agrees(two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE",
+                                    {k[0], k[1], k[2], k[3], 0, 0, 0, 0, 0, 0, 0, 0})));
+}
+
+RC_GTEST_PROP(ColmapLens, DefiningEquationsHold, ()) {
+  const double u = within(1), v = within(1), r = std::hypot(u, v);
+  const double k = within(0.1);
+  RC_PRE(r > 1e-6);
+  const Vector2d division = distorted(one_focal_camera("SIMPLE_DIVISION", {k}), u, v);
+  RC_ASSERT(std::abs(division.norm() / (1 + k * division.squaredNorm()) - r) < 1e-12);
+  const double omega = 0.9 + k;
+  const Vector2d fov = distorted(two_focal_camera("FOV", {omega}), u, v);
+  RC_ASSERT(std::abs(std::tan(fov.norm() * omega) / (2 * std::tan(omega / 2)) - r) < 1e-12);
+  const double alpha = 0.5 + k;
+  const Vector2d eucm = distorted(two_focal_camera("EUCM", {alpha, 1.0}), u, v);
+  // beta = 1 is the unified model: a sphere seen from xi behind its centre, xi = alpha/(1-alpha).
+  const double xi = alpha / (1 - alpha), length = std::sqrt(r * r + 1);
+  RC_ASSERT(std::abs(eucm.x() - (1 + xi) * (u / length) / (1 / length + xi)) < 1e-12);
+  const double theta = std::atan(r);
+  RC_ASSERT(std::abs(distorted(one_focal_camera("SIMPLE_FISHEYE", {}), u, v).norm() - theta) <
+            1e-12);
+}
+
+TEST(ColmapLens, PinholesAreTakenAsTheyAre) {
+  const auto lens = pinhole_lens(two_focal_camera("PINHOLE", {}));
+  ASSERT_TRUE(lens);
+  EXPECT_EQ(lens->fx, kFx);
+  EXPECT_EQ(lens->fy, kFy);
+  EXPECT_EQ(lens->cx, kCx - 0.5);
+  EXPECT_EQ(lens->cy, kCy - 0.5);
+  const auto simple = pinhole_lens(one_focal_camera("SIMPLE_RADIAL", {0.0}));
+  ASSERT_TRUE(simple);
+  EXPECT_EQ(simple->fy, kFx);
+  EXPECT_FALSE(pinhole_lens(one_focal_camera("SIMPLE_RADIAL", {1e-9})));
+  EXPECT_FALSE(pinhole_lens(two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0})));
+}
+
+RC_GTEST_PROP(ColmapLens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
+  const ColmapCamera camera{
+      1,
+      "OPENCV",
+      160,
+      120,
+      {175, 160, 82, 59, within(0.3), within(0.05), within(0.002), within(0.002)}};
+  const auto lens = pinhole_inside(camera, "model");
+  double nearest = 1e9;
+  const cv::Mat2f map = undistortion_map(camera, lens);
+  for (int y = 0; y < map.rows; ++y)
+    for (int x = 0; x < map.cols; ++x) {
+      const cv::Vec2f p = map(y, x);
+      // The border is checked at 64 positions a side: between them it may bulge a little.
+      RC_ASSERT(p[0] > -0.1f && p[1] > -0.1f && p[0] < 159.1f && p[1] < 119.1f);
+      nearest = std::min<double>({nearest, p[0], p[1], 159 - p[0], 119 - p[1]});
+    }
+  // Zoomed out as far as that allows: some pixel touches the border of the photograph.
+  RC_ASSERT(nearest < 0.1);
+}
+
+TEST(ColmapLens, LensesThatFoldBackAreNotFollowedPastTheFold) {
+  // 1 - 0.5 r^2 folds at r = 0.816: a corner of an image with this focal length is beyond it.
+  ColmapCamera camera{7, "SIMPLE_RADIAL", 640, 480, {300, 320, 240, -0.5}};
+  const auto lens = pinhole_inside(camera, "model");
+  EXPECT_LT(std::hypot(319.5 / lens.fx, 239.5 / lens.fy), 0.8165);
+}
+
+TEST(ColmapLens, WhatCannotBeUndistortedIsNamed) {
+  const auto message = [](const ColmapCamera& camera) -> std::string {
+    try {
+      pinhole_inside(camera, "sparse/0");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({3, "EQUIRECTANGULAR", 640, 320, {640, 320}}),
+            "camera 3: model EQUIRECTANGULAR is not supported; undistort its images with COLMAP "
+            "first");
+  EXPECT_NE(message({3, "OPENCV_FISHEYE", 640, 480, {700, 700, 900, 240, 0, 0, 0, 0}})
+                .find("camera 3 (OPENCV_FISHEYE) cannot be undistorted"),
+            std::string::npos);  // its principal point lies outside the image
+  EXPECT_EQ(message({3, "OPENCV", 640, 480, {700, 700, 320, 240}}),
+            "camera 3: model OPENCV has 8 parameters, not 4");
+}
+
+}  // namespace
+}  // namespace axial::io

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/colmap_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/error.h"
+#include "io/colmap_lens.h"
+#include "io/image.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 160, kHeight = 120;
+
+// A smooth picture: its value anywhere is known.
+cv::Vec3d color_at(double x, double y) {
+  return {128 + 100 * std::sin(x * 0.07), 128 + 100 * std::cos(y * 0.05), 40 + x * 0.5 + y * 0.5};
+}
+
+class ColmapScene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "images");
+    import_ = {folder_ / "sparse", folder_ / "images", folder_ / "out" / "undistorted"};
+    model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}},
+                      {9, "SIMPLE_RADIAL", kWidth, kHeight, {150, 80, 60, -0.1}}};
+    add_image(4, 5, "b.png");
+    add_image(2, 5, "a.png");
+    add_image(3, 9, "c.png");
+    model_.points.push_back({1, {1, 2, 3}, {10, 20, 30}, 0.5, {{3, 0}, {4, 0}, {2, 0}, {3, 1}}});
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void add_image(std::uint32_t id, std::uint32_t camera, const std::string& name) {
+    ColmapImage image;
+    image.id = id;
+    image.camera = camera;
+    image.name = name;
+    image.pose.centre = {double(id), 0, 0};
+    model_.images.push_back(image);
+    cv::Mat3b pixels(kHeight, kWidth);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) pixels(y, x) = color_at(x, y);
+    write_png(folder_ / "images" / name, pixels);
+  }
+
+  std::string error() const {
+    try {
+      import_colmap_scene(model_, import_);
+    } catch (const Error& caught) {
+      return caught.what();
+    }
+    return "no error";
+  }
+
+  fs::path folder_;
+  ColmapModel model_;
+  ColmapImport import_;
+};
+
+TEST_F(ColmapScene, TakesImagesPosesAndPointsOver) {
+  const Scene scene = import_colmap_scene(model_, import_);
+  ASSERT_EQ(scene.images.size(), 3u);
+  EXPECT_EQ(scene.images[0].path, (folder_ / "images" / "b.png").string());
+  EXPECT_EQ(scene.images[0].id, 3u);  // COLMAP's less one
+  EXPECT_EQ(scene.images[1].id, 1u);
+  EXPECT_EQ(scene.images[0].pose.centre.x(), 4);
+  EXPECT_EQ(scene.images[0].camera.lens.cx, 79.5);  // centres at integers
+  EXPECT_EQ(scene.images[0].camera.lens.fy, 151);
+  EXPECT_FALSE(scene.images[0].camera.port);
+  ASSERT_EQ(scene.points.size(), 1u);
+  std::vector<std::uint32_t> views;
+  for (const SparseView& view : scene.points[0].views) views.push_back(view.image);
+  EXPECT_THAT(views, ::testing::ElementsAre(0, 1, 2, 2));
+  EXPECT_EQ(scene.point_colors[0], (Rgb{10, 20, 30}));
+}
+
+TEST_F(ColmapScene, ImageIdsThatStartAtZeroDoNotWrap) {
+  model_.images[1].id = 0;
+  model_.points.clear();
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_EQ(scene.images[0].id, 4u);
+  EXPECT_EQ(scene.images[1].id, 0u);
+}
+
+TEST_F(ColmapScene, UndistortsImagesThatAreNoPinholes) {
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_EQ(scene.images[2].path, (import_.undistorted_folder / "c.png").string());
+  const cv::Mat3b image = read_color_image(scene.images[2].path);
+  ASSERT_EQ(image.size(), cv::Size(kWidth, kHeight));
+  const auto& lens = scene.images[2].camera.lens;
+  double worst = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Eigen::Vector2d p =
+          image_direction(model_.cameras[1], (x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy);
+      const cv::Vec3d expected = color_at(p.x(), p.y());
+      for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(expected[c] - image(y, x)[c]));
+    }
+  // Rounding twice, plus the interpolation's own ripple at the replicated border.
+  EXPECT_LT(worst, 3.0);
+}
+
+TEST_F(ColmapScene, NamesTheImageThatDoesNotFit) {
+  write_png(folder_ / "images" / "a.png", cv::Mat3b(100, 200));
+  EXPECT_EQ(error(), (folder_ / "images" / "a.png").string() +
+                         ": image is 200 x 100, but its camera is 160 x 120");
+  fs::remove(folder_ / "images" / "a.png");
+  EXPECT_THAT(error(), HasSubstr("a.png"));
+  EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
+}
+
+TEST_F(ColmapScene, UndistortedImagesStayInTheirFolder) {
+  fs::create_directories(folder_ / "images" / "deep");
+  model_.images[2].name = "deep/../c.png";
+  EXPECT_THAT(error(), HasSubstr("name 'deep/../c.png' is not below the image folder"));
+  model_.images[2].name = "c.png";
+  import_.undistorted_folder = import_.image_folder;
+  EXPECT_THAT(error(), HasSubstr("would be overwritten"));
+}
+
+TEST_F(ColmapScene, OneImageIsNotEnough) {
+  model_.images.resize(1);
+  EXPECT_THAT(error(), HasSubstr("1 registered images, at least 2"));
+}
+
+TEST_F(ColmapScene, HousingsAreResolvedToImages) {
+  model_.images[0].name = "left/b.png";
+  fs::create_directories(folder_ / "images" / "left");
+  fs::rename(folder_ / "images" / "b.png", folder_ / "images" / "left" / "b.png");
+  model_.images[2].name = "c.jpg";
+  fs::rename(folder_ / "images" / "c.png", folder_ / "images" / "c.jpg");
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.ports["other"] = {};
+  housing.default_port = "main";
+  housing.cameras = {{9, "other"}, {77, "main"}};
+  housing.images = {{"b.png", "none"}, {"absent.png", "other"}};
+  const Scene scene = import_colmap_scene(model_, import_);
+  std::vector<std::string> unused;
+  const Housing resolved = housing_by_image(housing, model_, scene, import_, &unused);
+  EXPECT_EQ(resolved.default_port, "main");
+  EXPECT_TRUE(resolved.cameras.empty());
+  EXPECT_EQ(resolved.images,
+            (std::map<std::string, std::string>{{"left/b.png", "none"}, {"c.jpg", "other"}}));
+  EXPECT_THAT(unused, ::testing::ElementsAre("images.absent.png", "cameras.77"));
+}
+
+}  // namespace
+}  // namespace axial::io
