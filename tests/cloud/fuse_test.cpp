@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloud/fuse.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "support/analytic_scene.h"
+
+namespace axial::cloud {
+namespace {
+
+using test::AnalyticScene;
+
+struct Fixture {
+  Scene scene;
+  std::vector<FusionView> views;
+  std::vector<DepthMap> maps;
+  std::map<std::size_t, int> loads;
+
+  FusionProviders providers() {
+    return {[this](std::size_t i) {
+              ++loads[i];
+              return maps[i];
+            },
+            {}};
+  }
+};
+
+Fixture make_fixture(const AnalyticScene& world, const CameraModel& model, std::size_t count = 5) {
+  Fixture fixture;
+  fixture.scene = test::scene_of(model, test::circle_of_poses(count));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    fixture.maps.push_back(exact_map(world, model, fixture.scene.images[i].pose));
+    FusionView view;
+    view.image = i;
+    for (std::uint32_t k = 1; k < count; ++k) {
+      view.neighbours.push_back((i + k) % static_cast<std::uint32_t>(count));
+    }
+    view.rank = count - 1;
+    fixture.views.push_back(view);
+  }
+  return fixture;
+}
+
+PointCloud run(Fixture& fixture, const FuseOptions& options = {}) {
+  return fuse(fixture.scene, fixture.views, fixture.providers(), options);
+}
+
+std::size_t valid_pixels(const std::vector<DepthMap>& maps) {
+  std::size_t count = 0;
+  for (const DepthMap& map : maps) count += static_cast<std::size_t>(cv::countNonZero(map.depth));
+  return count;
+}
+
+double worst_distance(const PointCloud& cloud, const AnalyticScene& world) {
+  double worst = 0;
+  for (const Eigen::Vector3f& p : cloud.positions) {
+    worst = std::max(worst, world.distance(p.cast<double>()));
+  }
+  return worst;
+}
+
+bool same_bytes(const PointCloud& a, const PointCloud& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() &&
+           (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+  };
+  return same(a.positions, b.positions) && same(a.normals, b.normals) && same(a.colors, b.colors) &&
+         same(a.view_begin, b.view_begin) && same(a.view_images, b.view_images) &&
+         same(a.view_weights, b.view_weights);
+}
+
+class FuseWithCamera : public testing::TestWithParam<bool> {
+ protected:
+  static CameraModel model() {
+    return GetParam() ? test::behind_port(test::dry_camera()) : test::dry_camera();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Cameras, FuseWithCamera, testing::Values(false, true),
+                         [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
+
+TEST_P(FuseWithCamera, PutsPointsOnThePlane) {
+  const AnalyticScene world;
+  Fixture fixture = make_fixture(world, model());
+  const PointCloud cloud = run(fixture);
+  // Nearly all pixels lie in three views or more; joined by five they make a fifth as many points.
+  EXPECT_GT(cloud.size(), valid_pixels(fixture.maps) / 8);
+  // Depths are floats near 1: rounding is 6e-8, and the mean of points on a plane lies on it.
+  EXPECT_LT(worst_distance(cloud, world), 1e-6);
+  ASSERT_EQ(cloud.normals.size(), cloud.size());
+  for (const Eigen::Vector3f& n : cloud.normals) {
+    ASSERT_LT((n.cast<double>() - world.plane.normal()).norm(), 1e-6);
+  }
+}
+
+TEST_P(FuseWithCamera, UsesEachPixelOnce) {
+  Fixture fixture = make_fixture({}, model());
+  for (const std::size_t min_views : {1u, 2u, 3u, 5u}) {
+    FuseOptions options;
+    options.min_views = min_views;
+    const PointCloud cloud = run(fixture, options);
+    std::vector<std::size_t> used(fixture.maps.size(), 0);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const auto views = cloud.views_of(i);
+      EXPECT_GE(views.size(), min_views);
+      // Strictly ascending: no view twice.
+      EXPECT_TRUE(std::adjacent_find(views.begin(), views.end(), std::greater_equal<>()) ==
+                  views.end());
+      for (const std::uint32_t image : views) ++used[image];
+    }
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      EXPECT_LE(used[i], static_cast<std::size_t>(cv::countNonZero(fixture.maps[i].depth)));
+    }
+  }
+}
+
+// A pixel's supports are found again by its weight: give every pixel of all maps its own one.
+TEST_P(FuseWithCamera, UsesEachPixelOnceByItsWeight) {
+  Fixture fixture = make_fixture({}, model());
+  float next = 0;
+  for (DepthMap& map : fixture.maps) {
+    for (float& c : map.confidence) c = 0.1f + 1e-5f * next++;
+  }
+  FuseOptions options;
+  options.min_views = 2;
+  const PointCloud cloud = run(fixture, options);
+  std::map<std::pair<std::uint32_t, float>, int> seen;
+  for (std::size_t k = 0; k < cloud.view_images.size(); ++k) {
+    ++seen[{cloud.view_images[k], cloud.view_weights[k]}];
+  }
+  // Weights of different pixels may coincide by rounding, but only now and then.
+  EXPECT_GT(static_cast<double>(seen.size()), 0.99 * static_cast<double>(cloud.view_images.size()));
+}
+
+TEST_P(FuseWithCamera, MergesWhenOneViewIsEnough) {
+  const AnalyticScene world;
+  Fixture fixture = make_fixture(world, model());
+  FuseOptions options;
+  options.min_views = 1;
+  const PointCloud cloud = run(fixture, options);
+  EXPECT_EQ(cloud.size(), valid_pixels(fixture.maps));
+  EXPECT_EQ(cloud.view_images.size(), cloud.size());
+  EXPECT_LT(worst_distance(cloud, world), 1e-6);
+}
+
+TEST_P(FuseWithCamera, KeepsASphereApartFromThePlaneBehind) {
+  AnalyticScene world;
+  world.sphere_centre = {0, 0, 0.75};
+  world.sphere_radius = 0.12;
+  Fixture fixture = make_fixture(world, model());
+  const PointCloud cloud = run(fixture);
+  // Joined pixels lie within a pixel (13 mm) of each other, so their mean lies at most
+  // 13^2 / (2 * 120) = 0.7 mm inside the sphere, at silhouettes a few times as much.
+  EXPECT_LT(worst_distance(cloud, world), 3e-3);
+  std::size_t on_sphere = 0;
+  for (const Eigen::Vector3f& p : cloud.positions) {
+    if (world.plane.absDistance(p.cast<double>()) > 0.05) ++on_sphere;
+  }
+  EXPECT_GT(on_sphere, 100u);
+}
+
+TEST_P(FuseWithCamera, DropsDepthsThatNobodyConfirms) {
+  const AnalyticScene world;
+  for (const float factor : {0.8f, 1.25f}) {
+    Fixture fixture = make_fixture(world, model());
+    for (int y = 20; y < 40; ++y) {
+      for (int x = 30; x < 60; ++x) fixture.maps[0].depth(y, x) *= factor;
+    }
+    const PointCloud cloud = run(fixture);
+    EXPECT_LT(worst_distance(cloud, world), 1e-6);
+    EXPECT_GT(cloud.size(), 1000u);
+  }
+}
+
+// Two maps agree on a plane behind the true one: enough for min_views 2, unless views that see the
+// true one have proved before that those pixels look through it.
+TEST_P(FuseWithCamera, DeletesWhatLooksThroughASurface) {
+  const AnalyticScene world;
+  AnalyticScene wrong;
+  wrong.plane = {world.plane.normal(), Eigen::Vector3d(0, 0, 1.3)};
+  Fixture fixture = make_fixture(world, model());
+  for (std::size_t i : {3u, 4u}) {
+    fixture.maps[i] = exact_map(wrong, model(), fixture.scene.images[i].pose);
+  }
+  FuseOptions options;
+  options.min_views = 2;
+  const auto wrong_points = [&] {
+    const PointCloud cloud = run(fixture, options);
+    return static_cast<double>(std::count_if(
+        cloud.positions.begin(), cloud.positions.end(),
+        [&](const Eigen::Vector3f& p) { return world.distance(p.cast<double>()) > 0.01; }));
+  };
+  for (std::size_t i : {3u, 4u}) fixture.views[i].rank = 1;
+  const double with_witnesses = wrong_points();
+  for (std::size_t i : {3u, 4u}) fixture.views[i].rank = 9;
+  const double without_witnesses = wrong_points();
+  EXPECT_GT(without_witnesses, 1000);
+  // What is left lies beyond the fields of the three true views, and in the gaps between their
+  // points: the wrong maps are sparser per area on the true plane.
+  EXPECT_LT(with_witnesses, 0.35 * without_witnesses);
+}
+
+TEST_P(FuseWithCamera, GivesTheSameBytesForAnyNumberOfThreads) {
+  AnalyticScene world;
+  world.sphere_centre = {0, 0, 0.75};
+  world.sphere_radius = 0.12;
+  Fixture fixture = make_fixture(world, model());
+  PointCloud one, two;
+  {
+    const ThreadLimit limit(1);
+    one = run(fixture);
+  }
+  {
+    const ThreadLimit limit(2);
+    two = run(fixture);
+  }
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_TRUE(same_bytes(one, two));
+}
+
+TEST_P(FuseWithCamera, EstimatesMissingNormals) {
+  const AnalyticScene world;
+  Fixture fixture = make_fixture(world, model());
+  for (DepthMap& map : fixture.maps) map.normal.release();
+  const PointCloud cloud = run(fixture);
+  ASSERT_GT(cloud.size(), 1000u);
+  for (const Eigen::Vector3f& n : cloud.normals) {
+    // Neighbouring points are 13 mm apart and rounded to 1e-7 m.
+    ASSERT_LT((n.cast<double>() - world.plane.normal()).norm(), 1e-4);
+  }
+}
+
+TEST_P(FuseWithCamera, TestsTheReturnedPixelIfAsked) {
+  Fixture fixture = make_fixture({}, model());
+  FuseOptions options;
+  options.reprojection_threshold = 2;
+  // Exact maps return within half a pixel diagonal times the ratio of footprints.
+  EXPECT_EQ(run(fixture, options).size(), run(fixture).size());
+  options.reprojection_threshold = 0.01;
+  EXPECT_LT(run(fixture, options).size(), run(fixture).size());
+}
+
+TEST(Fuse, TreatsAPortOfAirAsNone) {
+  AnalyticScene world;
+  world.sphere_radius = 0.1;
+  Fixture dry = make_fixture(world, test::dry_camera());
+  Fixture air = make_fixture(world, test::behind_port(test::dry_camera(), 1, 1));
+  const PointCloud a = run(dry), b = run(air);
+  // Projections differ by rounding; a point between two pixels may then fall to the other one.
+  EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()),
+              0.005 * static_cast<double>(a.size()));
+  EXPECT_LT(worst_distance(b, world), 5e-3);
+  std::size_t same = 0;
+  for (const Eigen::Vector3f& p : a.positions) {
+    const bool found = std::any_of(b.positions.begin(), b.positions.end(),
+                                   [&](const auto& q) { return (p - q).norm() < 1e-5f; });
+    if (found) ++same;
+  }
+  EXPECT_GT(static_cast<double>(same), 0.98 * static_cast<double>(a.size()));
+}
+
+TEST(Fuse, AveragesColoursByWeight) {
+  Fixture fixture = make_fixture({}, test::dry_camera(), 3);
+  FusionProviders providers = fixture.providers();
+  providers.load_color = [&](std::size_t i) {
+    return cv::Mat3b(72, 96, cv::Vec3b(static_cast<unsigned char>(100 * i), 7, 200));
+  };
+  const PointCloud cloud = fuse(fixture.scene, fixture.views, providers);
+  ASSERT_GT(cloud.size(), 100u);
+  ASSERT_EQ(cloud.colors.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    double sum = 0, total = 0;
+    for (std::size_t k = cloud.view_begin[i]; k < cloud.view_begin[i + 1]; ++k) {
+      sum += 100.0 * cloud.view_images[k] * static_cast<double>(cloud.view_weights[k]);
+      total += static_cast<double>(cloud.view_weights[k]);
+    }
+    EXPECT_EQ(cloud.colors[i][0], 200);
+    EXPECT_EQ(cloud.colors[i][1], 7);
+    EXPECT_NEAR(cloud.colors[i][2], sum / total, 0.51);
+  }
+}
+
+TEST(Fuse, LoadsEachMapOnce) {
+  Fixture fixture = make_fixture({}, test::dry_camera());
+  fixture.views.pop_back();  // named as a neighbour by the others, but without a map
+  run(fixture);
+  EXPECT_EQ(fixture.loads.size(), 4u);
+  for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
+}
+
+TEST(Fuse, CapsMinViewsAtTheNumberOfViews) {
+  Fixture fixture = make_fixture({}, test::dry_camera(), 2);
+  EXPECT_GT(run(fixture).size(), 1000u);
+}
+
+TEST(Fuse, NamesTheMapThatDoesNotFit) {
+  Fixture fixture = make_fixture({}, test::dry_camera());
+  fixture.maps[2].camera.width = 95;
+  fixture.maps[2].image_path = "third.jpg";
+  try {
+    run(fixture);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("third.jpg"));
+  }
+  fixture.views[0].image = 77;
+  EXPECT_THROW(run(fixture), Error);
+}
+
+TEST(Fuse, MakesNothingOfNothing) {
+  const PointCloud cloud = fuse({}, {}, {});
+  EXPECT_EQ(cloud.size(), 0u);
+  EXPECT_EQ(cloud.view_begin, std::vector<std::size_t>{0});
+}
+
+}  // namespace
+}  // namespace axial::cloud
