@@ -38,9 +38,9 @@ struct FlatPort {
 // q of one medium: b = mu^2, c = mu^2 - 1.
 template <class T>
 struct Medium {
-  T b, c;
+  T b, c, inv_mu;
 
-  explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)) {}
+  explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)), inv_mu(T(1) / mu) {}
 
   T q(const T& s) const {
     using std::sqrt;
@@ -62,6 +62,11 @@ struct FlatPortOptics {
 
   // Height of the outer (glass/water) plane on the axis.
   T outer() const { return distance + thickness; }
+
+  // radius(t, z_water) / t for t -> 0.
+  T paraxial_secant(const T& z_water) const {
+    return distance + thickness * glass.inv_mu + z_water * water.inv_mu;
+  }
 
   // Distance from the axis of the point at height `z_water` above the outer plane on the ray whose
   // in-air tangent is t. Strictly increasing in t.

@@ -2,6 +2,8 @@
 // Pinhole lens and the camera without a port.
 #pragma once
 
+#include <cmath>
+
 #include "refractive/axial_ray.h"
 
 namespace axial::refractive {
@@ -37,7 +39,8 @@ struct PinholeLens {
   }
 };
 
-// A dry camera: all rays start at the centre. A point is visible when it is in front (z > 0).
+// A dry camera: all rays start at the centre. A point is visible when it is in front (z > 0) and
+// not absurdly far to the side; it has no image rectangle to test against.
 template <class T>
 class PinholeCamera {
  public:
@@ -64,8 +67,12 @@ class PinholeCamera {
     return {Vector3<T>::Zero(), direction};
   }
 
+  // Where X is not visible, pixel and Jacobian are finite and mean nothing.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
-    const bool visible = X.z() > T(0);
+    using std::abs;
+    // False for NaN; the bounds keep pixel and Jacobian finite in single precision.
+    const T widest = T(1e6) * X.z();
+    const bool visible = X.z() > T(1e-20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
     const Vector3<T> safe = visible ? X : Vector3<T>(T(0), T(0), T(1));
     if (jacobian) *jacobian = lens_.pixel_jacobian(safe);
     return {lens_.pixel(safe), visible};

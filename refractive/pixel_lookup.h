@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The paper's lookup L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of its pixels' rays.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "refractive/axial_ray.h"
+#include "refractive/virtual_camera.h"
+
+namespace axial::refractive {
+
+struct IntegerPixel {
+  int u, v;
+};
+
+// Four numbers a pixel: the height of C_v on the axis and the direction; c_v follows from them.
+template <class T>
+class PixelLookup {
+ public:
+  struct Entry {
+    Vector3<T> centre;           // C_v [camera frame]
+    Vector3<T> direction;        // unit, in water [camera frame]
+    Vector2<T> principal_point;  // c_v
+  };
+
+  struct Cell {
+    T along;  // C_v = along * axis
+    Vector3<T> direction;
+  };
+
+  // Tables the rays of `camera` (any camera with `port()`), for the width x height image widened by
+  // `border` pixels on every side.
+  template <class Camera>
+  PixelLookup(const Camera& camera, int width, int height, int border = 0)
+      : lens_(camera.lens()),
+        axis_(camera.port().normal),
+        rotation_(camera.rotation_to_axis()),
+        low_(-border),
+        high_u_(width - 1 + border),
+        high_v_(height - 1 + border) {
+    cells_.reserve(static_cast<std::size_t>(high_u_ - low_ + 1) *
+                   static_cast<std::size_t>(high_v_ - low_ + 1));
+    for (int v = low_; v <= high_v_; ++v) {
+      for (int u = low_; u <= high_u_; ++u) {
+        const AxialRay<T> ray = camera.ray({static_cast<T>(u), static_cast<T>(v)});
+        cells_.push_back({ray.origin.dot(axis_), ray.direction});
+      }
+    }
+  }
+
+  const Vector3<T>& axis() const { return axis_; }
+
+  // The tabled pixel nearest to `pixel` (halves away from zero); far outside it is the nearest one
+  // of the table's edge, and for NaN a corner.
+  IntegerPixel round(const Vector2<T>& pixel) const {
+    return {round_clamped(pixel.x(), high_u_), round_clamped(pixel.y(), high_v_)};
+  }
+
+  // Precondition: inside the table, as `round` gives it.
+  const Cell& cell(const IntegerPixel& p) const {
+    const std::size_t stride = static_cast<std::size_t>(high_u_ - low_ + 1);
+    return cells_[static_cast<std::size_t>(p.v - low_) * stride +
+                  static_cast<std::size_t>(p.u - low_)];
+  }
+
+  AxialRay<T> ray(const IntegerPixel& p) const {
+    const Cell& c = cell(p);
+    return {c.along * axis_, c.direction};
+  }
+
+  // L of the nearest pixel.
+  Entry entry(const Vector2<T>& pixel) const {
+    const VirtualCamera<T> camera = virtual_camera(pixel);
+    return {camera.centre, cell(round(pixel)).direction, {camera.lens.cx, camera.lens.cy}};
+  }
+
+  // The virtual camera of the nearest pixel.
+  VirtualCamera<T> virtual_camera(const Vector2<T>& pixel) const {
+    const IntegerPixel p = round(pixel);
+    return refractive::virtual_camera(lens_, rotation_, ray(p),
+                                      Vector2<T>(static_cast<T>(p.u), static_cast<T>(p.v)));
+  }
+
+ private:
+  int round_clamped(const T& x, int high) const {
+    if (!(x > static_cast<T>(low_))) return low_;
+    if (x >= static_cast<T>(high)) return high;
+    return static_cast<int>(std::lround(x));
+  }
+
+  PinholeLens<T> lens_;
+  Vector3<T> axis_;
+  Matrix3<T> rotation_;
+  int low_, high_u_, high_v_;  // the first and last tabled pixels
+  std::vector<Cell> cells_;
+};
+
+}  // namespace axial::refractive

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The forward projection through a flat port as a root of a polynomial of degree 12: a reference
+// for tests, slower and less accurate than FlatPortCamera::project().
+//
+// From t (d_a + d_g/q_g + z/q_w) = rho: let t0 be the paraxial root, t = t0/u, and measure in units
+// of rho/t0, so that with a = d_a, g = d_g/mu_g, w = z/mu_w there
+//
+//     a + g + w = 1,    p = q_g^2/mu_g^2 = 1 + e_g/u^2,    q = q_w^2/mu_w^2 = 1 + e_w/u^2
+//     u - a = g/sqrt(p) + w/sqrt(q)
+//
+// Squaring twice removes the roots. Multiplied by powers of u, with P = u^2 + e_g, Q = u^2 + e_w:
+//
+//     [(u - a)^2 P Q - u^2 (g^2 Q + w^2 P)]^2 - 4 g^2 w^2 u^4 P Q = 0
+//
+// which is monic of degree 12 whatever the port, with all roots of the order of 1 or less: its
+// companion matrix needs no balancing. The wanted root lies in (a, 1]. Without glass one squaring
+// is enough, and the second would make the root double: (u - a)^2 Q - w^2 u^2 = 0.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "refractive/flat_port_camera.h"
+
+namespace axial::refractive {
+
+namespace polynomial {
+
+// Coefficients, constant first.
+template <class T, std::size_t N>
+using Polynomial = std::array<T, N>;
+
+template <class T, std::size_t N, std::size_t M>
+Polynomial<T, N + M - 1> product(const Polynomial<T, N>& a, const Polynomial<T, M>& b) {
+  Polynomial<T, N + M - 1> c{};
+  for (std::size_t i = 0; i < N; ++i)
+    for (std::size_t j = 0; j < M; ++j) c[i + j] += a[i] * b[j];
+  return c;
+}
+
+// a + scale * u^shift * b, of a's degree.
+template <std::size_t shift, class T, std::size_t N, std::size_t M>
+Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>& b) {
+  static_assert(M + shift <= N);
+  for (std::size_t j = 0; j < M; ++j) a[j + shift] += scale * b[j];
+  return a;
+}
+
+// Eigenvalues of the companion matrix of a monic polynomial.
+template <class T, std::size_t N>
+auto roots(const Polynomial<T, N>& monic) {
+  constexpr int degree = static_cast<int>(N) - 1;
+  using Companion = Eigen::Matrix<T, degree, degree>;
+  Companion companion = Companion::Zero();
+  for (int k = 0; k < degree; ++k) {
+    if (k > 0) companion(k, k - 1) = T(1);
+    companion(k, degree - 1) = -monic[static_cast<std::size_t>(k)];
+  }
+  return Eigen::EigenSolver<Companion>(companion, false).eigenvalues().eval();
+}
+
+}  // namespace polynomial
+
+// The in-air tangent t that reaches the radius `rho` at height `z_water` above the outer plane
+// (axis frame), straight from the eigenvalues, without polishing. None: no such t (total
+// reflection, z_water <= 0, NaN). `T` is float or double.
+template <class T>
+std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T& rho,
+                                       const T& z_water) {
+  using namespace polynomial;
+  if (!(z_water > T(0)) || !(rho >= T(0)) || !std::isfinite(rho) || !std::isfinite(z_water))
+    return std::nullopt;
+  if (rho == T(0)) return T(0);
+  const T secant = optics.paraxial_secant(z_water);
+  const T t0 = rho / secant;
+  const T a = optics.distance / secant;
+  const T g = optics.thickness * optics.glass.inv_mu / secant;
+  const T w = z_water * optics.water.inv_mu / secant;
+  const T e_g = optics.glass.c / optics.glass.b * t0 * t0;
+  const T e_w = optics.water.c / optics.water.b * t0 * t0;
+
+  // Of the real roots (a nearly double one may come with a small imaginary part) the one that
+  // solves the equation before it was squared.
+  std::optional<T> best;
+  T least(0);
+  const auto consider = [&](const auto& candidates) {
+    for (const auto& root : candidates) {
+      const T u = root.real();
+      if (std::abs(root.imag()) > T(1e-3) * std::abs(u) || !(u > T(0)) || u < a * T(0.999))
+        continue;
+      const T p = T(1) + e_g / (u * u);
+      const T q = T(1) + e_w / (u * u);
+      const T residual = std::abs(u - a - g / std::sqrt(p) - w / std::sqrt(q)) / u;
+      if (!best || residual < least) {
+        best = t0 / u;
+        least = residual;
+      }
+    }
+  };
+
+  const Polynomial<T, 3> P{e_g, T(0), T(1)};
+  const Polynomial<T, 3> Q{e_w, T(0), T(1)};
+  const Polynomial<T, 3> A2{a * a, T(-2) * a, T(1)};
+  if (g == T(0)) {
+    consider(roots(plus<2>(product(A2, Q), T(-w * w), Polynomial<T, 1>{T(1)})));
+  } else {
+    const Polynomial<T, 5> PQ = product(P, Q);
+    const Polynomial<T, 7> inner = plus<2>(plus<2>(product(A2, PQ), T(-g * g), Q), T(-w * w), P);
+    consider(roots(plus<4>(product(inner, inner), T(T(-4) * g * g * w * w), PQ)));
+  }
+  // Spurious roots solve the equation with another sign of one of the terms.
+  if (best && least > T(1e-3)) return std::nullopt;
+  return best;
+}
+
+// Forward projection of X [camera frame] by the polynomial. Visible: beyond the port, within total
+// reflection and in front of the lens; the image rectangle is not tested.
+template <class T>
+Projection<T> project_by_polynomial(const FlatPortCamera<T>& camera, const Vector3<T>& X) {
+  const Vector3<T>& n = camera.port().normal;
+  const T height = n.dot(X);
+  const Vector3<T> across = X - height * n;
+  const T rho = across.norm();
+  const std::optional<T> t =
+      tangent_by_polynomial(camera.optics(), rho, T(height - camera.optics().outer()));
+  const Projection<T> none{Vector2<T>(T(0), T(0)), false};
+  if (!t) return none;
+  const Vector3<T> bearing = rho > T(0) ? Vector3<T>(n + across * (*t / rho)) : n;
+  if (!(bearing.z() > T(0))) return none;
+  return {camera.lens().pixel(bearing), true};
+}
+
+}  // namespace axial::refractive
