@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -13,6 +12,7 @@
 #include "base/error.h"
 #include "io/image.h"
 #include "io/mvs_format.h"
+#include "io/rotation.h"
 
 namespace axial::io {
 namespace {
@@ -20,17 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kLargestSide = 1'000'000;
-
-// The camera's rotation, made exactly orthonormal where a writer's rounding left it short of that.
-Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where) {
-  if (!r.allFinite()) fail("{} holds a value that is not finite", where);
-  const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (deviation > 1e-3) fail("{} is no rotation: R R^T differs from I by {}", where, deviation);
-  if (r.determinant() < 0) fail("{} is no rotation: its determinant is {}", where, r.determinant());
-  if (deviation < 1e-9) return r;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
 
 Eigen::Vector3d checked_centre(const Eigen::Vector3d& centre, const std::string& where) {
   if (!centre.allFinite()) fail("{} holds a value that is not finite", where);
@@ -182,9 +171,9 @@ std::optional<OrientedBox> region_of(const MvsBox& box, const std::string& file)
   OrientedBox region{box.rotation, (box.min + box.max) / 2, (box.max - box.min) / 2};
   if (!region.centre.allFinite() || !region.half_extent.allFinite())
     fail("{}: obb has an extent that is not finite", file);
-  const Eigen::Matrix3d& r = box.rotation;
-  const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(deviation < 1e-3)) fail("{}: obb rot is no rotation: R R^T differs from I", file);
+  // The box is symmetric, so a reflection is as good as a rotation.
+  const double sign = region.rotation.allFinite() && region.rotation.determinant() < 0 ? -1 : 1;
+  region.rotation = sign * checked_rotation(sign * region.rotation, file + ": obb rot");
   return region;
 }
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: the file beside a .dmap that says which camera it belongs to.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scene/camera_model.h"
+
+namespace axial::io {
+
+struct DmapSideFile {
+  CameraModel camera;                  // at the depth map's resolution
+  float min_depth = 0, max_depth = 0;  // lambda [m]
+  std::string made_from;
+};
+
+std::filesystem::path dmap_side_path(const std::filesystem::path& dmap);
+
+// Nothing if there is no such file; Error if there is a malformed one.
+std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap);
+
+void write_dmap_side_file(const std::filesystem::path& dmap, const DmapSideFile& side);
+
+}  // namespace axial::io

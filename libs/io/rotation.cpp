@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/rotation.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "base/error.h"
+
+namespace axial::io {
+
+Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where) {
+  if (!r.allFinite()) fail("{} holds a value that is not finite", where);
+  const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= 1e-3)) fail("{} is no rotation: R R^T differs from I by {}", where, deviation);
+  if (r.determinant() < 0) fail("{} is no rotation: its determinant is {}", where, r.determinant());
+  // What is right to rounding stays as it is, so that writing what was read changes nothing.
+  if (deviation < 1e-9) return r;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+}  // namespace axial::io
