@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the program tests share: running programs, and judging how they fail."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BIN = os.environ.get("AXIAL_BIN", "")
+
+
+def run(program, *arguments, file_size_limit=None, cwd=None):
+    """Runs a program to its end; `file_size_limit` [bytes] stands for a full disk."""
+
+    def limit():
+        # A write beyond the limit then fails with an error, as on a full disk, instead of a signal.
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (file_size_limit, file_size_limit))
+
+    return subprocess.run(
+        [os.path.join(BIN, program), *map(str, arguments)], cwd=cwd, text=True, errors="replace",
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=600,
+        preexec_fn=limit if file_size_limit is not None else None)
+
+
+def files_below(folder):
+    return {os.path.relpath(os.path.join(path, name), folder)
+            for path, _, names in os.walk(folder) for name in names}
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def write(path, data):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb" if isinstance(data, bytes) else "w") as file:
+        file.write(data)
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+    def succeeds(self, program, *arguments, **options):
+        result = run(program, *arguments, **options)
+        self.assertEqual(result.returncode, 0, f"{program} {arguments}: {result.stderr}")
+        return result
+
+    def refuses(self, expected, program, *arguments, **options):
+        """Exit code 1, one line on standard error that holds `expected`, and no new file."""
+        before = files_below(self.folder)
+        result = run(program, *arguments, **options)
+        said = f"{program} {arguments}: exit code {result.returncode}, said: {result.stderr!r}"
+        self.assertEqual(result.returncode, 1, said)
+        self.assertEqual(result.stderr.count("\n"), 1, said)
+        self.assertTrue(result.stderr.endswith("\n"), said)
+        self.assertIn(expected, result.stderr, said)
+        self.assertEqual(files_below(self.folder) - before, set(), said)
+        return result
+
+
+def main():
+    if not BIN:
+        sys.exit("set AXIAL_BIN to the folder of the programs")
+    unittest.main(verbosity=2)

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Wrong input: one clear line, exit code 1, no crash, no partial output."""
+
+import os
+import random
+
+import tiny_scene
+from programs import ProgramTest, files_below, main, read, run, write
+
+DENSIFY = ("DensifyPointCloud", "--max-threads", "1")
+
+
+class InterfaceColmap(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        tiny_scene.write_colmap(self.path("colmap"))
+
+    def refuses_import(self, expected, *arguments, **options):
+        self.refuses(expected, "InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                     self.path("scene.mvs"), *arguments, **options)
+
+    def test_the_model_itself_is_accepted(self):
+        self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
+        self.assertIn("scene.mvs", files_below(self.folder))
+
+    def test_unknown_option(self):
+        self.refuses_import("'--no-such-option'", "--no-such-option", "1")
+
+    def test_options_that_are_not_built(self):
+        self.refuses_import("--normalize", "--normalize", "1")
+        self.refuses("not built yet", "InterfaceCOLMAP", "-i", self.path("scene.mvs"))
+
+    def test_no_model(self):
+        for name in ("cameras", "images", "points3D"):
+            path = self.path("colmap", "sparse", name + ".txt")
+            content = read(path)
+            os.remove(path)
+            self.refuses_import("sparse")
+            write(path, content)
+
+    def test_truncated_and_garbage_models(self):
+        rng = random.Random(1)
+        for name in ("cameras.txt", "images.txt", "points3D.txt"):
+            path = self.path("colmap", "sparse", name)
+            content = read(path)
+            cut = content.rindex(b" ")  # in the middle of the last record
+            garbage = bytes(rng.randrange(1, 256) for _ in range(500))
+            for wrong in (content[:cut], garbage, b"x y z\n"):
+                write(path, wrong)
+                result = run("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                             self.path("scene.mvs"))
+                said = f"{name}: {result.returncode} {result.stderr!r}"
+                self.assertEqual(result.returncode, 1, said)
+                self.assertIn(name, result.stderr, said)
+                self.assertEqual(result.stderr.count("\n"), 1, said)
+                self.assertNotIn("scene.mvs", files_below(self.folder), said)
+            write(path, content)
+
+    def test_wrong_values(self):
+        cases = [("cameras.txt", b"1 PINHOLE 96 72 90.0", b"1 PINHOLE 96 72 0", "cameras"),
+                 ("cameras.txt", b"90.0 90.0", b"nan 90.0", "cameras"),
+                 ("cameras.txt", b"PINHOLE", b"NO_SUCH_MODEL", "NO_SUCH_MODEL"),
+                 ("cameras.txt", b"1 PINHOLE", b"7 PINHOLE", "camera"),
+                 ("images.txt", b"1 1 0 0 0", b"1 nan 0 0 0", "images"),
+                 ("images.txt", b"1 1 0 0 0", b"1 0 0 0 0", "images")]
+        for name, old, new, expected in cases:
+            path = self.path("colmap", "sparse", name)
+            content = read(path)
+            self.assertIn(old, content)
+            write(path, content.replace(old, new, 1))
+            self.refuses_import(expected)
+            write(path, content)
+
+    def test_images_that_do_not_fit(self):
+        path = self.path("colmap", "images", "0001.png")
+        write(path, tiny_scene.picture((0, 0, 0), 48, 48))
+        self.refuses_import("0001.png: image is 48 x 48, but its camera is 96 x 72")
+        os.remove(path)
+        self.refuses_import("0001.png")
+        write(path, b"")
+        self.refuses_import("0001.png")
+        self.refuses_import("no-such-folder", "--image-folder", "no-such-folder")
+
+    def test_wrong_housings(self):
+        housing = self.path("housing.json")
+        port = '{"type": "flat", "distance_m": %s, "thickness_m": 0.01, "normal": [0, 0, 1], ' \
+               '"n_air": 1, "n_glass": 1.5, "n_water": %s}'
+        whole = '{"version": 1, "ports": {"main": ' + port + '}, "default": "main"}'
+        for text, expected in (("", "housing.json"), ("{", "housing.json"),
+                               (whole % ("20", "1.33"), "distance_m"),
+                               (whole % ("0.02", "0.5"), "n_water"),
+                               (whole % ("0.02", '"wet"'), "n_water"),
+                               ((whole % ("0.02", "1.33"))[:-1] + ', "colour": 3}', "colour"),
+                               ((whole % ("0.02", "1.33")).replace('t": "main"', 't": "x"'), "x")):
+            write(housing, text)
+            self.refuses_import(expected, "--housing", housing)
+
+    def test_unwritable_folders(self):
+        write(self.path("a_file"), "")
+        for output in ("/proc/scene.mvs", self.path("a_file", "scene.mvs")):
+            self.refuses("", "InterfaceCOLMAP", "-i", self.path("colmap"), "-o", output)
+
+    def test_full_disk(self):
+        self.refuses_import("scene.mvs", file_size_limit=100)
+
+
+class Densify(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.images = [self.path("images", name) for name in tiny_scene.names()]
+        for path, centre in zip(self.images, tiny_scene.CENTRES):
+            write(path, tiny_scene.picture(centre))
+        self.scene = self.path("work", "scene.mvs")
+        write(self.scene, tiny_scene.mvs(self.images))
+
+    def refuses_scene(self, expected, *arguments, **options):
+        self.refuses(expected, *DENSIFY, "-i", self.scene, "-w", self.path("work"),
+                     "--resolution-level", "0", *arguments, **options)
+
+    def test_the_scene_itself_is_accepted(self):
+        self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
+                      "0", "--number-views-fuse", "2")
+        self.assertIn("work/scene_dense.ply", files_below(self.folder))
+
+    def test_command_line(self):
+        self.refuses_scene("'--no-such-option'", "--no-such-option", "1")
+        self.refuses_scene("iters", "--iters", "many")
+        self.refuses_scene("not built yet", "--tower-mode", "4")
+        self.refuses_scene("camera-model", "--camera-model", "fisheye")
+        self.refuses_scene("housing", "--refractive")
+        self.refuses("no-such.mvs", *DENSIFY, "-i", self.path("no-such.mvs"), "-w",
+                     self.path("work"))
+
+    def test_truncated_scenes(self):
+        whole = read(self.scene)
+        lengths = sorted({0, 1, 3, 4, 8, 11, 12, 20, len(whole) - 1, len(whole) - 120} |
+                         {len(whole) * i // 12 for i in range(12)})
+        for length in lengths:
+            write(self.scene, whole[:length])
+            self.refuses_scene("scene.mvs")
+
+    def test_garbage_scenes(self):
+        rng = random.Random(2)
+        garbage = bytes(rng.randrange(256) for _ in range(4000))
+        for content in (garbage, b"MVSI" + garbage, b"MVSI\x07\0\0\0\0\0\0\0" + garbage,
+                        b"MVS\0" + garbage, b"MVSI\x07\0\0\0\0\0\0\0" + b"\xff" * 4000):
+            write(self.scene, content)
+            self.refuses_scene("scene.mvs")
+        write(self.scene, tiny_scene.mvs(self.images, version=99))
+        self.refuses_scene("99")
+
+    def test_wrong_values(self):
+        nan = tiny_scene.NAN
+        for wrong in ({"platform": 3}, {"camera": 3}, {"pose": 3}, {"view": 3},
+                      {"k": (0, 0, 48, 0, 0, 36, 0, 0, 1)}, {"k": (nan, 0, 48, 0, 90, 36, 0, 0, 1)},
+                      {"rotation": (nan,) * 9}, {"rotation": (1, 0, 0, 0, 1, 0, 0, 0, 2)},
+                      {"centres": [(nan, 0, 0)] * 3}):
+            write(self.scene, tiny_scene.mvs(self.images, **wrong))
+            self.refuses_scene("scene.mvs")
+
+    def test_scenes_too_small(self):
+        write(self.scene, tiny_scene.mvs(self.images[:1], centres=[(0, 0, 0)], points=[]))
+        self.refuses_scene("")
+
+    def test_missing_image(self):
+        os.remove(self.images[1])
+        self.refuses_scene("0001.png")
+
+    def test_truncated_image(self):
+        content = read(self.images[1])
+        for length in (0, 10, 100, len(content) // 2):
+            write(self.images[1], content[:length])
+            self.refuses_scene("0001.png")
+
+    def test_image_of_another_shape(self):
+        write(self.images[1], tiny_scene.picture((0, 0, 0), 72, 72))
+        self.refuses_scene("0001.png")
+
+    def test_unwritable_folders(self):
+        write(self.path("a_file"), "")
+        for output in ("/proc/scene_dense.mvs", self.path("a_file", "scene_dense.mvs")):
+            self.refuses_scene("", "-o", output, "--iters", "1", "--geometric-iters", "0",
+                               "--remove-dmaps", "1")
+        self.refuses("", *DENSIFY, "-i", self.scene, "-w", "/proc")
+
+    def test_full_disk(self):
+        self.refuses_scene("dmap", file_size_limit=5000)
+
+
+class OtherPrograms(ProgramTest):
+    def test_simulator(self):
+        self.refuses("no-such-preset", "SimulateUnderwater", "--preset", "no-such-preset", "-o",
+                     self.path("out"))
+        self.refuses("'--no-such-option'", "SimulateUnderwater", "--no-such-option", "1")
+
+    def test_evaluation(self):
+        write(self.path("garbage.ply"), b"ply\nformat binary\n\xff\xff")
+        self.refuses("garbage.ply", "EvaluateReconstruction", "-i", self.path("garbage.ply"), "-m",
+                     self.path("garbage.ply"))
+        self.refuses("no-such.ply", "EvaluateReconstruction", "-i", self.path("no-such.ply"), "-m",
+                     self.path("garbage.ply"))
+        self.refuses("'--no-such-option'", "EvaluateReconstruction", "--no-such-option", "1")
+
+
+if __name__ == "__main__":
+    main()
