@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/alignment.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+
+namespace axial::evaluate {
+namespace {
+
+Eigen::Matrix3Xd columns(std::span<const Eigen::Vector3d> points) {
+  Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    matrix.col(static_cast<Eigen::Index>(i)) = points[i];
+  return matrix;
+}
+
+void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
+  if (!points.allFinite()) fail("a {} position is not finite", which);
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
+  if (!(spread[1] > 1e-3 * spread[0]))
+    fail("the {} {} positions lie on one line: they fix no similarity", points.cols(), which);
+}
+
+}  // namespace
+
+Similarity Similarity::after(const Similarity& first) const {
+  return {scale * first.scale, rotation * first.rotation, (*this)(first.translation)};
+}
+
+Eigen::Matrix4d Similarity::matrix() const {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.topLeftCorner<3, 3>() = scale * rotation;
+  m.topRightCorner<3, 1>() = translation;
+  return m;
+}
+
+Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
+                          std::span<const Eigen::Vector3d> target) {
+  if (source.size() != target.size())
+    fail("{} positions cannot be fitted to {}", source.size(), target.size());
+  if (source.size() < 3)
+    fail("{} common positions are too few for a similarity: it takes 3", source.size());
+  const Eigen::Matrix3Xd from = columns(source);
+  const Eigen::Matrix3Xd to = columns(target);
+  check_spread(from, "estimated");
+  check_spread(to, "reference");
+  const Eigen::Matrix4d m = Eigen::umeyama(from, to, true);
+  Similarity result;
+  result.scale = std::cbrt(m.topLeftCorner<3, 3>().determinant());
+  result.rotation = m.topLeftCorner<3, 3>() / result.scale;
+  result.translation = m.topRightCorner<3, 1>();
+  return result;
+}
+
+CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {
+  std::map<std::string, Eigen::Vector3d> centres;
+  for (const io::ColmapImage& image : reference.images) centres[image.name] = image.pose.centre;
+  CentreAlignment result;
+  std::vector<Eigen::Vector3d> source, target;
+  for (const io::ColmapImage& image : model.images) {
+    const auto found = centres.find(image.name);
+    if (found == centres.end()) continue;
+    result.names.push_back(image.name);
+    source.push_back(image.pose.centre);
+    target.push_back(found->second);
+  }
+  if (source.size() < 3)
+    fail("the models have {} images of the same name: a similarity takes 3", source.size());
+  result.similarity = fit_similarity(source, target);
+  double sum = 0;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const double squared = (result.similarity(source[i]) - target[i]).squaredNorm();
+    result.residuals.push_back(std::sqrt(squared));
+    sum += squared;
+  }
+  result.rms = std::sqrt(sum / static_cast<double>(source.size()));
+  return result;
+}
+
+void apply(const Similarity& similarity, io::ColmapModel& model) {
+  for (io::ColmapImage& image : model.images) {
+    image.pose.centre = similarity(image.pose.centre);
+    image.pose.rotation = image.pose.rotation * similarity.rotation.transpose();
+  }
+  for (io::ColmapPoint3D& point : model.points) point.position = similarity(point.position);
+}
+
+void apply(const Similarity& similarity, PointCloud& cloud) {
+  for (Eigen::Vector3f& x : cloud.positions) x = similarity(x.cast<double>()).cast<float>();
+  for (Eigen::Vector3f& n : cloud.normals)
+    n = (similarity.rotation * n.cast<double>()).cast<float>();
+}
+
+void apply(const Similarity& similarity, Mesh& mesh) {
+  for (Eigen::Vector3f& x : mesh.vertices) x = similarity(x.cast<double>()).cast<float>();
+}
+
+std::string matrix_text(const Similarity& similarity) {
+  const Eigen::Matrix4d m = similarity.matrix();
+  std::string text;
+  for (int row = 0; row < 4; ++row)
+    text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", m(row, 0), m(row, 1), m(row, 2),
+                        m(row, 3));
+  return text;
+}
+
+}  // namespace axial::evaluate

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/icp.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "evaluate/sampling.h"
+
+namespace axial::evaluate {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct Pair {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;  // gradient of the distance at the point
+  double distance;
+};
+
+std::vector<Pair> find_pairs(std::span<const Eigen::Vector3f> points, const Surface& surface,
+                             const Similarity& transform) {
+  std::vector<Pair> pairs(points.size());
+  parallel_for(
+      points.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3d x = transform(points[i].cast<double>());
+        const ClosestPoint closest = surface.closest(x);
+        // On the surface itself the gradient has two signs; either holds the point in its plane.
+        const Eigen::Vector3d normal = closest.distance > 1e-12
+                                           ? Eigen::Vector3d((x - closest.point) / closest.distance)
+                                           : surface.face_normal(closest.face);
+        pairs[i] = {x, normal, closest.distance};
+      },
+      1024);
+  return pairs;
+}
+
+double median_distance(const std::vector<Pair>& pairs) {
+  std::vector<double> distances;
+  distances.reserve(pairs.size());
+  for (const Pair& pair : pairs) distances.push_back(pair.distance);
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+struct Frame {
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+Frame frame_of(std::span<const Eigen::Vector3f> points) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const auto& x : points) centre += x.cast<double>();
+  centre /= static_cast<double>(points.size());
+  double sum = 0;
+  for (const auto& x : points) sum += (x.cast<double>() - centre).squaredNorm();
+  return {centre, std::sqrt(sum / static_cast<double>(points.size()))};
+}
+
+// The step (rotation vector times radius, translation) that lessens the pairs' squared distances
+// most; none along directions that the pairs leave open.
+Vector6d solve_step(const std::vector<Pair>& pairs, const Eigen::Vector3d& centre, double radius,
+                    double limit) {
+  Matrix6d normal_matrix = Matrix6d::Zero();
+  Vector6d right_side = Vector6d::Zero();
+  for (const Pair& pair : pairs) {
+    if (pair.distance > limit) continue;
+    Vector6d row;
+    row << ((pair.point - centre) / radius).cross(pair.normal), pair.normal;
+    normal_matrix += row * row.transpose();
+    right_side -= row * pair.distance;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(normal_matrix);
+  const double least = 1e-6 * eigen.eigenvalues()[5];
+  Vector6d step = Vector6d::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const double value = eigen.eigenvalues()[k];
+    if (value > least)
+      step += eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(right_side) / value);
+  }
+  return step;
+}
+
+}  // namespace
+
+IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& surface,
+                       const IcpOptions& options) {
+  if (points.size() < 6) fail("{} points are too few to align a cloud: it takes 6", points.size());
+  const auto sampled = subsample(points, options.samples, options.seed);
+  const Frame frame = frame_of(sampled);
+  if (!std::isfinite(frame.radius) || !(frame.radius > 0))
+    fail("the cloud has no extent to align by");
+
+  IcpResult result;
+  std::vector<Pair> pairs = find_pairs(sampled, surface, result.transform);
+  result.median_before = median_distance(pairs);
+  while (result.iterations < options.max_iterations && !result.converged) {
+    const double limit = std::max(options.trim * median_distance(pairs), 1e-9 * frame.radius);
+    const Eigen::Vector3d centre = result.transform(frame.centre);
+    const Vector6d step = solve_step(pairs, centre, frame.radius, limit);
+    const Eigen::Vector3d turn = step.head<3>() / frame.radius;
+    Similarity move;
+    if (turn.norm() > 0)
+      move.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    move.translation = centre - move.rotation * centre + step.tail<3>();
+    result.transform = move.after(result.transform);
+    pairs = find_pairs(sampled, surface, result.transform);
+    ++result.iterations;
+    result.converged = step.norm() < options.stop * frame.radius;
+  }
+  result.median_after = median_distance(pairs);
+  return result;
+}
+
+}  // namespace axial::evaluate

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Evaluations as text for people and as JSON for programs (fields: docs/evaluate.md).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "evaluate/alignment.h"
+#include "evaluate/cloud_evaluation.h"
+#include "evaluate/depth_evaluation.h"
+
+namespace axial::evaluate {
+
+// Lengths in the JSON are metres, lengths in the tables millimetres.
+nlohmann::ordered_json to_json(const CloudEvaluation& evaluation);
+nlohmann::ordered_json to_json(const DepthEvaluation& evaluation);
+nlohmann::ordered_json to_json(const Similarity& similarity);
+
+std::string table(const CloudEvaluation& evaluation);
+std::string table(const DepthEvaluation& evaluation);
+
+}  // namespace axial::evaluate

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/surface.h"
+
+#include <embree3/rtcore.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "evaluate/triangle_distance.h"
+
+namespace axial::evaluate {
+
+struct Surface::Impl {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  std::array<Eigen::Vector3d, 3> corners(std::uint32_t face) const {
+    const auto& f = faces[face];
+    return {vertices[f[0]].cast<double>(), vertices[f[1]].cast<double>(),
+            vertices[f[2]].cast<double>()};
+  }
+};
+
+namespace {
+
+void check(const Mesh& mesh) {
+  if (mesh.faces.empty()) fail("the mesh has no faces");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (!mesh.vertices[i].allFinite()) fail("vertex {} of the mesh is not finite", i);
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    for (const std::uint32_t corner : mesh.faces[i])
+      if (corner >= mesh.vertices.size())
+        fail("face {} of the mesh names vertex {}, but there are {}", i, corner,
+             mesh.vertices.size());
+}
+
+void check(RTCDevice device) {
+  if (const RTCError error = rtcGetDeviceError(device); error == RTC_ERROR_OUT_OF_MEMORY)
+    throw std::bad_alloc();
+  else if (error != RTC_ERROR_NONE)
+    fail("the mesh cannot be indexed: Embree error {}", static_cast<int>(error));
+}
+
+struct Search {
+  const std::vector<Eigen::Vector3f>* vertices;
+  const std::vector<std::array<std::uint32_t, 3>>* faces;
+  Eigen::Vector3d point;
+  double rounding;  // of `point` as the hierarchy knows it, in float
+  double best2 = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d closest = Eigen::Vector3d::Zero();
+  std::uint32_t face = 0;
+};
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  Search& search = *static_cast<Search*>(arguments->userPtr);
+  const auto& f = (*search.faces)[arguments->primID];
+  const auto& v = *search.vertices;
+  const Eigen::Vector3d candidate = closest_on_triangle(
+      search.point, {v[f[0]].cast<double>(), v[f[1]].cast<double>(), v[f[2]].cast<double>()});
+  const double distance2 = (candidate - search.point).squaredNorm();
+  // The lower face wins a tie, so that the order of the hierarchy does not show.
+  const bool nearer =
+      distance2 < search.best2 || (distance2 == search.best2 && arguments->primID < search.face);
+  if (!nearer) return false;
+  const bool shrinks = distance2 < search.best2;
+  search.best2 = distance2;
+  search.closest = candidate;
+  search.face = arguments->primID;
+  if (!shrinks) return false;
+  // A little wider than the distance found: boxes are compared in float.
+  arguments->query->radius =
+      static_cast<float>(std::sqrt(distance2) * (1 + 1e-6) + search.rounding);
+  return true;
+}
+
+}  // namespace
+
+Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+  check(mesh);
+  impl_->vertices = mesh.vertices;
+  impl_->faces = mesh.faces;
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) fail("the ray tracer cannot be started");
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(Eigen::Vector3f), impl_->vertices.size());
+  void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                        sizeof impl_->faces[0], impl_->faces.size());
+  check(impl_->device);
+  std::memcpy(vertices, impl_->vertices.data(), impl_->vertices.size() * sizeof(Eigen::Vector3f));
+  std::memcpy(faces, impl_->faces.data(), impl_->faces.size() * sizeof impl_->faces[0]);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(impl_->scene);
+  check(impl_->device);
+}
+
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+ClosestPoint Surface::closest(const Eigen::Vector3d& point) const {
+  Search search{&impl_->vertices, &impl_->faces, point,
+                4 * std::numeric_limits<float>::epsilon() * point.cwiseAbs().maxCoeff()};
+  RTCPointQuery query{};
+  query.x = static_cast<float>(point.x());
+  query.y = static_cast<float>(point.y());
+  query.z = static_cast<float>(point.z());
+  query.radius = std::numeric_limits<float>::infinity();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl_->scene, &query, &context, visit, &search);
+  return {search.closest, std::sqrt(search.best2), search.face};
+}
+
+Eigen::Vector3d Surface::face_normal(std::uint32_t face) const {
+  const auto corners = impl_->corners(face);
+  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double length = normal.norm();
+  return length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+}
+
+bool Surface::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip) const {
+  const Eigen::Vector3f origin = from.cast<float>();
+  const Eigen::Vector3f direction = (to - from).cast<float>();
+  RTCRay ray{};
+  ray.org_x = origin.x();
+  ray.org_y = origin.y();
+  ray.org_z = origin.z();
+  ray.dir_x = direction.x();
+  ray.dir_y = direction.y();
+  ray.dir_z = direction.z();
+  ray.tnear = static_cast<float>(skip);
+  ray.tfar = 1;
+  ray.mask = ~0u;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
+std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points) {
+  std::vector<float> distances(points.size());
+  parallel_for(
+      points.size(),
+      [&](std::size_t i) {
+        distances[i] = static_cast<float>(surface.closest(points[i].cast<double>()).distance);
+      },
+      4096);
+  return distances;
+}
+
+}  // namespace axial::evaluate

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cameras that took the pictures, and what they can have seen of the truth.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evaluate/surface.h"
+#include "io/colmap.h"
+#include "io/housing.h"
+#include "scene/camera_model.h"
+#include "scene/pose.h"
+
+namespace axial::evaluate {
+
+struct View {
+  std::string name;
+  CameraModel camera;
+  Pose pose;
+};
+
+// One view an image of the model, ports from `housing` (null: dry). Error if there is no image or a
+// camera is no pinhole.
+std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing* housing);
+
+// How many views see each point [world]: the point's image lies in the image rectangle, and nothing
+// stands on the straight line from it to the camera centre, or, behind a port, to where that
+// pixel's light enters the glass. The surface's own orientation does not count.
+std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
+                                       std::span<const View> views, const Surface& surface);
+
+// The points that at least `least` views see.
+std::vector<Eigen::Vector3f> seen_points(std::span<const Eigen::Vector3f> points,
+                                         std::span<const View> views, const Surface& surface,
+                                         std::uint32_t least);
+
+}  // namespace axial::evaluate
