@@ -116,7 +116,7 @@ class LineSearchCamera {
     if (!beyond_port || !(X.z() > T(0))) return none;
     const Vector2<T> x_p = lens().pixel(X);
     const Vector2<T> step = refraction_line(lens(), port().normal, X);
-    const T kOnAxis2(1e-6);  // a thousandth of a pixel
+    const T kOnAxis2 = static_cast<T>(1e-6);  // a thousandth of a pixel
     if (step.squaredNorm() <= kOnAxis2) return inside(x_p);
     const std::optional<Segment<T>> line = clip_ray(x_p, step, low_, high_);
     if (!line) return none;

@@ -62,20 +62,30 @@ std::vector<SourceView<Camera>> make_sources(const MatchInput& input, const Leve
   return sources;
 }
 
+template <class Warp, class Camera>
+void run_sweeps_with(const MatchInput& input, const Level& level,
+                     const std::vector<Camera>& cameras, std::span<const DepthMap* const> maps,
+                     const PatchMatchOptions& options, SweepInput sweep, int sweeps,
+                     PlaneMap& planes) {
+  const Matcher<Camera, Warp> matcher(level.images[0], cameras[0],
+                                      make_sources(input, level, cameras, maps), options);
+  for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
+    Sweep<Camera, Warp>(matcher, planes, options, sweep).run();
+    sweep.first = false;
+  }
+}
+
 // Runs `sweeps` sweeps of one level with the camera type and the warp chosen once.
 void run_sweeps(const MatchInput& input, const Level& level, std::span<const DepthMap* const> maps,
                 const PatchMatchOptions& options, const SweepInput& first, int sweeps,
                 PlaneMap& planes) {
   std::visit(
       [&](const auto& cameras) {
-        using Camera = typename std::decay_t<decltype(cameras)>::value_type;
-        const Matcher<Camera, AffineWarp> matcher(
-            level.images[0], cameras[0], make_sources(input, level, cameras, maps), options);
-        SweepInput sweep = first;
-        for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
-          Sweep<Camera, AffineWarp>(matcher, planes, options, sweep).run();
-          sweep.first = false;
-        }
+        if (options.warp == Warp::affine)
+          run_sweeps_with<AffineWarp>(input, level, cameras, maps, options, first, sweeps, planes);
+        else
+          run_sweeps_with<HomographyWarp>(input, level, cameras, maps, options, first, sweeps,
+                                          planes);
       },
       make_camera_list<float>(level.cameras, input.projection));
 }
@@ -107,8 +117,7 @@ DepthRange depth_range(const CameraModel& model, std::span<const Eigen::Vector3f
 // Every fine pixel takes the plane of the coarse pixel it lies in, met by its own ray (eq. 8).
 LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const DepthRange& range,
                         float keep_cost) {
-  LevelState state{
-      PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
+  LevelState state{PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
   std::visit(
       [&](const auto& camera) {
         for (int y = 0; y < fine.height; ++y) {

@@ -9,6 +9,7 @@
 #include "depth/zncc.h"
 #include "refractive/affine_warp.h"
 #include "refractive/axial_ray.h"
+#include "refractive/virtual_camera.h"
 #include "scene/pose.h"
 
 namespace axial::depth {
@@ -56,6 +57,32 @@ struct AffineWarp {
     for (std::size_t k = 0; k < kPaddedTexels; ++k) {
       at.x[k] = centre.pixel.x() + a(0, 0) * kTexelOffsets.x[k] + a(0, 1) * kTexelOffsets.y[k];
       at.y[k] = centre.pixel.y() + a(1, 0) * kTexelOffsets.x[k] + a(1, 1) * kTexelOffsets.y[k];
+    }
+    return true;
+  }
+};
+
+// The paper's warp: the homography between the virtual cameras of the reference pixel and of the
+// rounded pixel it is seen at (eqs. 1-3). For a pinhole, the plain homography.
+struct HomographyWarp {
+  template <class Camera>
+  static bool texels(const Camera& reference, int x, int y, const refractive::AxialRay<float>&,
+                     const PlaneHypothesis& plane, const PatchDerivative& patch,
+                     const Camera& source, const RelativePose& from_reference, TexelPositions& at) {
+    const auto centre = source.project(from_reference.apply(patch.point));
+    if (!centre.visible) return false;
+    const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+    const Eigen::Vector2f rounded = centre.pixel.array().round();
+    const Eigen::Vector3f source_centre =
+        -(from_reference.rotation.transpose() * from_reference.translation);
+    const Eigen::Matrix3f h = refractive::virtual_homography<float>(
+        refractive::virtual_camera(reference, pixel), refractive::virtual_camera(source, rounded),
+        from_reference.rotation, source_centre, patch.point, plane.normal);
+    for (std::size_t k = 0; k < kPaddedTexels; ++k) {
+      const Eigen::Vector2f texel(pixel.x() + kTexelOffsets.x[k], pixel.y() + kTexelOffsets.y[k]);
+      const Eigen::Vector2f image = refractive::apply_homography(h, texel);
+      at.x[k] = image.x();
+      at.y[k] = image.y();
     }
     return true;
   }

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "refractive/line_search.h"
 #include "scene/camera_model.h"
 
 namespace axial {
@@ -18,7 +19,8 @@ enum class ProjectionMethod {
 
 template <class T>
 using CameraList = std::variant<std::vector<refractive::PinholeCamera<T>>,
-                                std::vector<refractive::FlatPortCamera<T>>>;
+                                std::vector<refractive::FlatPortCamera<T>>,
+                                std::vector<refractive::LineSearchCamera<T>>>;
 
 // All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
 // ones is a port of index 1, which is the pinhole exactly. Same order as `models`.
