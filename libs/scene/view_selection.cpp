@@ -72,9 +72,10 @@ double footprint_of(refractive::Matrix23<double> jacobian, const CameraModel& ca
   return std::sqrt(std::max(0.0, square.determinant() / larger));
 }
 
+// Without the half pixel to the image's corner: so have it the scores stored in OPENMVS scenes.
 std::int16_t cell_of(const Eigen::Vector2d& pixel, const CameraModel& camera) {
-  const double x = (pixel.x() + 0.5) / camera.width;
-  const double y = (pixel.y() + 0.5) / camera.height;
+  const double x = pixel.x() / camera.width;
+  const double y = pixel.y() / camera.height;
   if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return -1;
   return static_cast<std::int16_t>(static_cast<int>(y * kGrid) * kGrid +
                                    static_cast<int>(x * kGrid));
