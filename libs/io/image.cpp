@@ -74,6 +74,9 @@ std::string read_image_bytes(const std::filesystem::path& path) {
   // OpenCV decodes what is there of a cut JPEG and paints the rest grey.
   if (is_jpeg(bytes) && !jpeg_outline(bytes).complete)
     fail("{}: truncated: the JPEG data has no end marker", path.string());
+  // libpng would add a line of its own to standard error.
+  if (is_png(bytes) && bytes.find("IEND\xAE\x42\x60\x82") == std::string::npos)
+    fail("{}: truncated: the PNG data has no end chunk", path.string());
   return bytes;
 }
 

@@ -179,8 +179,12 @@ class Densify(ProgramTest):
     def test_unwritable_folders(self):
         write(self.path("a_file"), "")
         for output in ("/proc/scene_dense.mvs", self.path("a_file", "scene_dense.mvs")):
-            self.refuses_scene("", "-o", output, "--iters", "1", "--geometric-iters", "0",
-                               "--remove-dmaps", "1")
+            result = run(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "-o", output,
+                         "--iters", "1", "--geometric-iters", "0")
+            said = f"exit code {result.returncode}, said: {result.stderr!r}"
+            self.assertEqual(result.returncode, 1, said)
+            self.assertEqual(result.stderr.count("\n"), 1, said)
+            self.assertIn("scene_dense", result.stderr, said)
         self.refuses("", *DENSIFY, "-i", self.scene, "-w", "/proc")
 
     def test_full_disk(self):
