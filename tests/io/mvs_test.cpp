@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/mvs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <bit>
+#include <functional>
+#include <limits>
+
+#include "base/atomic_file.h"
+#include "io/image.h"
+#include "io/wrong_input.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using testing::HasSubstr;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Bytes in the order of the format's description, one primitive after the other.
+struct Bytes {
+  std::string data;
+
+  void u8(unsigned v) { data.push_back(static_cast<char>(v)); }
+  void u32(std::uint64_t v) {
+    for (int i = 0; i < 4; ++i) u8(static_cast<unsigned>(v >> (8 * i)) & 255);
+  }
+  void u64(std::uint64_t v) {
+    u32(v & 0xFFFFFFFFu);
+    u32(v >> 32);
+  }
+  void f32(float v) { u32(std::bit_cast<std::uint32_t>(v)); }
+  void f64(double v) { u64(std::bit_cast<std::uint64_t>(v)); }
+  void string(const std::string& s) {
+    u64(s.size());
+    data += s;
+  }
+  void f64s(const std::vector<double>& values) {
+    for (const double v : values) f64(v);
+  }
+};
+
+// A small scene of two images of one camera and one uncalibrated image, described freely enough to
+// be wrong in every way.
+struct Description {
+  unsigned version = 7;
+  unsigned width = 640, height = 480;
+  std::vector<double> k{500, 0, 320, 0, 510, 240, 0, 0, 1};
+  std::vector<double> camera_r{1, 0, 0, 0, 1, 0, 0, 0, 1}, camera_c{0, 0, 0};
+  std::vector<double> pose_r{0, 1, 0, -1, 0, 0, 0, 0, 1}, pose_c{1, 2, 3};
+  unsigned platform = 0, camera = 0, pose = 0;  // of the first image
+  unsigned first_id = 40, second_id = 7;
+  std::string name = "images\\a.png";
+  unsigned view_image = 1, score_image = 1;
+  float x = 1, score = 5;
+  std::uint64_t vertices = 2, normals = 2, colors = 2;  // as counted in the file
+  std::vector<double> box_min{0, 0, 0}, box_max{0, 0, 0};
+  std::vector<double> box_r{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  bool third_image = true;
+};
+
+void put_image(Bytes& b, const Description& d, const std::string& name, std::uint64_t platform,
+               std::uint64_t camera, std::uint64_t pose, std::uint64_t id, bool scored) {
+  b.string(name);
+  if (d.version >= 5) b.string(scored ? "masks/a.png" : "");
+  b.u32(platform);
+  b.u32(camera);
+  b.u32(pose);
+  if (d.version >= 3) b.u32(id);
+  if (d.version < 7) return;
+  for (const float depth : {1.0f, 2.0f, 3.0f}) b.f32(depth);
+  b.u64(scored ? 1 : 0);
+  if (!scored) return;
+  b.u32(d.score_image);
+  b.u32(12);
+  for (const float v : {1.5f, 0.25f, 0.75f, d.score}) b.f32(v);
+}
+
+void put_points(Bytes& b, const Description& d) {
+  b.u64(d.vertices);
+  for (const float v : {d.x, 2.0f, 3.0f}) b.f32(v);
+  b.u64(3);  // unsorted, with a duplicate
+  for (const unsigned image : {d.view_image, 0u, 0u}) {
+    b.u32(image);
+    b.f32(0.5f);
+  }
+  for (const float v : {4.0f, 5.0f, 6.0f}) b.f32(v);
+  b.u64(0);
+  b.u64(d.normals);
+  for (const float v : {0.0f, 0.0f, 1.0f, 0.0f, 1.0f, 0.0f}) b.f32(v);
+  b.u64(d.colors);
+  for (const unsigned v : {1u, 2u, 3u, 4u, 5u, 6u}) b.u8(v);
+}
+
+std::string bytes_of(const Description& d) {
+  Bytes b;
+  if (d.version >= 1) {
+    b.data = "MVSI";
+    b.u32(d.version);
+    b.u32(0);
+  }
+  b.u64(1);
+  b.string("platform");
+  b.u64(1);
+  b.string("camera");
+  if (d.version >= 4) b.string("band");
+  if (d.version >= 1) {
+    b.u32(d.width);
+    b.u32(d.height);
+  }
+  b.f64s(d.k);
+  b.f64s(d.camera_r);
+  b.f64s(d.camera_c);
+  b.u64(2);
+  for (int i = 0; i < 2; ++i) {
+    b.f64s(d.pose_r);
+    b.f64s(d.pose_c);
+  }
+  b.u64(d.third_image ? 3 : 1);
+  put_image(b, d, d.name, d.platform, d.camera, d.pose, d.first_id, true);
+  if (d.third_image) {
+    put_image(b, d, "images/b.png", 0, 0, 1, d.second_id, false);
+    put_image(b, d, "images/c.png", 0, 0, kNoId, kNoId, false);
+  }
+  put_points(b, d);
+  if (d.version >= 1) {  // one line seen by one image, its normal and colour
+    b.u64(1);
+    for (int i = 0; i < 6; ++i) b.f32(1);
+    b.u64(1);
+    b.u32(0);
+    b.f32(0);
+    b.u64(1);
+    for (int i = 0; i < 3; ++i) b.f32(0);
+    b.u64(1);
+    for (int i = 0; i < 3; ++i) b.u8(9);
+  }
+  if (d.version >= 2)
+    for (int i = 0; i < 16; ++i) b.f64(i % 5 == 0);
+  if (d.version >= 6) {
+    b.f64s(d.box_r);
+    b.f64s(d.box_min);
+    b.f64s(d.box_max);
+  }
+  return b.data;
+}
+
+class MvsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test::empty_folder();
+    file_ = folder_ / "scene.mvs";
+    fs::create_directories(folder_ / "images");
+    for (const char* name : {"a.png", "b.png"})
+      write_png(folder_ / "images" / name, cv::Mat3b(480, 640, cv::Vec3b(1, 2, 3)));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Scene read(const Description& d) {
+    test::put(file_, bytes_of(d));
+    return read_mvs(file_, folder_);
+  }
+  std::string error(const Description& d) {
+    const std::string message = error_of([&] { read(d); });
+    EXPECT_THAT(message, HasSubstr(file_.string()));
+    return message;
+  }
+  // The error of the description changed by `change`.
+  std::string error(const std::function<void(Description&)>& change) {
+    Description d;
+    change(d);
+    return error(d);
+  }
+
+  fs::path folder_, file_;
+};
+
+TEST_F(MvsTest, ReadsEveryVersion) {
+  for (unsigned version = 0; version <= 7; ++version) {
+    SCOPED_TRACE(version);
+    Description d;
+    d.version = version;
+    if (version == 0) d.k = {500 / 640.0, 0, 0.5, 0, 510 / 640.0, 0.375, 0, 0, 1};
+    const Scene scene = read(d);
+    ASSERT_EQ(scene.images.size(), 3u);
+    const SceneImage& a = scene.images[0];
+    EXPECT_EQ(a.path, (folder_ / "images/a.png").string());
+    EXPECT_EQ(a.mask_path, version >= 5 ? (folder_ / "masks/a.png").string() : "");
+    EXPECT_EQ(a.id, version >= 3 ? 40u : 0u);
+    EXPECT_EQ(scene.images[2].id, 2u);  // NO_ID: the index
+    EXPECT_TRUE(a.calibrated);
+    EXPECT_FALSE(scene.images[2].calibrated);
+    EXPECT_EQ(a.camera.width, 640);
+    EXPECT_EQ(a.camera.height, 480);
+    EXPECT_FALSE(a.camera.port);
+    EXPECT_DOUBLE_EQ(a.camera.lens.fx, 500);
+    EXPECT_DOUBLE_EQ(a.camera.lens.fy, 510);
+    EXPECT_DOUBLE_EQ(a.camera.lens.cx, 320);
+    EXPECT_DOUBLE_EQ(a.camera.lens.cy, 240);
+    EXPECT_EQ(a.pose.rotation.row(0), Eigen::RowVector3d(0, 1, 0));
+    EXPECT_EQ(a.pose.centre, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(a.average_depth, version >= 7 ? 2.0f : 0.0f);
+    ASSERT_EQ(a.neighbours.size(), version >= 7 ? 1u : 0u);
+    if (version >= 7) {
+      EXPECT_EQ(a.neighbours[0].points, 12u);
+      EXPECT_EQ(a.neighbours[0].angle, 0.25f);
+    }
+    ASSERT_EQ(scene.points.size(), 2u);
+    ASSERT_EQ(scene.points[0].views.size(), 3u);
+    EXPECT_EQ(scene.points[0].views[0].image, 0u);
+    EXPECT_EQ(scene.points[0].views[2].image, 1u);
+    EXPECT_EQ(scene.point_normals[1], Eigen::Vector3f(0, 1, 0));
+    EXPECT_EQ(scene.point_colors[0], (Rgb{3, 2, 1}));
+    EXPECT_FALSE(scene.region);
+  }
+}
+
+TEST_F(MvsTest, ResolvesBothNormalisedConventions) {
+  Description d;
+  d.version = 3;
+  d.width = d.height = 0;
+  // From the image's centre: c_n = (c_px + 0.5) / S - 0.5.
+  d.k = {500 / 640.0, 0, 320.5 / 640 - 0.5, 0, 510 / 640.0, 240.5 / 640 - 0.5, 0, 0, 1};
+  EXPECT_NEAR(read(d).images[0].camera.lens.cx, 320, 1e-9);
+  EXPECT_NEAR(read(d).images[0].camera.lens.cy, 240, 1e-9);
+  EXPECT_NEAR(read(d).images[0].camera.lens.fx, 500, 1e-9);
+  // From its corner: c_n = c_px / S.
+  d.k[2] = 310 / 640.0;
+  d.k[5] = 230 / 640.0;
+  EXPECT_NEAR(read(d).images[0].camera.lens.cx, 310, 1e-9);
+  EXPECT_NEAR(read(d).images[0].camera.lens.cy, 230, 1e-9);
+  // Both zero: the image centre.
+  d.k[2] = d.k[5] = 0;
+  EXPECT_EQ(read(d).images[0].camera.lens.cx, 319.5);
+  EXPECT_EQ(read(d).images[0].camera.lens.cy, 239.5);
+  // Nothing to take the resolution from.
+  fs::remove(folder_ / "images/b.png");
+  EXPECT_THAT(error_of([&] { read(d); }), HasSubstr("b.png"));
+}
+
+TEST_F(MvsTest, ComposesCameraOnPlatform) {
+  Description d;
+  d.camera_r = {1, 0, 0, 0, 0, 1, 0, -1, 0};
+  d.camera_c = {0.1, 0.2, 0.3};
+  const Pose pose = read(d).images[0].pose;
+  // Independently: a point goes through the platform's frame into the camera's.
+  const Eigen::Vector3d x(4, -5, 6);
+  Eigen::Matrix3d r_pose, r_cam;
+  r_pose << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+  r_cam << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  const Eigen::Vector3d on_platform = r_pose * (x - Eigen::Vector3d(1, 2, 3));
+  const Eigen::Vector3d in_camera = r_cam * (on_platform - Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_LT((pose.to_camera(x) - in_camera).norm(), 1e-14);
+}
+
+TEST_F(MvsTest, ReadsTheRegionAsOpenMvsUsesIt) {
+  Description d;
+  d.box_r = {0, 1, 0, -1, 0, 0, 0, 0, 1};
+  d.box_min = {9, 18, 27};
+  d.box_max = {11, 22, 33};
+  const auto region = read(d).region;
+  ASSERT_TRUE(region);
+  EXPECT_EQ(region->centre, Eigen::Vector3d(10, 20, 30));  // a world point
+  EXPECT_EQ(region->half_extent, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(region->contains({11.9, 20, 30}));  // box axis y lies along world -x
+  EXPECT_FALSE(region->contains({10, 21.9, 30}));
+  EXPECT_THAT(error([](Description& e) {
+                e.box_max = {1, 1, 1};
+                e.box_r[0] = 2;
+              }),
+              HasSubstr("obb"));
+}
+
+TEST_F(MvsTest, MakesRoundedRotationsOrthonormal) {
+  Description d;
+  const Eigen::Matrix3f r = Eigen::AngleAxisf(1.0f, Eigen::Vector3f(1, 2, 3).normalized()).matrix();
+  for (std::size_t i = 0; i < 9; ++i)
+    d.pose_r[i] = static_cast<double>(
+        std::round(r(static_cast<int>(i / 3), static_cast<int>(i % 3)) * 1e5f) * 1e-5f);
+  const Eigen::Matrix3d read_r = read(d).images[0].pose.rotation;
+  EXPECT_LT((read_r * read_r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((read_r - r.cast<double>()).norm(), 3e-5);  // rounded to 5 digits above
+}
+
+TEST_F(MvsTest, NamesWhatIsWrong) {
+  using D = Description;
+  EXPECT_THAT(error([](D& d) { d.version = 8; }), HasSubstr("version is 8"));
+  EXPECT_THAT(error([](D& d) { d.k[0] = 0; }), HasSubstr("images[0] K"));
+  EXPECT_THAT(error([](D& d) { d.k[4] = -1; }), HasSubstr("-1"));
+  EXPECT_THAT(error([](D& d) { d.k[1] = 0.5; }), HasSubstr("skew 0.5"));
+  EXPECT_THAT(error([](D& d) { d.k[2] = kNan; }), HasSubstr("not finite"));
+  EXPECT_THAT(error([](D& d) { d.k[8] = 2; }), HasSubstr("calibration matrix"));
+  EXPECT_THAT(error([](D& d) { d.width = 0; }), HasSubstr("0x480"));
+  EXPECT_THAT(error([](D& d) { d.height = 0xFFFFFFFFu; }), HasSubstr("4294967295"));
+  EXPECT_THAT(error([](D& d) { d.pose_r[0] = 1; }), HasSubstr("no rotation"));
+  EXPECT_THAT(error([](D& d) { d.pose_r[8] = -1; }), HasSubstr("determinant"));
+  EXPECT_THAT(error([](D& d) { d.pose_r[0] = kNan; }), HasSubstr("pose R"));
+  EXPECT_THAT(error([](D& d) { d.camera_r[0] = kNan; }), HasSubstr("camera R"));
+  EXPECT_THAT(error([](D& d) { d.pose_c[1] = HUGE_VAL; }), HasSubstr("pose C"));
+  EXPECT_THAT(error([](D& d) { d.platform = 1; }), HasSubstr("platformID is 1"));
+  EXPECT_THAT(error([](D& d) { d.platform = kNoId; }), HasSubstr("platformID"));
+  EXPECT_THAT(error([](D& d) { d.camera = 1; }), HasSubstr("cameraID is 1"));
+  EXPECT_THAT(error([](D& d) { d.pose = 2; }), HasSubstr("poseID is 2"));
+  EXPECT_THAT(error([](D& d) { d.second_id = 40; }), HasSubstr("ID 40"));
+  EXPECT_THAT(error([](D& d) { d.name = ""; }), HasSubstr("images[0].name"));
+  EXPECT_THAT(error([](D& d) { d.view_image = 3; }), HasSubstr("vertices[0].views"));
+  EXPECT_THAT(error([](D& d) { d.score_image = 3; }), HasSubstr("viewScores"));
+  EXPECT_THAT(error([](D& d) { d.score_image = 0; }), HasSubstr("own neighbour"));
+  EXPECT_THAT(error([](D& d) { d.score = HUGE_VALF; }), HasSubstr("viewScores"));
+  EXPECT_THAT(error([](D& d) { d.x = HUGE_VALF; }), HasSubstr("vertices[0]"));
+  EXPECT_THAT(error([](D& d) { d.third_image = false; }), HasSubstr("at least 2"));
+  for (const std::uint64_t size :
+       {std::uint64_t{1} << 32, ~std::uint64_t{0}, std::uint64_t{1000}}) {
+    EXPECT_THAT(error([&](D& d) { d.vertices = size; }), HasSubstr("vertices"));
+    EXPECT_THAT(error([&](D& d) { d.colors = size; }), HasSubstr("verticesColor"));
+  }
+}
+
+TEST_F(MvsTest, ToleratesAnUncalibratedImageWithoutACamera) {
+  Description d;
+  d.pose = d.platform = d.camera = kNoId;
+  EXPECT_FALSE(read(d).images[0].calibrated);
+}
+
+TEST_F(MvsTest, RefusesOtherFiles) {
+  const auto message = [&](std::string_view bytes) {
+    test::put(file_, bytes);
+    return error_of([&] { read_mvs(file_, folder_); });
+  };
+  EXPECT_THAT(message(std::string_view("MVS\0\1\0\0\0", 8)), HasSubstr("--archive-type -1"));
+  EXPECT_THAT(message(""), HasSubstr("empty"));
+  EXPECT_THAT(message("garbage that is no scene"), HasSubstr("version 0"));
+  EXPECT_THAT(message(bytes_of({}) + "x"), HasSubstr("1 bytes follow"));
+  test::put(folder_ / "scene.ply", "garbage that is no scene");
+  EXPECT_THAT(error_of([&] { read_mvs(folder_ / "scene.ply", folder_); }), HasSubstr("no .mvs"));
+  EXPECT_THAT(error_of([&] { read_mvs(folder_ / "none.mvs", folder_); }), HasSubstr("none.mvs"));
+  EXPECT_THAT(error_of([&] { read_mvs(folder_, folder_); }), HasSubstr("folder"));
+}
+
+TEST_F(MvsTest, SurvivesWrongInput) {
+  const auto reader = [&](const fs::path& file) { read_mvs(file, folder_); };
+  for (const unsigned version : {1u, 4u, 7u}) {
+    Description d;
+    d.version = version;
+    test::expect_prefixes_refused(file_, bytes_of(d), reader);
+    test::expect_damage_survived(file_, bytes_of(d), reader, 12);
+  }
+}
+
+TEST_F(MvsTest, KeepsEverythingTheSceneHolds) {
+  Description d;
+  d.box_max = {1, 2, 3};
+  const Scene scene = read(d);
+  const fs::path copy = folder_ / "copy.mvs";
+  write_mvs(copy, scene, folder_);
+  const Scene again = read_mvs(copy, folder_);
+  ASSERT_EQ(again.images.size(), scene.images.size());
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage &a = scene.images[i], &b = again.images[i];
+    EXPECT_EQ(a.path, b.path);
+    EXPECT_EQ(a.mask_path, b.mask_path);
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_EQ(a.calibrated, b.calibrated);
+    EXPECT_EQ(a.camera.width, b.camera.width);
+    EXPECT_EQ(a.camera.lens.cy, b.camera.lens.cy);
+    EXPECT_EQ(a.pose.rotation, b.pose.rotation);
+    EXPECT_EQ(a.pose.centre, b.pose.centre);
+    EXPECT_EQ(a.max_depth, b.max_depth);
+    EXPECT_EQ(a.neighbours.size(), b.neighbours.size());
+  }
+  EXPECT_EQ(again.images[0].neighbours[0].score, 5);
+  EXPECT_EQ(again.points[0].views.size(), 3u);
+  EXPECT_EQ(again.points[1].position, scene.points[1].position);
+  EXPECT_EQ(again.point_normals, scene.point_normals);
+  EXPECT_EQ(again.point_colors, scene.point_colors);
+  ASSERT_TRUE(again.region);
+  EXPECT_EQ(again.region->half_extent, scene.region->half_extent);
+  // A second copy is the same file: nothing depends on more than the scene.
+  write_mvs(folder_ / "third.mvs", again, folder_);
+  EXPECT_EQ(read_file(folder_ / "third.mvs"), read_file(copy));
+}
+
+TEST_F(MvsTest, StoresPathsBelowTheWorkingFolderRelatively) {
+  Scene scene = read({});
+  scene.images[1].path = "/elsewhere/b.png";
+  write_mvs(file_, scene, folder_);
+  const std::string bytes = read_file(file_);
+  EXPECT_EQ(bytes.find(folder_.string()), std::string::npos);
+  const Scene moved = read_mvs(file_, "/other");
+  EXPECT_EQ(moved.images[0].path, "/other/images/a.png");
+  EXPECT_EQ(moved.images[1].path, "/elsewhere/b.png");
+}
+
+TEST_F(MvsTest, RefusesToWriteWhatCannotBeRead) {
+  Scene scene = read({});
+  scene.points[0].views[0].image = 9;
+  EXPECT_THAT(error_of([&] { write_mvs(file_, scene, folder_); }), HasSubstr("image 9"));
+  EXPECT_THAT(error_of([&] { write_mvs(file_, Scene{}, folder_); }), HasSubstr("two images"));
+}
+
+}  // namespace
+}  // namespace axial::io

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every reader must withstand: files cut anywhere, files with a byte changed, garbage, nothing
+// at all. The sanitized build turns a read out of bounds or an absurd allocation into a failure.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace axial::test {
+
+// An empty folder of this test's own.
+inline std::filesystem::path empty_folder() {
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  const auto folder = std::filesystem::path(testing::TempDir()) /
+                      (std::string("axial_") + info->test_suite_name() + "_" + info->name());
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+inline void put(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::remove(path);  // some file systems wait for the disk when a file is rewritten
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  ASSERT_TRUE(out.flush()) << path;
+}
+
+// The message of the Error that `run` throws; empty, and a failure, if it throws none. Any other
+// exception ends the test.
+template <class Run>
+std::string error_of(Run run) {
+  try {
+    run();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no Error";
+  return {};
+}
+
+// True if `run` throws an Error of one line that names `file`.
+template <class Run>
+bool fails_naming(const std::filesystem::path& file, Run run) {
+  try {
+    run();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find(file.string()), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return true;
+  }
+  return false;
+}
+
+// Every proper prefix of the valid file `bytes`, the empty one included, must be refused, save
+// those of a length in [first_valid, bytes.size()).
+template <class Read>
+void expect_prefixes_refused(const std::filesystem::path& file, std::string_view bytes, Read read,
+                             std::size_t first_valid = std::string_view::npos) {
+  for (std::size_t size = 0; size < std::min(bytes.size(), first_valid); ++size) {
+    put(file, bytes.substr(0, size));
+    EXPECT_TRUE(fails_naming(file, [&] { read(file); })) << "prefix of " << size << " bytes";
+  }
+  put(file, bytes);
+  EXPECT_FALSE(fails_naming(file, [&] { read(file); })) << "the whole file";
+}
+
+// Files with one byte changed, and files of random bytes behind the first `kept` bytes of the valid
+// one: read or refused, nothing else. At least some must be refused.
+template <class Read>
+void expect_damage_survived(const std::filesystem::path& file, const std::string& bytes, Read read,
+                            std::size_t kept = 4, int rounds = 400) {
+  std::mt19937 random(20240607);
+  int refused = 0;
+  for (int i = 0; i < rounds; ++i) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 + random() % 255);
+    put(file, damaged);
+    refused += fails_naming(file, [&] { read(file); });
+  }
+  for (int i = 0; i < rounds / 4; ++i) {
+    std::string garbage = bytes.substr(0, i % 2 ? kept : 0);
+    for (std::size_t size = random() % 200; size > 0; --size)
+      garbage.push_back(static_cast<char>(random()));
+    put(file, garbage);
+    refused += fails_naming(file, [&] { read(file); });
+  }
+  EXPECT_GT(refused, rounds / 10);
+}
+
+}  // namespace axial::test
