@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace axial::evaluate {
 
@@ -20,22 +21,21 @@ inline Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& p, const Eigen:
 // The point of the closed triangle nearest to p. Triangles of no area count as their edges.
 inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
                                            const std::array<Eigen::Vector3d, 3>& corners) {
-  const Eigen::Vector3d& a = corners[0];
-  const Eigen::Vector3d e1 = corners[1] - a;
-  const Eigen::Vector3d e2 = corners[2] - a;
+  const auto& [a, b, c] = corners;
+  const Eigen::Vector3d e1 = b - a;
+  const Eigen::Vector3d e2 = c - a;
+  const Eigen::Vector3d d = p - a;
   const Eigen::Vector3d normal = e1.cross(e2);
   const double normal2 = normal.squaredNorm();
-  if (normal2 > 0) {  // barycentric coordinates of p's foot on the plane, times normal2
-    const Eigen::Vector3d d = p - a;
-    const double w1 = d.cross(e2).dot(normal);
-    const double w2 = e1.cross(d).dot(normal);
-    if (w1 >= 0 && w2 >= 0 && w1 + w2 <= normal2) return p - normal * (normal.dot(d) / normal2);
-  }
-  Eigen::Vector3d best = closest_on_segment(p, a, corners[1]);
-  for (int edge = 1; edge < 3; ++edge) {
-    const Eigen::Vector3d candidate =
-        closest_on_segment(p, corners[static_cast<std::size_t>(edge)],
-                           corners[static_cast<std::size_t>((edge + 1) % 3)]);
+  const double u = d.cross(e2).dot(normal);  // barycentric coordinates of p's foot, times normal2
+  const double v = e1.cross(d).dot(normal);
+  const bool inside = normal2 > 0 && u >= 0 && v >= 0 && u + v <= normal2;
+  Eigen::Vector3d best = a;
+  if (inside) best = a + (u / normal2) * e1 + (v / normal2) * e2;
+  // The normal of a sliver is rounding; its edges are as near as its inside.
+  if (inside && normal2 > 1e-16 * e1.squaredNorm() * e2.squaredNorm()) return best;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &c}, std::pair{&c, &a}}) {
+    const Eigen::Vector3d candidate = closest_on_segment(p, *from, *to);
     if ((candidate - p).squaredNorm() < (best - p).squaredNorm()) best = candidate;
   }
   return best;

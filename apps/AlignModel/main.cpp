@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Brings a COLMAP model to the scale and place of another one whose camera centres are known.
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/program.h"
+#include "evaluate/alignment.h"
+#include "io/colmap.h"
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace axial;
+
+namespace {
+
+struct Options {
+  ParsedOptions parsed;
+  fs::path model, reference, output;
+};
+
+Options parse_command_line(int argc, const char* const* argv) {
+  std::string input, reference, output;
+  ProgramOptions program{
+      "AlignModel",
+      "brings a COLMAP model to metric scale by a similarity to known camera centres",
+      {},
+      {}};
+  program.visible.add_options()  //
+      ("input-file,i", po::value(&input), "COLMAP model folder to align")(
+          "reference", po::value(&reference),
+          "COLMAP model folder with the known camera centres; images are matched by name")(
+          "output-folder,o", po::value(&output), "folder for the aligned model (COLMAP text)");
+  Options options;
+  options.parsed = parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  if (reference.empty()) fail("--reference is missing: the model with the known centres");
+  if (output.empty()) fail("--output-folder is missing");
+  options.model = in_working_folder(options.parsed.common, input);
+  options.reference = in_working_folder(options.parsed.common, reference);
+  options.output = in_working_folder(options.parsed.common, output);
+  return options;
+}
+
+evaluate::CentreAlignment align(const io::ColmapModel& model, const io::ColmapModel& reference,
+                                const fs::path& folder) {
+  try {
+    return evaluate::align_centres(model, reference);
+  } catch (const Error& error) {
+    fail("{}: {}", folder.string(), error.what());
+  }
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  io::ColmapModel model = io::read_colmap_model(io::find_colmap_model(options.model));
+  const auto reference = io::read_colmap_model(io::find_colmap_model(options.reference));
+  const evaluate::CentreAlignment alignment = align(model, reference, options.model);
+  evaluate::apply(alignment.similarity, model);
+  std::error_code error;
+  fs::create_directories(options.output, error);
+  if (error) fail("{}: cannot be made: {}", options.output.string(), error.message());
+  io::write_colmap_text(options.output, model);
+  spdlog::info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
+               model.images.size(), alignment.similarity.scale);
+  spdlog::info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,
+               *std::max_element(alignment.residuals.begin(), alignment.residuals.end()) * 1e3);
+  spdlog::info("Aligned model in {}", options.output.string());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_program("AlignModel", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "evaluate/alignment.h"
+#include "evaluate/cloud_evaluation.h"
+#include "evaluate/icp.h"
+#include "evaluate/pictures.h"
+#include "evaluate/report.h"
+#include "evaluate/sampling.h"
+#include "io/image.h"
+#include "io/ply.h"
+#include "runs.h"
+
+namespace fs = std::filesystem;
+using namespace axial;
+using evaluate::Similarity;
+
+namespace {
+
+// Errors of the stages do not know files.
+template <class Action>
+auto naming(const fs::path& file, Action action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    fail("{}: {}", file.string(), error.what());
+  }
+}
+
+// The reconstruction: a mesh if the file has faces, else a cloud.
+struct Input {
+  PointCloud cloud;
+  std::optional<Mesh> mesh;
+
+  std::span<const Eigen::Vector3f> positions() const {
+    return mesh ? mesh->vertices : cloud.positions;
+  }
+  void move(const Similarity& by) {
+    if (mesh)
+      evaluate::apply(by, *mesh);
+    else
+      evaluate::apply(by, cloud);
+  }
+};
+
+Input read_input(const fs::path& path) {
+  Input input;
+  if (io::ply_has_faces(path))
+    input.mesh = io::read_mesh_ply(path);
+  else
+    input.cloud = io::read_cloud_ply(path);
+  if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
+  return input;
+}
+
+std::vector<evaluate::View> read_views(const Options& options) {
+  if (options.cameras.empty()) return {};
+  const fs::path folder = io::find_colmap_model(options.cameras);
+  const io::ColmapModel model = io::read_colmap_model(folder);
+  std::optional<io::Housing> housing;
+  if (!options.housing.empty()) housing = io::read_housing(options.housing);
+  return naming(folder,
+                [&] { return evaluate::views_of_model(model, housing ? &*housing : nullptr); });
+}
+
+Similarity align_by_centres(const Options& options, nlohmann::ordered_json& report) {
+  const auto estimated = io::read_colmap_model(io::find_colmap_model(options.estimated));
+  const auto reference = io::read_colmap_model(io::find_colmap_model(options.cameras));
+  const auto result =
+      naming(options.estimated, [&] { return evaluate::align_centres(estimated, reference); });
+  spdlog::info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
+               result.names.size(), result.similarity.scale, result.rms * 1e3);
+  report["centres"] = result.names.size();
+  report["rms_residual"] = result.rms;
+  return result.similarity;
+}
+
+Similarity align_by_icp(const Options& options, const Input& input,
+                        const evaluate::Surface& surface, nlohmann::ordered_json& report) {
+  evaluate::IcpOptions settings;
+  settings.seed = options.seed;
+  const auto result = naming(options.input, [&] {
+    if (!input.mesh) return evaluate::refine_rigid(input.positions(), surface, settings);
+    return evaluate::refine_rigid(
+        evaluate::sample_surface(*input.mesh, settings.samples, settings.seed), surface, settings);
+  });
+  spdlog::info("Aligned by ICP in {} steps{}: median distance {:.3f} mm before, {:.3f} mm after",
+               result.iterations, result.converged ? "" : " (not converged)",
+               result.median_before * 1e3, result.median_after * 1e3);
+  report["iterations"] = result.iterations;
+  report["converged"] = result.converged;
+  return result.transform;
+}
+
+nlohmann::ordered_json align(const Options& options, Input& input,
+                             const evaluate::Surface& surface) {
+  nlohmann::ordered_json report{{"method", options.align}};
+  Similarity similarity;
+  if (options.align == "centres") similarity = align_by_centres(options, report);
+  if (options.align == "icp") similarity = align_by_icp(options, input, surface, report);
+  report["transform"] = evaluate::to_json(similarity);
+  if (options.align != "none") input.move(similarity);
+  if (!options.transform.empty())
+    write_atomically(options.transform, evaluate::matrix_text(similarity));
+  if (!options.aligned.empty() && input.mesh) io::write_mesh_ply(options.aligned, *input.mesh);
+  if (!options.aligned.empty() && !input.mesh) io::write_cloud_ply(options.aligned, input.cloud);
+  return report;
+}
+
+void draw(const Options& options, const PointCloud& cloud, std::span<const evaluate::View> views) {
+  evaluate::Viewpoint viewpoint;
+  if (views.empty()) {
+    viewpoint = evaluate::principal_viewpoint(cloud.positions, cloud.normals, options.picture_width,
+                                              options.picture_width * 3 / 4);
+  } else {
+    const auto view =
+        std::find_if(views.begin(), views.end(), [&](const evaluate::View& candidate) {
+          return options.picture_camera.empty() || candidate.name == options.picture_camera;
+        });
+    if (view == views.end())
+      fail("--picture-camera {}: no such image in {}", options.picture_camera,
+           options.cameras.string());
+    viewpoint = evaluate::viewpoint_of(*view, options.picture_width);
+  }
+  const cv::Mat3b picture = evaluate::draw_cloud(cloud.positions, cloud.colors, viewpoint);
+  io::write_png(options.picture, evaluate::with_error_scale(picture, options.color_max));
+}
+
+}  // namespace
+
+nlohmann::ordered_json run_cloud(const Options& options) {
+  const Mesh truth = io::read_mesh_ply(options.truth);
+  const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
+  const std::vector<evaluate::View> views = read_views(options);
+  Input input = read_input(options.input);
+  nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
+  report["align"] = align(options, input, surface);
+
+  evaluate::CloudOptions settings;
+  settings.tolerances = options.tolerances;
+  settings.samples = options.samples;
+  settings.seed = options.seed;
+  settings.least_views = options.least_views;
+  PointCloud colored;
+  const auto result = naming(options.input, [&] {
+    if (input.mesh)
+      return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
+                                     colored.positions);
+    colored.positions = input.cloud.positions;
+    colored.normals = input.cloud.normals;
+    return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
+  });
+  fmt::print("{}", evaluate::table(result));
+  colored.colors = evaluate::error_colors(result.distances, options.color_max);
+  if (!options.error_cloud.empty()) io::write_cloud_ply(options.error_cloud, colored);
+  if (!options.picture.empty()) draw(options, colored, views);
+  report["color_max"] = options.color_max;
+  report.update(evaluate::to_json(result));
+  return report;
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
+#include "base/error.h"
+#include "evaluate/depth_evaluation.h"
+#include "evaluate/pictures.h"
+#include "evaluate/report.h"
+#include "io/dmap.h"
+#include "io/image.h"
+#include "runs.h"
+
+using namespace axial;
+
+namespace {
+
+void check(const Options& options) {
+  if (options.align != "none")
+    fail("--align {}: a depth map lies in its own camera and is not aligned", options.align);
+  const std::pair<const char*, bool> meaningless[] = {
+      {"--cameras", !options.cameras.empty()},
+      {"--estimated", !options.estimated.empty()},
+      {"--error-cloud", !options.error_cloud.empty()},
+      {"--aligned", !options.aligned.empty()},
+      {"--transform-out", !options.transform.empty()}};
+  for (const auto& [name, given] : meaningless)
+    if (given) fail("{} is for clouds and meshes, not for a depth map", name);
+}
+
+}  // namespace
+
+nlohmann::ordered_json run_depth_map(const Options& options) {
+  check(options);
+  const DepthMap map = io::read_dmap(options.input).map;
+  const cv::Mat1f truth = io::read_float_tiff(options.truth);
+  if (truth.size() != map.depth.size())
+    spdlog::info("The truth is {} x {}, read off at the map's {} x {} pixel centres", truth.cols,
+                 truth.rows, map.width(), map.height());
+  evaluate::DepthOptions settings;
+  settings.tolerances = options.tolerances;
+  const evaluate::DepthEvaluation result = [&] {
+    try {
+      return evaluate::evaluate_depth(map.depth, truth, settings);
+    } catch (const Error& error) {
+      fail("{}: {}", options.input.string(), error.what());
+    }
+  }();
+  fmt::print("{}", evaluate::table(result));
+  if (!options.picture.empty())
+    io::write_png(options.picture,
+                  evaluate::draw_depth_comparison(map.depth, result, options.color_max));
+  nlohmann::ordered_json report{{"kind", "depth_map"}};
+  report.update(evaluate::to_json(result));
+  return report;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/program.h"
+
+struct Options {
+  axial::ParsedOptions parsed;
+  std::filesystem::path input, truth;
+  std::vector<double> tolerances;   // [m], at least one
+  std::string align;                // none, centres, icp
+  std::filesystem::path cameras;    // true COLMAP model; empty: none
+  std::filesystem::path housing;    // ports of `cameras`; empty: dry
+  std::filesystem::path estimated;  // estimated COLMAP model; empty: none
+  std::size_t samples = 0;
+  std::uint64_t seed = 0;
+  std::uint32_t least_views = 0;
+  double color_max = 0;  // [m]
+  int picture_width = 0;
+  std::string picture_camera;  // image name; empty: the first
+  // Outputs; empty: not written.
+  std::filesystem::path json, error_cloud, picture, aligned, transform;
+};
+
+// Parses and checks the command line; what is left to do is in `parsed.run`.
+Options parse_command_line(int argc, const char* const* argv);
