@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// EvaluateReconstruction and AlignModel as their users meet them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "evaluate/alignment.h"
+#include "evaluate/sampling.h"
+#include "evaluate/shapes.h"
+#include "io/colmap.h"
+#include "io/dmap.h"
+#include "io/image.h"
+#include "io/ply.h"
+
+namespace axial::evaluate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+struct Outcome {
+  int exit_code;
+  std::string output;  // both streams
+};
+
+class Programs : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("evaluate_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& program, const std::string& arguments) const {
+    const std::string command = fmt::format("'{}/bin/{}' -w '{}' {} 2>&1", AXIAL_BINARY_DIR,
+                                            program, folder_.string(), arguments);
+    std::FILE* pipe = popen(command.c_str(), "r");
+    std::string output;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+      output.push_back(static_cast<char>(c));
+    const int status = pclose(pipe);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+  }
+
+  // Exit code 1 and one line that says `expected`.
+  void refuses(const std::string& expected, const std::string& arguments,
+               const std::string& program = "EvaluateReconstruction") const {
+    const Outcome outcome = run(program, arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments << "\n" << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr(expected)) << arguments;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+  }
+
+  nlohmann::json read_json(const std::string& name) const {
+    return nlohmann::json::parse(read_file(folder_ / name));
+  }
+
+  // A rippled seabed, seen from above by four cameras, and a cloud 2 mm above all of it.
+  void write_scene() const {
+    Mesh truth = height_field(60, 2, ripples);
+    io::write_mesh_ply(folder_ / "truth.ply", truth);
+    io::write_colmap_text(folder_ / "true", model());
+    PointCloud cloud;
+    cloud.positions = sample_surface(truth, 20000, 3);
+    for (auto& x : cloud.positions) x.z() += 0.002f;
+    io::write_cloud_ply(folder_ / "cloud.ply", cloud);
+  }
+
+  io::ColmapModel model() const {
+    fs::create_directories(folder_ / "true");
+    io::ColmapModel result;
+    result.cameras.push_back({1, "PINHOLE", 320, 240, {300, 300, 160, 120}});
+    for (unsigned i = 0; i < 4; ++i) {
+      io::ColmapImage image;
+      image.id = i + 1;
+      image.camera = 1;
+      image.name = fmt::format("{:04}.jpg", i);
+      image.pose.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+      image.pose.centre = {0.3 * (i % 2), 0.3 * (i / 2), 1.5 + 0.1 * i};
+      result.images.push_back(image);
+    }
+    return result;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Programs, EvaluateACloud) {
+  write_scene();
+  const Outcome outcome =
+      run("EvaluateReconstruction",
+          "-i cloud.ply -m truth.ply --tolerance 0.001,0.005 --cameras true --samples 20000 --json "
+          "out.json --error-cloud errors.ply --picture errors.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("points to truth"));
+  const auto json = read_json("out.json");
+  EXPECT_EQ(json["kind"], "cloud");
+  EXPECT_EQ(json["views"], 4);
+  EXPECT_LT(json["counted_samples"], json["samples"]);
+  // 2 mm up; along the slopes' normals a little less.
+  EXPECT_NEAR(json["accuracy"]["mean"].get<double>(), 0.0018, 0.0002);
+  EXPECT_LE(json["accuracy"]["max"].get<double>(), 0.002001);
+  EXPECT_EQ(json["scores"][1]["precision"], 1.0);
+  const PointCloud errors = io::read_cloud_ply(folder_ / "errors.ply");
+  EXPECT_EQ(errors.size(), 20000u);
+  EXPECT_EQ(errors.colors.size(), 20000u);
+  EXPECT_EQ(io::read_image_size(folder_ / "errors.png").width, 1024);
+}
+
+TEST_F(Programs, EvaluateTheSameBytesForAnyNumberOfThreads) {
+  write_scene();
+  const std::string common = "-i cloud.ply -m truth.ply --cameras true --samples 5000 --align icp ";
+  ASSERT_EQ(run("EvaluateReconstruction", common + "--max-threads 1 --json a.json").exit_code, 0);
+  ASSERT_EQ(run("EvaluateReconstruction", common + "--max-threads 2 --json b.json").exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "a.json"), read_file(folder_ / "b.json"));
+}
+
+TEST_F(Programs, AlignWhatCameInAnotherScale) {
+  write_scene();
+  const Similarity away{
+      3.7,
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
+      {5, -4, 2}};
+  io::ColmapModel moved = model();
+  apply(away, moved);
+  fs::create_directories(folder_ / "moved");
+  io::write_colmap_text(folder_ / "moved", moved);
+  PointCloud cloud = io::read_cloud_ply(folder_ / "cloud.ply");
+  apply(away, cloud);
+  io::write_cloud_ply(folder_ / "moved.ply", cloud);
+
+  const Outcome outcome = run("EvaluateReconstruction",
+                              "-i moved.ply -m truth.ply --align centres --estimated moved "
+                              "--cameras true --samples 5000 --json out.json --transform-out t.txt "
+                              "--aligned back.ply");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NEAR(read_json("out.json")["accuracy"]["mean"].get<double>(), 0.0018, 0.0002);
+  const PointCloud back = io::read_cloud_ply(folder_ / "back.ply");
+  const PointCloud original = io::read_cloud_ply(folder_ / "cloud.ply");
+  EXPECT_LT((back.positions[77] - original.positions[77]).norm(), 1e-5f);
+  EXPECT_THAT(read_file(folder_ / "t.txt"), testing::EndsWith("\n0 0 0 1\n"));
+
+  ASSERT_EQ(run("AlignModel", "-i moved --reference true -o aligned").exit_code, 0);
+  const io::ColmapModel aligned = io::read_colmap_model(folder_ / "aligned");
+  ASSERT_EQ(aligned.images.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_LT((aligned.images[i].pose.centre - model().images[i].pose.centre).norm(), 1e-9);
+}
+
+TEST_F(Programs, EvaluateAMeshAndADepthMap) {
+  write_scene();
+  ASSERT_EQ(
+      run("EvaluateReconstruction", "-i truth.ply -m truth.ply --samples 5000 --json mesh.json")
+          .exit_code,
+      0);
+  EXPECT_EQ(read_json("mesh.json")["kind"], "mesh");
+  EXPECT_LT(read_json("mesh.json")["accuracy"]["max"].get<double>(), 1e-6);
+
+  DepthMap map;
+  map.image_path = "0000.jpg";
+  map.ids = {0, 1};
+  map.camera = {64, 48, {60, 60, 31.5, 23.5}, {}};
+  map.min_depth = 1;
+  map.max_depth = 3;
+  map.depth = cv::Mat1f(48, 64, 2.003f);
+  map.normal = cv::Mat3f(48, 64, cv::Vec3f(0, 0, -1));
+  io::write_dmap(folder_ / "depth0000.dmap", map, "");
+  io::write_float_tiff(folder_ / "0000.distance.tiff", cv::Mat1f(96, 128, 2.0f));
+  const Outcome outcome = run("EvaluateReconstruction",
+                              "-i depth0000.dmap -m 0000.distance.tiff --json map.json --picture "
+                              "map.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto json = read_json("map.json");
+  EXPECT_NEAR(json["signed_median"].get<double>(), 0.003, 1e-6);
+  EXPECT_EQ(json["completeness"], 1.0);
+  EXPECT_EQ(json["rings"].size(), 8u);
+  EXPECT_TRUE(fs::exists(folder_ / "map.png"));
+}
+
+TEST_F(Programs, RefuseWrongInput) {
+  write_scene();
+  write_atomically(folder_ / "empty.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float "
+                   "y\nproperty float z\nend_header\n");
+  write_atomically(folder_ / "garbage.ply", "no cloud");
+  const std::string truth = " -m truth.ply --samples 1000 ";
+  refuses("missing.ply", "-i missing.ply" + truth);
+  refuses("missing.ply", "-i cloud.ply -m missing.ply");
+  refuses("empty.ply: the cloud has no points", "-i empty.ply" + truth);
+  refuses("garbage.ply", "-i garbage.ply" + truth);
+  refuses("cloud.ply", "-i truth.ply -m cloud.ply");
+  refuses("--truth-file is missing", "-i cloud.ply");
+  refuses("--tolerance", "-i cloud.ply --tolerance 0.1,x" + truth);
+  refuses("--tolerance", "-i cloud.ply --tolerance 0.1," + truth);
+  refuses("--tolerance", "-i cloud.ply --tolerance -1" + truth);
+  refuses("--align", "-i cloud.ply --align somehow" + truth);
+  refuses("--estimated", "-i cloud.ply --align centres" + truth);
+  refuses("--housing", "-i cloud.ply --housing h.json" + truth);
+  refuses("--samples", "-i cloud.ply -m truth.ply --samples 0");
+  refuses("nowhere", "-i cloud.ply --cameras nowhere" + truth);
+  refuses("no sample of the truth", "-i cloud.ply --cameras true --min-views 5" + truth);
+  refuses("missing.dmap", "-i missing.dmap -m a.tiff");
+  refuses("--align", "-i missing.dmap -m a.tiff --align icp");
+  EXPECT_EQ(
+      run("EvaluateReconstruction", "-i cloud.ply --json no/such/folder/x.json" + truth).exit_code,
+      1);
+}
+
+TEST_F(Programs, AlignModelRefusesWhatFixesNoSimilarity) {
+  io::write_colmap_text(folder_ / "true", model());
+  io::ColmapModel line = model();
+  for (std::size_t i = 0; i < 4; ++i)
+    line.images[i].pose.centre = {static_cast<double>(i), 2.0 * static_cast<double>(i), 1};
+  io::ColmapModel renamed = model();
+  renamed.images[0].name = "a.jpg";
+  renamed.images[1].name = "b.jpg";
+  for (const auto& [name, wrong] : {std::pair{"line", &line}, std::pair{"renamed", &renamed}}) {
+    fs::create_directories(folder_ / name);
+    io::write_colmap_text(folder_ / name, *wrong);
+  }
+  refuses("lie on one line", "-i line --reference true -o out", "AlignModel");
+  refuses("renamed: the models have 2 images of the same name",
+          "-i renamed --reference true -o out", "AlignModel");
+  refuses("nowhere", "-i nowhere --reference true -o out", "AlignModel");
+  refuses("--reference is missing", "-i line -o out", "AlignModel");
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace axial::evaluate

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small surfaces whose distances are known without computing them.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "scene/mesh.h"
+
+namespace axial::evaluate {
+
+// z = height(x, y) over [-size/2, size/2]^2, cells x cells squares of two triangles each.
+inline Mesh height_field(int cells, double size,
+                         const std::function<double(double, double)>& height) {
+  Mesh mesh;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) {
+      const double x = (static_cast<double>(i) / cells - 0.5) * size;
+      const double y = (static_cast<double>(j) / cells - 0.5) * size;
+      mesh.vertices.push_back(Eigen::Vector3d(x, y, height(x, y)).cast<float>());
+    }
+  const auto index = [cells](int i, int j) {
+    return static_cast<std::uint32_t>(j * (cells + 1) + i);
+  };
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      mesh.faces.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
+      mesh.faces.push_back({index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)});
+    }
+  return mesh;
+}
+
+inline Mesh flat_square(double size, double z) {
+  return height_field(1, size, [z](double, double) { return z; });
+}
+
+inline double ripples(double x, double y) {
+  return 0.08 * std::sin(5 * x + 1) * std::cos(4 * y) + 0.05 * std::sin(11 * y + 3 * x);
+}
+
+// Longitude-latitude sphere; with 300 steps its facets lie within 6e-5 of the radius.
+inline Mesh sphere(double radius, int steps) {
+  Mesh mesh;
+  for (int j = 0; j <= steps; ++j)
+    for (int i = 0; i < 2 * steps; ++i) {
+      const double theta = std::numbers::pi * j / steps, phi = std::numbers::pi * i / steps;
+      mesh.vertices.push_back(
+          (radius * Eigen::Vector3d(std::sin(theta) * std::cos(phi),
+                                    std::sin(theta) * std::sin(phi), std::cos(theta)))
+              .cast<float>());
+    }
+  const auto index = [steps](int i, int j) {
+    return static_cast<std::uint32_t>(j * 2 * steps + i % (2 * steps));
+  };
+  for (int j = 0; j < steps; ++j)
+    for (int i = 0; i < 2 * steps; ++i) {
+      mesh.faces.push_back({index(i, j), index(i, j + 1), index(i + 1, j)});
+      mesh.faces.push_back({index(i + 1, j), index(i, j + 1), index(i + 1, j + 1)});
+    }
+  return mesh;
+}
+
+inline Eigen::Vector3d random_vector(std::mt19937& random, double half_extent) {
+  std::uniform_real_distribution<double> along(-half_extent, half_extent);
+  const double x = along(random), y = along(random);
+  return {x, y, along(random)};
+}
+
+inline Eigen::Matrix3d random_rotation(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const double w = normal(random), x = normal(random), y = normal(random);
+  return Eigen::Quaterniond(w, x, y, normal(random)).normalized().toRotationMatrix();
+}
+
+}  // namespace axial::evaluate

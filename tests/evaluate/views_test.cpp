@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/views.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "evaluate/sampling.h"
+#include "evaluate/shapes.h"
+
+namespace axial::evaluate {
+namespace {
+
+// Looks along +z from `centre`; 200 x 100 pixels, 90 degrees wide.
+View camera_at(const Eigen::Vector3d& centre) {
+  View view;
+  view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
+  view.pose.centre = centre;
+  return view;
+}
+
+refractive::FlatPort<double> port() {
+  refractive::FlatPort<double> flat;
+  flat.distance = 0.03;
+  flat.thickness = 0.018;
+  flat.n_glass = 1.49;
+  flat.n_water = 1.333;
+  return flat;
+}
+
+std::uint32_t views_of(const Eigen::Vector3d& point, const std::vector<View>& views,
+                       const Surface& surface) {
+  const std::vector<Eigen::Vector3f> points{point.cast<float>()};
+  return count_views(points, views, surface)[0];
+}
+
+TEST(CountViews, KeepsToTheImageRectangle) {
+  const Surface floor(flat_square(6, 1));
+  const std::vector<View> views{camera_at({0, 0, 0})};
+  EXPECT_EQ(views_of({0, 0, 1}, views, floor), 1u);
+  EXPECT_EQ(views_of({0.99, 0.49, 1}, views, floor), 1u);
+  EXPECT_EQ(views_of({1.01, 0, 1}, views, floor), 0u);
+  EXPECT_EQ(views_of({0, -0.51, 1}, views, floor), 0u);
+  EXPECT_EQ(views_of({0, 0, -1}, views, floor), 0u) << "behind the camera";
+}
+
+TEST(CountViews, APlateHidesWhatLiesInItsShadow) {
+  Mesh mesh = flat_square(6, 2);
+  const Mesh plate = flat_square(0.5, 1);  // half extent 0.25 at half way: shadow to 0.5
+  for (const auto& f : plate.faces) mesh.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
+  mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());
+  const Surface surface(mesh);
+  const std::vector<View> views{camera_at({0, 0, 0}), camera_at({1, 0, 0})};
+  EXPECT_EQ(views_of({0.45, 0, 2}, views, surface), 1u) << "hidden from the first view only";
+  EXPECT_EQ(views_of({0.55, 0, 2}, views, surface), 2u);
+  EXPECT_EQ(views_of({0.1, 0.1, 1}, views, surface), 2u) << "the plate itself";
+  EXPECT_EQ(views_of({-0.9, 0, 2}, views, surface), 1u) << "the second view's shadow";
+}
+
+TEST(CountViews, WaterNarrowsTheFieldOfView) {
+  const Surface floor(flat_square(6, 1));
+  View wet = camera_at({0, 0, 0});
+  wet.camera.port = port();
+  // The edge of the image: the ray of u = -0.5, v = 49.5 in closed form by Snell.
+  const double s = 1.0;  // tan^2 of 45 degrees
+  const double q_g = std::sqrt(1.49 * 1.49 + (1.49 * 1.49 - 1) * s);
+  const double q_w = std::sqrt(1.333 * 1.333 + (1.333 * 1.333 - 1) * s);
+  const double edge = 0.03 + 0.018 / q_g + (1 - 0.048) / q_w;
+  EXPECT_LT(edge, 0.7) << "in air it is 1";
+  EXPECT_EQ(views_of({-edge + 1e-4, 0, 1}, {wet}, floor), 1u);
+  EXPECT_EQ(views_of({-edge - 1e-4, 0, 1}, {wet}, floor), 0u);
+}
+
+TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
+  Mesh mesh = flat_square(6, 1);
+  // A small plate inside the housing, between the lens and the port, hides nothing; the same
+  // plate in front of the port does.
+  for (const double z : {0.02, 0.1}) {
+    Mesh scene = mesh;
+    const Mesh plate = flat_square(0.5, z);
+    for (const auto& f : plate.faces) scene.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
+    scene.vertices.insert(scene.vertices.end(), plate.vertices.begin(), plate.vertices.end());
+    View wet = camera_at({0, 0, 0});
+    wet.camera.port = port();
+    EXPECT_EQ(views_of({0.1, 0.1, 1}, {wet}, Surface(scene)), z < 0.05 ? 1u : 0u) << z;
+  }
+}
+
+TEST(SeenPoints, KeepsThoseThatTwoViewsShare) {
+  const Mesh floor = flat_square(6, 1);
+  const auto samples = sample_surface(floor, 40000, 1);
+  // Fields of 2 x 1 m, shifted by 1 m: they share 1 m^2 of the 36 m^2.
+  const std::vector<View> views{camera_at({0, 0, 0}), camera_at({1, 0, 0})};
+  const auto seen = seen_points(samples, views, Surface(floor), 2);
+  // Standard error below sqrt(1111) samples, 3 %.
+  EXPECT_NEAR(static_cast<double>(seen.size()), 40000.0 / 36, 0.1 * 40000 / 36);
+}
+
+io::ColmapModel small_model(const std::string& lens, std::vector<double> parameters) {
+  io::ColmapModel model;
+  model.cameras.push_back({7, lens, 640, 480, std::move(parameters)});
+  io::ColmapImage image;
+  image.id = 1;
+  image.camera = 7;
+  image.name = "a.jpg";
+  image.pose.centre = {1, 2, 3};
+  model.images.push_back(image);
+  return model;
+}
+
+TEST(ViewsOfModel, TakesLensPoseAndPort) {
+  const auto model = small_model("PINHOLE", {500, 510, 320, 240});
+  io::Housing housing;
+  housing.ports["main"] = port();
+  housing.cameras[7] = "main";
+  const auto dry = views_of_model(model, nullptr);
+  const auto wet = views_of_model(model, &housing);
+  ASSERT_EQ(dry.size(), 1u);
+  EXPECT_EQ(dry[0].camera.lens.fy, 510);
+  EXPECT_EQ(dry[0].camera.lens.cx, 319.5);  // COLMAP's centres are at one half
+  EXPECT_FALSE(dry[0].camera.port.has_value());
+  ASSERT_TRUE(wet[0].camera.port.has_value());
+  EXPECT_EQ(wet[0].camera.port->thickness, 0.018);
+  EXPECT_EQ(wet[0].pose.centre, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(ViewsOfModel, RefusesDistortedLensesAndEmptyModels) {
+  EXPECT_THROW(views_of_model(small_model("OPENCV", {500, 500, 320, 240, 0.1, 0, 0, 0}), nullptr),
+               Error);
+  EXPECT_THROW(views_of_model(io::ColmapModel{}, nullptr), Error);
+}
+
+}  // namespace
+}  // namespace axial::evaluate
