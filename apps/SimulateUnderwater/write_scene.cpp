@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "write_scene.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "io/colmap.h"
+#include "io/housing.h"
+#include "io/image.h"
+#include "io/ply.h"
+
+namespace axial {
+namespace {
+
+io::ColmapImage colmap_image(std::size_t i, const simulate::View& view) {
+  io::ColmapImage image;
+  image.id = static_cast<std::uint32_t>(i + 1);
+  image.camera = 1;
+  image.name = view_name(i) + ".jpg";
+  image.pose = {view.rotation, view.centre};
+  return image;
+}
+
+Rgb to_rgb(const Eigen::Vector3f& color) {
+  const auto byte = [](float c) {
+    return static_cast<std::uint8_t>(std::clamp(255.0f * c, 0.0f, 255.0f) + 0.5f);
+  };
+  return {byte(color.x()), byte(color.y()), byte(color.z())};
+}
+
+}  // namespace
+
+std::string view_name(std::size_t view) {
+  return fmt::format("{:04}", view);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    fail("{}: cannot be created ({})", folder.string(), error.message());
+}
+
+void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
+                        std::span<const simulate::View> views,
+                        std::span<const simulate::SparsePoint> points) {
+  constexpr double kColmapCentre = 0.5;  // COLMAP's centre of the first pixel; ours is 0
+  io::ColmapModel model;
+  model.cameras.push_back(
+      {1,
+       "PINHOLE",
+       static_cast<std::uint64_t>(lens.width),
+       static_cast<std::uint64_t>(lens.height),
+       {lens.focal, lens.focal, lens.cx + kColmapCentre, lens.cy + kColmapCentre}});
+  for (std::size_t i = 0; i < views.size(); ++i) model.images.push_back(colmap_image(i, views[i]));
+  for (const simulate::SparsePoint& from : points) {
+    io::ColmapPoint3D point;
+    point.id = model.points.size() + 1;
+    point.position = from.position;
+    point.color = to_rgb(from.color);
+    for (const simulate::Observation& seen : from.observations) {
+      io::ColmapImage& image = model.images[seen.view];
+      point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+      image.points.push_back(
+          {seen.pixel.x() + kColmapCentre, seen.pixel.y() + kColmapCentre, point.id});
+    }
+    model.points.push_back(std::move(point));
+  }
+  make_folder(folder);
+  io::write_colmap_text(folder, model);
+}
+
+void write_port(const std::filesystem::path& file, const simulate::Port& port) {
+  io::Housing housing;
+  housing.ports["main"] = {port.normal, port.distance, port.thickness,
+                           port.n_air,  port.n_glass,  port.n_water};
+  housing.default_port = "main";
+  io::write_housing(file, housing);
+}
+
+void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh) {
+  io::write_mesh_ply(file, Mesh{mesh.vertices, {}, mesh.faces});
+}
+
+void write_truth(const std::filesystem::path& folder, const std::string& name,
+                 const simulate::Truth& truth) {
+  io::write_float_tiff(folder / (name + ".distance.tiff"), truth.distance);
+  io::write_float_tiff(folder / (name + ".normal.tiff"), truth.normal);
+}
+
+}  // namespace axial

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The simulator's plain data as the project's files.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "simulate/optics.h"
+#include "simulate/render.h"
+#include "simulate/sparse_points.h"
+#include "simulate/triangle_mesh.h"
+
+namespace axial {
+
+// "0007": images, their truth and their entries in the sparse model share it.
+std::string view_name(std::size_t view);
+
+// Creates `folder` and its parents. Error that names it.
+void make_folder(const std::filesystem::path& folder);
+
+// <folder>/{cameras,images,points3D}.txt: one PINHOLE camera, the true poses and observations.
+void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
+                        std::span<const simulate::View> views,
+                        std::span<const simulate::SparsePoint> points);
+
+// One port, "main", for every image.
+void write_port(const std::filesystem::path& file, const simulate::Port& port);
+
+void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);
+
+// <folder>/<name>.{distance,normal}.tiff
+void write_truth(const std::filesystem::path& folder, const std::string& name,
+                 const simulate::Truth& truth);
+
+}  // namespace axial

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/blob.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "simulate/noise.h"
+
+namespace axial::simulate {
+namespace {
+
+// Rounded lumps with sharp valleys between them, over smaller ones.
+double lumps(const Eigen::Vector3d& p, std::uint32_t seed) {
+  const float broad = fractal_noise(1.1 * p, seed, 2, 0.5f);
+  const float cracks = std::abs(gradient_noise(turn_octave(2.6 * p), seed + 5u));
+  const float rough = fractal_noise(6.0 * p, seed + 9u, 4, 0.55f);
+  return 1.6 * broad + 0.7 * (cracks - 0.2) + 0.30 * rough;
+}
+
+}  // namespace
+
+double Blob::relief(const Eigen::Vector3d& unit_direction) const {
+  const Eigen::Vector3d shift(0.37 * (seed % 97u), 0.71 * (seed % 89u), 0.53 * (seed % 83u));
+  return std::max(-0.7, roughness * lumps(unit_direction + shift, seed));
+}
+
+bool Blob::contains(const Eigen::Vector3d& p, double margin) const {
+  const Eigen::Vector3d q = (turn.transpose() * (p - centre)).cwiseQuotient(radii);
+  const double r = q.norm();
+  if (r < 1e-9) return true;
+  if (r > 2.5) return false;
+  return r < 1 + relief(q / r) - margin / radii.minCoeff();
+}
+
+TriangleMesh blob_mesh(const Blob& blob, double cell) {
+  // An icosahedron's edge is 1.05 radii long; each level halves it.
+  const double halvings = std::log2(1.05 * blob.radii.maxCoeff() / cell);
+  TriangleMesh mesh = unit_sphere(std::clamp(static_cast<int>(std::lround(halvings)), 2, 8));
+  parallel_for(
+      mesh.vertices.size(),
+      [&](std::size_t i) {
+        const Eigen::Vector3d direction = mesh.vertices[i].cast<double>().normalized();
+        const Eigen::Vector3d local = (1 + blob.relief(direction)) * direction;
+        mesh.vertices[i] = (blob.centre + blob.turn * local.cwiseProduct(blob.radii)).cast<float>();
+      },
+      1024);
+  return mesh;
+}
+
+TriangleMesh arch_mesh(const Arch& arch, double cell) {
+  const double pi = std::numbers::pi;
+  // From below the ground on one side to below the ground on the other.
+  const double from = -0.35, to = pi + 0.35;
+  const auto rows = static_cast<std::size_t>(std::ceil((to - from) * arch.span_radius *
+                                                       std::max(1.0, arch.rise) / cell)) +
+                    2;
+  const auto columns = static_cast<std::size_t>(std::ceil(2.4 * pi * arch.tube_radius / cell)) + 3;
+  const Eigen::Vector3d along(arch.along.x(), arch.along.y(), 0);
+  const Eigen::Vector3d across(-arch.along.y(), arch.along.x(), 0);
+  return grid_mesh(rows, columns, true, [&](std::size_t r, std::size_t c) -> Eigen::Vector3d {
+    const double t = from + (to - from) * static_cast<double>(r) / static_cast<double>(rows - 1);
+    const double s = 2 * pi * static_cast<double>(c) / static_cast<double>(columns);
+    const Eigen::Vector3d up(0, 0, 1);
+    const Eigen::Vector3d outward = std::cos(t) * along + std::sin(t) * up;
+    const Eigen::Vector3d spine =
+        arch.span_radius * (std::cos(t) * along + arch.rise * std::sin(t) * up);
+    const Eigen::Vector3d around = std::cos(s) * outward - std::sin(s) * across;
+    const Eigen::Vector3d key = spine / (2 * arch.tube_radius) + 0.7 * around;
+    const double swell = 1 + arch.roughness * lumps(key, arch.seed);
+    return arch.centre + spine + arch.tube_radius * std::max(0.35, swell) * around;
+  });
+}
+
+}  // namespace axial::simulate

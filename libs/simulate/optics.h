@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The path of light from a pixel into the water, interface by interface with Snell's law in vector
+// form. On purpose independent of `refractive/`: the two check each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace axial::simulate {
+
+// A pinhole in air: u = focal * x/z + cx; pixel centres at integers; camera axes x right, y down,
+// z forward.
+struct Lens {
+  int width = 0, height = 0;
+  double focal = 0;  // [px]
+  double cx = 0, cy = 0;
+};
+
+// Square pixels, principal point in the image centre. Error unless 1 <= width, height and
+// 1 <= horizontal_fov_degrees <= 150.
+Lens make_lens(int width, int height, double horizontal_fov_degrees);
+
+// A flat port in the camera frame, metres. A dry camera is the absence of a port.
+struct Port {
+  Eigen::Vector3d normal{0, 0, 1};  // unit, from the camera to the water
+  double distance = 0;              // camera centre to the inner plane
+  double thickness = 0;
+  double n_air = 1, n_glass = 1, n_water = 1;
+};
+
+// Unit normal of a port tilted by the given angle, towards the right and bottom of the image.
+Eigen::Vector3d tilted_normal(double tilt_degrees);
+
+// Error that names the value: distance outside [0, 1] m, thickness outside [0, 1] m, an index below
+// 1 or above 4, a corner of the image whose light does not meet the port from inside.
+void check_port(const Port& port, const Lens& lens);
+
+// x_in_camera = rotation * (x_in_world - centre).
+struct View {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+// A pixel's ray in the scene medium.
+struct SceneRay {
+  Eigen::Vector3d start;  // where it enters the scene medium: outer face of the glass, or centre
+  Eigen::Vector3d direction;  // unit
+  Eigen::Vector3d on_axis;    // where its line meets the camera's axis (C_v); dry: the centre
+};
+
+// Snell's law: `direction` and `normal` of unit length, direction . normal > 0. Nothing on total
+// reflection.
+std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
+                                       const Eigen::Vector3d& normal, double n_from, double n_to);
+
+// The ray of pixel (u, v) in the camera frame; `port` null for a dry camera. Nothing where no light
+// passes (pixel looks away from the port, total reflection).
+std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u, double v);
+
+SceneRay to_world(const View& view, const SceneRay& in_camera);
+
+}  // namespace axial::simulate

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scenes the project is measured on: what is photographed, through what, from where.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulate/optics.h"
+#include "simulate/solid_texture.h"
+#include "simulate/terrain.h"
+
+namespace axial::simulate {
+
+struct PresetOptions {
+  std::string name = "reef";
+  std::uint32_t seed = 1;
+  int views = 0;  // 0: the preset's own number
+  int width = 1024, height = 768;
+  double horizontal_fov_degrees = 80;
+};
+
+struct Preset {
+  Lens lens;
+  Port port;
+  Terrain terrain;
+  TextureOptions texture;
+  std::vector<View> views;
+};
+
+// "reef": a survey from above in two rows, seabed 2 to 3.5 m away, thin gap and thick glass.
+// "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
+// Error for another name, a number of views outside [0, 200], or what make_lens refuses.
+Preset make_preset(const PresetOptions& options);
+
+}  // namespace axial::simulate

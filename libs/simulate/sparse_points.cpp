@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/sparse_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel.h"
+#include "simulate/noise.h"
+
+namespace axial::simulate {
+namespace {
+
+std::optional<Eigen::Vector2d> observe(const RayScene& scene, const Lens& lens, const View& view,
+                                       const Eigen::Vector3d& point) {
+  const Eigen::Vector3d in_camera = view.rotation * (point - view.centre);
+  if (!(in_camera.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d pixel(lens.focal * in_camera.x() / in_camera.z() + lens.cx,
+                              lens.focal * in_camera.y() / in_camera.z() + lens.cy);
+  if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > lens.width - 1 || pixel.y() > lens.height - 1)
+    return std::nullopt;
+  const double range = in_camera.norm();
+  const Eigen::Vector3d direction = (point - view.centre) / range;
+  // The point lies on the surface: leave out the last thousandth of the way.
+  if (scene.blocked(view.centre, direction, 0, 0.999 * range)) return std::nullopt;
+  return pixel;
+}
+
+}  // namespace
+
+std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader, const Lens& lens,
+                                     std::span<const View> views, int per_view,
+                                     std::uint64_t seed) {
+  const double spacing = std::sqrt(1.0 * lens.width * lens.height / std::max(1, per_view));
+  const auto columns = static_cast<std::size_t>(std::max(1.0, lens.width / spacing));
+  const auto rows = static_cast<std::size_t>(std::max(1.0, lens.height / spacing));
+  std::vector<SparsePoint> points(views.size() * rows * columns);
+  parallel_for(points.size(), [&](std::size_t i) {
+    const std::size_t cell = i % (rows * columns);
+    const View& view = views[i / (rows * columns)];
+    const double u = (static_cast<double>(cell % columns) + uniform(seed, 2 * i)) * spacing;
+    const double v = (static_cast<double>(cell / columns) + uniform(seed, 2 * i + 1)) * spacing;
+    const SceneRay ray = to_world(view, *trace_pixel(lens, nullptr, u, v));
+    const auto hit = scene.first_hit(ray.start, ray.direction);
+    if (!hit) return;
+    SparsePoint& point = points[i];
+    point.position = ray.start + hit->distance * ray.direction;
+    point.color = shader({point.position, *hit, hit->distance / lens.focal});
+    for (std::size_t k = 0; k < views.size(); ++k)
+      if (const auto pixel = observe(scene, lens, views[k], point.position))
+        point.observations.push_back({k, *pixel});
+  });
+  std::erase_if(points, [](const SparsePoint& p) { return p.observations.size() < 2; });
+  return points;
+}
+
+}  // namespace axial::simulate

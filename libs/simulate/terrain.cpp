@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/noise.h"
+
+namespace axial::simulate {
+namespace {
+
+// Coordinates of grid lines: `cell` apart within [-half, half], then ever wider steps up to
+// half + skirt.
+std::vector<double> grid_lines(double half, double skirt, double cell) {
+  const auto inside = static_cast<int>(std::ceil(half / cell));
+  std::vector<double> positive;
+  for (int i = 1; i <= inside; ++i) positive.push_back(half * i / inside);
+  for (double step = cell; positive.back() < half + skirt;) {
+    step *= 1.04;
+    positive.push_back(positive.back() + step);
+  }
+  std::vector<double> lines;
+  for (auto x = positive.rbegin(); x != positive.rend(); ++x) lines.push_back(-*x);
+  lines.push_back(0);
+  lines.insert(lines.end(), positive.begin(), positive.end());
+  return lines;
+}
+
+TriangleMesh floor_mesh(const Terrain& terrain) {
+  const auto xs = grid_lines(terrain.half_width, terrain.skirt, terrain.cell);
+  const auto ys = grid_lines(terrain.half_height, terrain.skirt, terrain.cell);
+  // Rows along x and columns along y make the faces look up.
+  return grid_mesh(xs.size(), ys.size(), false, [&](std::size_t r, std::size_t c) {
+    return Eigen::Vector3d(xs[r], ys[c], terrain.floor.at(xs[r], ys[c]));
+  });
+}
+
+// Deeper than this below a surface nothing can be seen, faces being about a cell wide.
+double burial(const Terrain& terrain) {
+  return 4 * terrain.cell;
+}
+
+bool inside_a_blob(const Terrain& terrain, const Eigen::Vector3d& p, const Blob* except) {
+  return std::any_of(terrain.blobs.begin(), terrain.blobs.end(), [&](const Blob& blob) {
+    return &blob != except && blob.contains(p, burial(terrain));
+  });
+}
+
+bool below_floor(const Terrain& terrain, const Eigen::Vector3d& p) {
+  return p.z() < terrain.floor.at(p.x(), p.y()) - burial(terrain);
+}
+
+}  // namespace
+
+double Floor::at(double x, double y) const {
+  const Eigen::Vector3d p = Eigen::Vector3d(x, y, 0.3 * wavelength) / wavelength;
+  const float dunes = fractal_noise(p, seed, 7, 0.5f);
+  const float ridges = 0.5f - std::abs(fractal_noise(turn_octave(1.7 * p), seed + 77u, 5, 0.5f));
+  const auto r = static_cast<float>(std::sqrt(x * x + y * y));
+  const float bowl = smooth_step(static_cast<float>(bowl_from), static_cast<float>(bowl_to), r);
+  return height * (dunes + 0.45 * (ridges - 0.3)) + bowl_height * bowl;
+}
+
+TriangleMesh terrain_mesh(const Terrain& terrain) {
+  TriangleMesh mesh = floor_mesh(terrain);
+  remove_hidden(mesh, [&](const Eigen::Vector3d& p) { return inside_a_blob(terrain, p, nullptr); });
+  const auto add = [&](TriangleMesh part, const Blob* self) {
+    remove_hidden(part, [&](const Eigen::Vector3d& p) {
+      return below_floor(terrain, p) || inside_a_blob(terrain, p, self);
+    });
+    append(mesh, part);
+  };
+  for (const Blob& blob : terrain.blobs) add(blob_mesh(blob, terrain.cell), &blob);
+  for (const Arch& arch : terrain.arches) add(arch_mesh(arch, terrain.cell), nullptr);
+  return mesh;
+}
+
+}  // namespace axial::simulate

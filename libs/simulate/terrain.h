@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The seabed as one triangle mesh: a rough floor with boulders, mushroom rocks and arches on it.
+#pragma once
+
+#include <vector>
+
+#include "simulate/blob.h"
+
+namespace axial::simulate {
+
+// Height of the floor over (x, y): octaves of noise from `wavelength` down, halving in length and
+// in height, on a bowl that rises by `bowl_height` between `bowl_from` and `bowl_to` metres from
+// the world's origin.
+struct Floor {
+  std::uint32_t seed = 1;
+  double wavelength = 2.0;  // [m]
+  double height = 0.4;      // of the first octave [m]
+  double bowl_from = 1, bowl_to = 2, bowl_height = 0;
+
+  double at(double x, double y) const;
+};
+
+struct Terrain {
+  Floor floor;
+  std::vector<Blob> blobs;
+  std::vector<Arch> arches;
+  double cell = 0.01;     // distance between vertices [m]
+  double half_width = 4;  // the part meshed at `cell`: |x| <= half_width, |y| <= half_height
+  double half_height = 3;
+  double skirt = 10;  // how far coarser cells continue beyond that [m]
+};
+
+// The mesh of everything, without most of what is buried inside something else.
+TriangleMesh terrain_mesh(const Terrain& terrain);
+
+}  // namespace axial::simulate
