@@ -2,6 +2,7 @@
 #include "io/image.h"
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,12 +69,24 @@ JpegOutline jpeg_outline(std::string_view bytes) {
   return outline;
 }
 
+// Whether the chunks of a PNG file (length, type, data, checksum) go up to its end chunk.
+bool png_complete(std::string_view bytes) {
+  for (std::size_t i = 8; i + 12 <= bytes.size();) {
+    const std::size_t end = i + 12 + big_endian(bytes, i, 4);
+    if (bytes.substr(i + 4, 4) == "IEND") return end <= bytes.size();
+    i = end;
+  }
+  return false;
+}
+
 std::string read_image_bytes(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
   if (bytes.empty()) fail("{}: is empty, not an image", path.string());
-  // OpenCV decodes what is there of a cut JPEG and paints the rest grey.
+  // OpenCV decodes what is there of a cut file and paints the rest grey.
   if (is_jpeg(bytes) && !jpeg_outline(bytes).complete)
     fail("{}: truncated: the JPEG data has no end marker", path.string());
+  if (is_png(bytes) && !png_complete(bytes))
+    fail("{}: truncated: the PNG data has no end chunk", path.string());
   // libpng would add a line of its own to standard error.
   if (is_png(bytes) && bytes.find("IEND\xAE\x42\x60\x82") == std::string::npos)
     fail("{}: truncated: the PNG data has no end chunk", path.string());
@@ -151,12 +164,22 @@ cv::Mat3f read_float3_tiff(const std::filesystem::path& path) {
   if (image.type() != CV_32FC3)
     fail("{}: is no image of three float channels ({} channels of {} bytes)", path.string(),
          image.channels(), image.elemSize1());
-  return image;
+  cv::Mat3f channels_in_order;
+  cv::cvtColor(image, channels_in_order, cv::COLOR_BGR2RGB);
+  return channels_in_order;
 }
 
 void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image) {
   if (image.depth() != CV_32F) fail("{}: only float images are written as TIFF", path.string());
-  write_encoded(path, ".tiff", image, {});
+  // The file's first channel is the first of ours, not the last as OpenCV has it.
+  cv::Mat stored;
+  if (image.channels() == 3)
+    cv::cvtColor(image, stored, cv::COLOR_RGB2BGR);
+  else
+    stored = image;
+  // Said explicitly because OpenCV's default for three float channels is lossy (LogLuv).
+  constexpr int kNoCompression = 1;
+  write_encoded(path, ".tiff", stored, {cv::IMWRITE_TIFF_COMPRESSION, kNoCompression});
 }
 
 void write_jpeg(const std::filesystem::path& path, const cv::Mat3b& image, int quality) {

@@ -16,7 +16,7 @@ cv::Size read_image_size(const std::filesystem::path& path);
 // A label image of one channel, 8 or 16 bit, as 16 bit.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
-// Float TIFFs (ground truth): one channel or three.
+// Float TIFFs (ground truth), exact: one channel or three, the file's channels in our order.
 cv::Mat1f read_float_tiff(const std::filesystem::path& path);
 cv::Mat3f read_float3_tiff(const std::filesystem::path& path);
 void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image);

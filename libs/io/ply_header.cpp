@@ -176,9 +176,9 @@ double PlyBody::ascii(PlyType type, const std::string& name) {
                                                                      {0.0, 65535.0},
                                                                      {-2147483648.0, 2147483647.0},
                                                                      {0.0, 4294967295.0}}};
-  double value = 0;
-  const auto result = std::from_chars(token.data(), token.data() + token.size(), value);
-  bool good = result.ec == std::errc() && result.ptr == token.data() + token.size();
+  const std::optional<double> parsed = parse_number<double>(token);
+  const double value = parsed.value_or(0);
+  bool good = parsed.has_value();
   if (good && !is_float(type)) {
     const auto [lowest, highest] = kRanges[static_cast<std::size_t>(type)];
     good = value >= lowest && value <= highest && value == std::trunc(value);

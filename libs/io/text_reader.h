@@ -35,7 +35,7 @@ inline std::string_view take_token(std::string_view& text) {
   return token;
 }
 
-// The whole token as a number; nothing if it is none, does not fit, or is not finite.
+// The whole token as a number; nothing if it is none or does not fit.
 template <class T>
 std::optional<T> parse_number(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
@@ -43,8 +43,15 @@ std::optional<T> parse_number(std::string_view token) {
   const char* const end = token.data() + token.size();
   const auto result = std::from_chars(token.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) return {};
+  return value;
+}
+
+// The same, and nothing for infinities and NaN.
+template <class T>
+std::optional<T> parse_finite(std::string_view token) {
+  const std::optional<T> value = parse_number<T>(token);
   if constexpr (std::is_floating_point_v<T>) {
-    if (!std::isfinite(value)) return {};
+    if (value && !std::isfinite(*value)) return {};
   }
   return value;
 }
@@ -67,7 +74,7 @@ class TextLine {
   template <class T>
   T number(std::string_view field) {
     const std::string_view token = word(field);
-    const std::optional<T> value = parse_number<T>(token);
+    const std::optional<T> value = parse_finite<T>(token);
     if (!value) fail("{}: {} is '{}', which is no valid number here", where(), field, token);
     return *value;
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -19,7 +20,8 @@ namespace axial::test {
 inline std::filesystem::path empty_folder() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(testing::TempDir()) /
-                      (std::string("axial_") + info->test_suite_name() + "_" + info->name());
+                      (std::string("axial_") + info->test_suite_name() + "_" + info->name() + "_" +
+                       std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
