@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Judges a cloud by photographs that had no part in it: of the points that two held-out images see,
+// how many look the same in both? Usage:
+//
+//     held_out_check SCENE.mvs CLOUD.ply IMAGE_A IMAGE_B RESOLUTION_LEVEL
+//
+// SCENE holds all images; IMAGE_A and IMAGE_B are the names of the two that the cloud was made
+// without. A point counts as seen where it is the front-most of the cloud within 1 % of depth and
+// its normal faces both cameras; it agrees if the ZNCC of the window around it in A with the window
+// carried into B over its tangent plane is above 0.6. Prints "seen N agree M fraction F".
+#include <fmt/format.h>
+
+#include <iostream>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "depth/matcher.h"
+#include "io/image.h"
+#include "io/mvs.h"
+#include "io/ply.h"
+#include "scene/resolution.h"
+
+namespace {
+
+using namespace axial;
+using Camera = refractive::PinholeCamera<float>;
+
+struct View {
+  CameraModel model;
+  Pose pose;
+  cv::Mat1b grey;
+  cv::Mat1f nearest;  // z-buffer of the cloud, 3x3 splats
+};
+
+View load_view(const Scene& scene, const std::string& name, unsigned level) {
+  for (const SceneImage& image : scene.images) {
+    if (std::filesystem::path(image.path).filename() != name) continue;
+    const cv::Mat3b color = io::read_color_image(image.path);
+    const cv::Size size = working_size(color.cols, color.rows, {level, 1, 1 << 16});
+    View view{image.camera.resized(size.width, size.height), image.pose, {}, {}};
+    cv::cvtColor(resized_image(color, size), view.grey, cv::COLOR_BGR2GRAY);
+    view.nearest = cv::Mat1f(size, std::numeric_limits<float>::max());
+    return view;
+  }
+  fail("{}: no such image in the scene", name);
+}
+
+struct Seen {
+  bool inside = false;
+  int x = 0, y = 0;
+  float depth = 0;
+};
+
+Seen see(const View& view, const Camera& camera, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f in_camera = view.pose.to_camera(point.cast<double>()).cast<float>();
+  const auto image = camera.project(in_camera);
+  Seen seen{false, cvRound(image.pixel.x()), cvRound(image.pixel.y()), in_camera.norm()};
+  seen.inside =
+      image.visible && depth::window_inside(seen.x, seen.y, view.grey.cols - 2, view.grey.rows - 2);
+  return seen;
+}
+
+void splat(View& view, const Camera& camera, const PointCloud& cloud) {
+  for (const Eigen::Vector3f& point : cloud.positions) {
+    const Seen seen = see(view, camera, point);
+    if (!seen.inside) continue;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        float& nearest = view.nearest(seen.y + dy, seen.x + dx);
+        nearest = std::min(nearest, seen.depth);
+      }
+  }
+}
+
+bool in_front(const View& view, const Seen& seen) {
+  return seen.inside && seen.depth < 1.01f * view.nearest(seen.y, seen.x);
+}
+
+int run(char** argv) {
+  const Scene scene = io::read_mvs(argv[1], std::filesystem::path(argv[1]).parent_path());
+  const PointCloud cloud = io::read_cloud_ply(argv[2]);
+  if (cloud.normals.size() != cloud.size()) fail("{}: has no normals", argv[2]);
+  const auto level = static_cast<unsigned>(std::stoul(argv[5]));
+  View a = load_view(scene, argv[3], level);
+  View b = load_view(scene, argv[4], level);
+  const Camera camera_a(a.model.lens.cast<float>());
+  const Camera camera_b(b.model.lens.cast<float>());
+  splat(a, camera_a, cloud);
+  splat(b, camera_b, cloud);
+
+  const depth::QuadImage quad(b.grey);
+  const depth::Matcher<Camera, depth::AffineWarp> matcher(
+      a.grey, camera_a, {{camera_b, depth::RelativePose(a.pose, b.pose), &quad, nullptr}}, {});
+  std::size_t seen_count = 0;
+  std::size_t agree = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& point = cloud.positions[i];
+    const Seen in_a = see(a, camera_a, point);
+    if (!in_front(a, in_a) || !in_front(b, see(b, camera_b, point))) continue;
+    const Eigen::Vector3f x = a.pose.to_camera(point.cast<double>()).cast<float>();
+    const Eigen::Vector3f normal = (a.pose.rotation.cast<float>() * cloud.normals[i]).normalized();
+    const Eigen::Vector3f from_b = point - b.pose.centre.cast<float>();
+    const depth::ReferencePixel pixel = matcher.prepare(in_a.x, in_a.y);
+    const float along = normal.dot(pixel.ray.direction);
+    if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b.normalized()) < -0.2f)) continue;
+    const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
+    const float cost = matcher.view_cost(
+        pixel, plane, depth::patch_derivative(pixel.ray, pixel.jacobian, plane), 0);
+    ++seen_count;
+    if (cost < 0.4f) ++agree;
+  }
+  std::cout << fmt::format(
+      "seen {} agree {} fraction {:.4f}\n", seen_count, agree,
+      seen_count ? static_cast<double>(agree) / static_cast<double>(seen_count) : 0.0);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 6) {
+    std::cerr << "usage: held_out_check SCENE.mvs CLOUD.ply IMAGE_A IMAGE_B RESOLUTION_LEVEL\n";
+    return 1;
+  }
+  try {
+    return run(argv);
+  } catch (const std::exception& error) {
+    std::cerr << "held_out_check: " << error.what() << "\n";
+    return 1;
+  }
+}
