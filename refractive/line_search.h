@@ -32,10 +32,11 @@ struct Segment {
 };
 
 // The part of the ray start + t * step, t >= 0, inside the rectangle [low, high] (Liang and
-// Barsky). None: they do not meet, the step is zero, or something is NaN.
+// Barsky). None: they do not meet, the step is zero, or something is not finite.
 template <class T>
 std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& step,
                                    const Vector2<T>& low, const Vector2<T>& high) {
+  if (!start.allFinite() || !step.allFinite()) return std::nullopt;
   T enter(0);
   std::optional<T> leave;
   for (int k = 0; k < 2; ++k) {

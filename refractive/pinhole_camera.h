@@ -70,9 +70,10 @@ class PinholeCamera {
   // Where X is not visible, pixel and Jacobian are finite and mean nothing.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
     using std::abs;
-    // False for NaN; the bounds keep pixel and Jacobian finite in single precision.
+    // False for NaN; the bounds keep pixel and Jacobian within single precision.
     const T widest = T(1e6) * X.z();
-    const bool visible = X.z() > T(1e-20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
+    const bool visible =
+        X.z() > T(1e-20) && X.z() < T(1e20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
     const Vector3<T> safe = visible ? X : Vector3<T>(T(0), T(0), T(1));
     if (jacobian) *jacobian = lens_.pixel_jacobian(safe);
     return {lens_.pixel(safe), visible};

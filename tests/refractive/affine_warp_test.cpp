@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "refractive/affine_warp.h"
+
+#include <gtest/gtest.h>
+
+#include "refractive/pixel_lookup.h"
+#include "refractive/views.h"
+
+namespace axial::refractive::testing {
+namespace {
+
+// The paper's two stereo setups, in the frame of the reference camera: a plane 4 m away, turned
+// about y, and a source camera with parallel axes.
+struct Setup {
+  Vector3<double> source_centre;
+  double plane_angle = 0;
+};
+const Vector3<double> kBaseline(1, 0, 0);
+const Vector3<double> kFurther(0.5, 0, -1);
+
+struct Errors {
+  double papers = 0, exact_lookup = 0, affine = 0;
+};
+
+constexpr int kSize = 2048;
+constexpr int kStep = 61;  // between tested centres; every pixel would take minutes
+
+// Mean distance [px] of warped patch texels from their exact image (9x9, step 2), over centres
+// whose patch lies in both images: the paper's e_BH.
+Errors patch_errors(double fov, double distance, double tilt, const Setup& setup) {
+  const View view{kSize, kSize, lens_with_fov(fov, kSize, kSize), paper_port(distance, tilt)};
+  const auto camera = view.camera<double>();
+  const Vector3<double> X0(0, 0, 4);
+  const Vector3<double> n = -tilted_normal(setup.plane_angle * kDegree, 0);
+  const Matrix3<double> R = Matrix3<double>::Identity();
+  const Vector3<double>& C = setup.source_centre;
+  const auto in_image = [](const Projection<double>& p) {
+    return p.visible && p.pixel.minCoeff() >= 0 && p.pixel.maxCoeff() <= kSize - 1;
+  };
+  const auto exact_warp = [&](const Vector2<double>& q) {
+    const AxialRay<double> ray = camera.ray(q);
+    return camera.project(ray.at(plane_intersection(ray, X0, n)) - C);
+  };
+
+  Errors sum;
+  int texels = 0;
+  for (int v = 4; v < kSize - 4; v += kStep) {
+    for (int u = 4; u < kSize - 4; u += kStep) {
+      const Vector2<double> p(u, v);
+      const AxialRay<double> ray = camera.ray(p);
+      const double lambda = plane_intersection(ray, X0, n);
+      const auto affine = affine_warp(camera, camera, R, C, p, lambda, n);
+      if (!affine.visible) continue;
+      const Vector2<double> rounded = affine.to.array().round();
+      const auto reference = virtual_camera(camera, p);
+      const Matrix3<double> H_rounded =
+          virtual_homography(reference, virtual_camera(camera, rounded), R, C, ray.at(lambda), n);
+      const Matrix3<double> H_exact =
+          virtual_homography(reference, virtual_camera(camera, affine.to), R, C, ray.at(lambda), n);
+      Errors patch;
+      bool complete = true;
+      for (int dy = -4; dy <= 4 && complete; dy += 2) {
+        for (int dx = -4; dx <= 4; dx += 2) {
+          const Vector2<double> q = p + Vector2<double>(dx, dy);
+          const Projection<double> exact = exact_warp(q);
+          complete = complete && in_image(exact);
+          patch.papers += (apply_homography(H_rounded, q) - exact.pixel).norm();
+          patch.exact_lookup += (apply_homography(H_exact, q) - exact.pixel).norm();
+          patch.affine += (affine(q) - exact.pixel).norm();
+        }
+      }
+      if (!complete) continue;
+      texels += 25;
+      sum.papers += patch.papers;
+      sum.exact_lookup += patch.exact_lookup;
+      sum.affine += patch.affine;
+    }
+  }
+  EXPECT_GT(texels, 25 * 100);
+  return {sum.papers / texels, sum.exact_lookup / texels, sum.affine / texels};
+}
+
+struct Row {
+  double fov, distance, tilt;
+  Setup setup;
+  double papers, exact_lookup, affine;  // DESIGN section 3
+};
+
+class WarpTable : public ::testing::TestWithParam<Row> {};
+
+TEST_P(WarpTable, IsReproduced) {
+  const Row& row = GetParam();
+  const Errors errors = patch_errors(row.fov, row.distance, row.tilt, row.setup);
+  EXPECT_LE(errors.affine, 0.005);
+  // The table's last digit, and a thousand centres in place of four million.
+  EXPECT_NEAR(errors.affine, row.affine, 0.03 * row.affine + 5e-5);
+  EXPECT_NEAR(errors.papers, row.papers, 0.02 * row.papers);
+  EXPECT_NEAR(errors.exact_lookup, row.exact_lookup, 0.02 * row.exact_lookup);
+}
+
+INSTANTIATE_TEST_SUITE_P(Design, WarpTable,
+                         ::testing::Values(Row{80, 0.02, 0, {kBaseline, 0}, 0.475, 0.454, 0.0022},
+                                           Row{100, 0.02, 0, {kBaseline, 0}, 0.706, 0.685, 0.0034},
+                                           Row{80, 0.10, 0, {kBaseline, 0}, 0.462, 0.440, 0.0021},
+                                           Row{80, 0.02, 6, {kBaseline, 0}, 0.502, 0.481, 0.0024},
+                                           Row{80, 0.02, 0, {kBaseline, -40}, 0.487, 0.463, 0.0025},
+                                           Row{80, 0.02, 0, {kFurther, 0}, 0.254, 0.205, 0.0010}));
+
+// dX/dp against differences of the points that neighbouring pixels see.
+TEST(PlanePointDerivative, IsTheDerivative) {
+  Random random(101);
+  for (int k = 0; k < 1000; ++k) {
+    const View view = random_view(random);
+    const auto camera = view.camera<double>();
+    const Vector2<double> p = random_pixel(random, view);
+    const Vector3<double> n = (-Vector3<double>::UnitZ() + 0.5 * random.unit_vector());
+    AxialRayJacobian<double> jacobian;
+    const AxialRay<double> ray = camera.ray(p, jacobian);
+    const double lambda = random.log_uniform(0.5, 10);
+    const Vector3<double> X = ray.at(lambda);
+    const Matrix32<double> dX = plane_point_derivative(ray, jacobian, lambda, n);
+    EXPECT_LT((n.transpose() * dX).norm(), 1e-14);
+    const double h = 1e-3;
+    for (int i = 0; i < 2; ++i) {
+      const auto point = [&](double step) {
+        const AxialRay<double> other =
+            camera.ray(Vector2<double>(p + step * Vector2<double>::Unit(i)));
+        return Vector3<double>(other.at(plane_intersection(other, X, n)));
+      };
+      EXPECT_LT((dX.col(i) - (point(h) - point(-h)) / (2 * h)).norm(), 1e-6 * dX.norm());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace axial::refractive::testing

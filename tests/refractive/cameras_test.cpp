@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every axial camera promises, whichever it is.
+#include <gtest/gtest.h>
+
+#include "refractive/affine_warp.h"
+#include "refractive/line_search.h"
+#include "refractive/views.h"
+
+namespace axial::refractive::testing {
+namespace {
+
+struct Dry {
+  using Camera = PinholeCamera<double>;
+  static constexpr double kPixels = 1e-9;
+  static Camera make(const View& view) { return Camera(view.lens); }
+};
+struct DryFloat {
+  using Camera = PinholeCamera<float>;
+  static constexpr double kPixels = 2e-3;
+  static Camera make(const View& view) { return Camera(view.lens.cast<float>()); }
+};
+struct Port {
+  using Camera = FlatPortCamera<double>;
+  static constexpr double kPixels = 1e-9;
+  static Camera make(const View& view) { return view.camera<double>(); }
+};
+struct PortFloat {
+  using Camera = FlatPortCamera<float>;
+  static constexpr double kPixels = 2e-3;
+  static Camera make(const View& view) { return view.camera<float>(); }
+};
+struct Search {
+  using Camera = LineSearchCamera<double>;
+  static constexpr double kPixels = 1.1;
+  static Camera make(const View& view) {
+    return Camera(view.lens, view.port, view.width, view.height);
+  }
+};
+struct SearchFloat {
+  using Camera = LineSearchCamera<float>;
+  static constexpr double kPixels = 1.1;
+  static Camera make(const View& view) {
+    return Camera(view.lens.cast<float>(), view.port.cast<float>(), view.width, view.height);
+  }
+};
+
+template <class Kind>
+class Cameras : public ::testing::Test {};
+using Kinds = ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFloat>;
+TYPED_TEST_SUITE(Cameras, Kinds);
+
+// Calls check(camera, pixel, X): points 0.7 to 10 m away, well inside the water and the image.
+template <class Kind, class Check>
+void for_random_points(unsigned seed, Check check) {
+  using T = typename Kind::Camera::Scalar;
+  Random random(seed);
+  for (int k = 0; k < 10; ++k) {
+    View view = random_view(random, 160, 120);
+    view.port.distance = std::min(view.port.distance, 0.03);
+    const typename Kind::Camera camera = Kind::make(view);
+    for (int i = 0; i < 100; ++i) {
+      const Vector2<T> pixel(static_cast<T>(random.uniform(2, 157)),
+                             static_cast<T>(random.uniform(2, 117)));
+      check(camera, pixel, static_cast<T>(random.log_uniform(0.7, 10)));
+    }
+  }
+}
+
+TYPED_TEST(Cameras, RaysStartNearTheCentreAndHaveUnitLength) {
+  for_random_points<TypeParam>(91, [](const auto& camera, const auto& pixel, auto) {
+    const auto ray = camera.ray(pixel);
+    EXPECT_NEAR(ray.direction.norm(), 1, 1e-6);
+    EXPECT_LT(ray.origin.norm(), 0.2);
+    EXPECT_GT(ray.direction.z(), 0);
+  });
+}
+
+TYPED_TEST(Cameras, ProjectWhatTheyBackProject) {
+  for_random_points<TypeParam>(92, [](const auto& camera, const auto& pixel, auto distance) {
+    const auto image = camera.project(camera.ray(pixel).at(distance));
+    EXPECT_TRUE(image.visible);
+    EXPECT_LT((image.pixel - pixel).norm(), TypeParam::kPixels);
+  });
+}
+
+TYPED_TEST(Cameras, CopiesAreTheSameCamera) {
+  for_random_points<TypeParam>(93, [](const auto& camera, const auto& pixel, auto distance) {
+    const auto copy = camera;
+    const auto X = camera.ray(pixel).at(distance);
+    EXPECT_EQ(copy.project(X).pixel, camera.project(X).pixel);
+  });
+}
+
+// Jproj dX/dp = I on any plane: ties the derivatives of both directions together.
+TYPED_TEST(Cameras, WarpedOntoThemselvesAreTheIdentity) {
+  using T = typename TypeParam::Camera::Scalar;
+  Random random(94);
+  for_random_points<TypeParam>(94, [&](const auto& camera, const auto& pixel, auto distance) {
+    const Vector3<T> n =
+        (-Vector3<double>::UnitZ() + 0.7 * random.unit_vector()).normalized().template cast<T>();
+    // A plane that the ray nearly lies in has no warp.
+    if (std::abs(camera.ray(pixel).direction.dot(n)) < T(0.2)) return;
+    const auto warp = affine_warp(camera, camera, Matrix3<T>(Matrix3<T>::Identity()),
+                                  Vector3<T>(Vector3<T>::Zero()), pixel, distance, n);
+    EXPECT_TRUE(warp.visible);
+    EXPECT_LT((warp.to - pixel).norm(), TypeParam::kPixels);
+    // Products of a few numbers of the order of f: 1e-16 or 1e-7 times about a hundred.
+    EXPECT_LT((warp.linear - Matrix2<T>::Identity()).norm(),
+              (std::is_same_v<T, float> ? 1e-4 : 1e-11));
+  });
+}
+
+}  // namespace
+}  // namespace axial::refractive::testing

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pixel -> ray -> point -> pixel through a flat port, over the promised range of housings.
+#include <gtest/gtest.h>
+
+#include "refractive/views.h"
+
+namespace axial::refractive::testing {
+namespace {
+
+template <class T>
+double largest_round_trip_error(unsigned seed, int width, int height) {
+  Random random(seed);
+  double largest = 0;
+  int tested = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const View view = random_view(random, width, height);
+    const auto camera = view.camera<T>();
+    for (int i = 0; i < 10; ++i) {
+      // Every fourth at a corner, where the incidence is largest.
+      const Vector2<double> somewhere = random_pixel(random, view);
+      const Vector2<double> corner((i & 1) * (width - 1), (i & 2) / 2 * (height - 1));
+      const Vector2<T> pixel = (i < 4 ? corner : somewhere).template cast<T>();
+      const auto X = random_point(random, camera, pixel);
+      if (!X) continue;
+      ++tested;
+      const Projection<T> image = camera.project(*X);
+      EXPECT_TRUE(image.visible) << pixel.transpose();
+      largest = std::max(largest, static_cast<double>((image.pixel - pixel).norm()));
+    }
+  }
+  EXPECT_GT(tested, 18000);  // few points fall into the port
+  return largest;
+}
+
+TEST(RoundTrip, InDouble) {
+  EXPECT_LT(largest_round_trip_error<double>(1, 1024, 768), 1e-9);
+}
+
+TEST(RoundTrip, InFloatWithFixedSteps) {
+  EXPECT_LT(largest_round_trip_error<float>(2, 1024, 768), 2e-3);
+}
+
+TEST(RoundTrip, InFloatOfLargerImages) {
+  EXPECT_LT(largest_round_trip_error<float>(3, 2048, 1536), 2e-6 * 2048);
+  EXPECT_LT(largest_round_trip_error<float>(4, 6000, 4000), 2e-6 * 6000);
+}
+
+// Not only consistent with itself: float against double, for the same point and the same port.
+TEST(RoundTrip, FloatAgreesWithDouble) {
+  Random random(5);
+  double largest = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const View view = random_view(random);
+    const auto camera = view.camera<float>();
+    const FlatPortCamera<double> same(camera.lens().cast<double>(), camera.port().cast<double>(),
+                                      view.width, view.height);
+    const auto X = random_point(random, camera, random_pixel(random, view).cast<float>().eval());
+    if (!X) continue;
+    const Vector2<double> expected = same.project(X->cast<double>()).pixel;
+    largest = std::max(largest, (camera.project(*X).pixel.cast<double>() - expected).norm());
+  }
+  EXPECT_LT(largest, 2e-3);
+}
+
+// The ray leaves the glass where exit_point() says.
+TEST(RoundTrip, ExitPointLiesOnTheRayAndTheOuterPlane) {
+  Random random(6);
+  for (int k = 0; k < 2000; ++k) {
+    const View view = random_view(random);
+    const auto camera = view.camera<double>();
+    const Vector2<double> pixel = random_pixel(random, view);
+    const Vector3<double> exit = camera.exit_point(pixel);
+    const AxialRay<double> ray = camera.ray(pixel);
+    EXPECT_NEAR(exit.dot(view.port.normal), camera.optics().outer(), 1e-14);
+    EXPECT_LT((exit - ray.origin).cross(ray.direction).norm(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace axial::refractive::testing

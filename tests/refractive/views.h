@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random underwater views for property tests: the range of housings the project promises accuracy
+// for. Seeded, so that a failure comes back.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include "refractive/depth_conversion.h"
+#include "refractive/flat_port_camera.h"
+
+namespace axial::refractive::testing {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  double log_uniform(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  Eigen::Vector3d unit_vector() {
+    std::normal_distribution<double> normal;
+    return Eigen::Vector3d(normal(engine_), normal(engine_), normal(engine_)).normalized();
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+struct View {
+  int width = 0, height = 0;
+  PinholeLens<double> lens{0, 0, 0, 0};
+  FlatPort<double> port;
+
+  template <class T>
+  FlatPortCamera<T> camera() const {
+    return {lens.cast<T>(), port.cast<T>(), width, height};
+  }
+};
+
+inline Eigen::Vector3d tilted_normal(double tilt, double azimuth) {
+  return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
+}
+
+// Horizontal field of view in degrees, centred principal point.
+inline PinholeLens<double> lens_with_fov(double degrees, int width, int height) {
+  const double f = 0.5 * width / std::tan(0.5 * degrees * kDegree);
+  return {f, f, 0.5 * (width - 1), 0.5 * (height - 1)};
+}
+
+// The paper's housing: 2 cm of air, 1.4 cm of glass.
+inline FlatPort<double> paper_port(double distance = 0.02, double tilt_degrees = 0) {
+  return {tilted_normal(tilt_degrees * kDegree, 0), distance, 0.014, 1, 1.52, 1.333};
+}
+
+// FOV 50 to 110 degrees, tilt 0 to 15 degrees any way, d_a 1 to 100 mm, glass of 0 to 20 mm from
+// silica to sapphire, water from fresh to deep.
+inline View random_view(Random& random, int width = 1024, int height = 768) {
+  View view{width, height, lens_with_fov(random.uniform(50, 110), width, height), {}};
+  view.lens.cx += random.uniform(-0.02, 0.02) * width;
+  view.lens.cy += random.uniform(-0.02, 0.02) * height;
+  view.port.normal =
+      tilted_normal(random.uniform(0, 15) * kDegree, random.uniform(0, 2 * std::numbers::pi));
+  view.port.distance = random.log_uniform(0.001, 0.1);
+  view.port.thickness = random.uniform(0, 0.02);
+  view.port.n_air = 1.00028;
+  view.port.n_glass = random.uniform(1.45, 1.78);
+  view.port.n_water = random.uniform(1.325, 1.36);
+  return view;
+}
+
+inline Vector2<double> random_pixel(Random& random, const View& view) {
+  return {random.uniform(0, view.width - 1), random.uniform(0, view.height - 1)};
+}
+
+// The point that the pixel sees at 0.3 to 10 m from the camera. None when that is not in the water
+// (a wide gap seen at a flat angle can be longer than 0.3 m).
+template <class T>
+std::optional<Vector3<T>> random_point(Random& random, const FlatPortCamera<T>& camera,
+                                       const Vector2<T>& pixel) {
+  const AxialRay<T> ray = camera.ray(pixel);
+  const T range = static_cast<T>(random.log_uniform(0.3, 10));
+  const Vector3<T> X = ray.at(distance_from_range(ray, range));
+  if (X.dot(camera.port().normal) < camera.optics().outer() + T(0.01)) return std::nullopt;
+  return X;
+}
+
+}  // namespace axial::refractive::testing
