@@ -48,17 +48,16 @@ void declare(po::options_description& visible, Options& options, Texts& texts) {
       ("housing", po::value(&texts.housing), "ports that those cameras look through")     //
       ("estimated", po::value(&texts.estimated), "COLMAP model the input was made with")  //
       ("samples", po::value(&options.samples)->default_value(200000),
-       "points of the truth for completeness (and of an input mesh)")         //
-      ("seed", po::value(&options.seed)->default_value(1), "of the samples")  //
+       "points of the truth that count for completeness, about (and points of an input mesh)")  //
+      ("seed", po::value(&options.seed)->default_value(1), "of the samples")                    //
       ("min-views", po::value(&options.least_views)->default_value(2),
        "views that must see a sample for it to count")             //
       ("json", po::value(&texts.json), "write all numbers there")  //
       ("error-cloud", po::value(&texts.error_cloud),
        "write the points coloured by error (.ply)")  //
-      (
-          "picture", po::value(&texts.picture),
-          "draw the errors (.png): the cloud as a camera sees it, or depth, truth and error of a "
-          "map")  //
+      ("picture", po::value(&texts.picture),
+       "draw the errors (.png): the cloud as a camera sees it, or depth, truth and error of a "
+       "map")  //
       ("picture-camera", po::value(&options.picture_camera),
        "image name in --cameras to draw from (default: the first)")  //
       ("picture-width", po::value(&options.picture_width)->default_value(1024),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluate/cloud_evaluation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
 
@@ -10,6 +11,8 @@
 
 namespace axial::evaluate {
 namespace {
+
+constexpr std::size_t kMostDraws = 20;  // times the samples asked for
 
 // What nanoflann asks of a point set.
 struct PointSet {
@@ -39,19 +42,32 @@ void check(std::span<const Eigen::Vector3f> points) {
     if (!points[i].allFinite()) fail("point {} of the cloud is not finite", i);
 }
 
-std::vector<Eigen::Vector3f> counted_samples(const Mesh& truth, const Surface& surface,
-                                             std::span<const View> views,
-                                             const CloudOptions& options) {
-  auto samples = sample_surface(truth, options.samples, options.seed);
-  if (views.empty()) return samples;
-  auto seen = seen_points(samples, views, surface, options.least_views);
-  if (seen.empty())
+struct Samples {
+  std::vector<Eigen::Vector3f> counted;
+  std::size_t drawn = 0;
+};
+
+Samples draw_samples(const Mesh& truth, const Surface& surface, std::span<const View> views,
+                     const CloudOptions& options) {
+  Samples result{sample_surface(truth, options.samples, options.seed), options.samples};
+  if (views.empty()) return result;
+  result.counted = seen_points(result.counted, views, surface, options.least_views);
+  // A truth that reaches far beyond the pictures needs more samples for as many that count.
+  const std::size_t factor =
+      std::min(kMostDraws, options.samples / std::max<std::size_t>(result.counted.size(), 1));
+  if (factor > 1) {
+    result.drawn = factor * options.samples;
+    result.counted = seen_points(sample_surface(truth, result.drawn, options.seed), views, surface,
+                                 options.least_views);
+  }
+  if (result.counted.empty())
     fail("no sample of the truth is seen by {} of the {} views", options.least_views, views.size());
-  return seen;
+  return result;
 }
 
 CloudEvaluation summed_up(std::vector<float> to_truth, std::span<const float> to_reconstruction,
-                          std::span<const View> views, const CloudOptions& options) {
+                          std::size_t drawn, std::span<const View> views,
+                          const CloudOptions& options) {
   CloudEvaluation result;
   const double upper = 4 * options.tolerances.front();
   result.accuracy = summarise(to_truth);
@@ -60,7 +76,7 @@ CloudEvaluation summed_up(std::vector<float> to_truth, std::span<const float> to
   result.completeness_histogram = histogram(to_reconstruction, upper, options.histogram_bins);
   for (const double tolerance : options.tolerances)
     result.scores.push_back(score(to_truth, to_reconstruction, tolerance));
-  result.samples = options.samples;
+  result.samples = drawn;
   result.counted_samples = to_reconstruction.size();
   result.views = views.size();
   result.distances = std::move(to_truth);
@@ -93,9 +109,9 @@ CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Me
                                const CloudOptions& options) {
   check(options);
   check(points);
-  const auto samples = counted_samples(truth, surface, views, options);
-  return summed_up(distances_to(surface, points), nearest_point_distances(samples, points), views,
-                   options);
+  const Samples samples = draw_samples(truth, surface, views, options);
+  return summed_up(distances_to(surface, points), nearest_point_distances(samples.counted, points),
+                   samples.drawn, views, options);
 }
 
 CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
@@ -104,9 +120,9 @@ CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface
   check(options);
   // Another seed than the truth's: the same mesh twice must not meet itself in the same points.
   sampled = sample_surface(mesh, options.samples, options.seed + 1);
-  const auto samples = counted_samples(truth, surface, views, options);
-  return summed_up(distances_to(surface, sampled), distances_to(Surface(mesh), samples), views,
-                   options);
+  const Samples samples = draw_samples(truth, surface, views, options);
+  return summed_up(distances_to(surface, sampled), distances_to(Surface(mesh), samples.counted),
+                   samples.drawn, views, options);
 }
 
 }  // namespace axial::evaluate

@@ -17,7 +17,7 @@ namespace axial::evaluate {
 
 struct CloudOptions {
   std::vector<double> tolerances{0.005};  // [m]; the first one scales histograms and colours
-  std::size_t samples = 200000;           // of the true mesh, for completeness
+  std::size_t samples = 200000;           // of the true mesh, for completeness; see below
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;  // that must see a sample for it to count
   std::size_t histogram_bins = 80;
@@ -29,15 +29,16 @@ struct CloudEvaluation {
   DistanceStatistics completeness;  // of every counted sample of the truth to the reconstruction
   Histogram accuracy_histogram, completeness_histogram;  // over 0 .. 4 * first tolerance
   std::vector<Score> scores;                             // one a tolerance
-  std::size_t samples = 0;                               // of the truth
+  std::size_t samples = 0;                               // drawn on the truth
   std::size_t counted_samples = 0;                       // of them, those that count
   std::size_t views = 0;  // 0: no cameras were given, all samples count
 };
 
 // Accuracy: exact distance of every point to `truth`. Completeness: distance of samples of `truth`,
 // uniform by area, to the nearest point; only samples that `least_views` of `views` see, or all if
-// there are no views. `surface` is the one of `truth`. Error for no points, a point that is not
-// finite, no or a bad tolerance, no samples, or no sample that is seen.
+// there are no views. If few of `options.samples` are seen, up to 20 times as many are drawn, so
+// that about `options.samples` count. `surface` is the one of `truth`. Error for no points, a point
+// that is not finite, no or a bad tolerance, no samples, or no sample that is seen.
 CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Mesh& truth,
                                const Surface& surface, std::span<const View> views,
                                const CloudOptions& options);

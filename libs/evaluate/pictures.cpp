@@ -181,8 +181,7 @@ cv::Mat3b with_error_scale(const cv::Mat3b& picture, double upper) {
         .setTo(cv::Scalar(table(0, level(u, left, right - 1))));
   for (int tick = 0; tick <= 4; ++tick) {
     const double value = upper * tick / 4;
-    const std::string text =
-        tick == 4 ? fmt::format(">={:.3g} mm", value * 1e3) : fmt::format("{:.3g}", value * 1e3);
+    const std::string text = fmt::format("{:.3g}{}", value * 1e3, tick == 4 ? " mm+" : "");
     write_text(result, text, {left + (right - left) * tick / 4 - 4, picture.rows + 36}, 0.42);
   }
   return result;

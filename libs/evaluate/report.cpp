@@ -101,7 +101,7 @@ Json to_json(const Similarity& similarity) {
 std::string table(const CloudEvaluation& e) {
   const std::string counted =
       e.views == 0 ? fmt::format("all {} samples of the truth count (no cameras given)", e.samples)
-                   : fmt::format("{} of {} samples of the truth are seen often enough by {} views",
+                   : fmt::format("{} of {} samples of the truth are seen by enough of the {} views",
                                  e.counted_samples, e.samples, e.views);
   return statistics_header("unsigned [mm, mm^2]") + statistics_row("points to truth", e.accuracy) +
          statistics_row("truth to points", e.completeness) + score_rows(e.scores) + counted + "\n";
