@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/dmap.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstring>
+
+#include "base/atomic_file.h"
+#include "io/wrong_input.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using testing::HasSubstr;
+
+CameraModel camera(bool port) {
+  CameraModel model;
+  model.width = 9;
+  model.height = 7;
+  model.lens = {6, 6.5, 3.9, 3.1};  // about 75 degrees wide
+  if (port) {
+    // A tilted thick port: the virtual centre lies centimetres off the camera's.
+    model.port.emplace();
+    model.port->normal = Eigen::Vector3d(0.2, -0.1, 1).normalized();
+    model.port->distance = 0.05;
+    model.port->thickness = 0.02;
+    model.port->n_glass = 1.49;
+    model.port->n_water = 1.34;
+  }
+  return model;
+}
+
+DepthMap depth_map(const fs::path& folder, bool port) {
+  DepthMap map;
+  map.image_path = (folder / "images" / "a.jpg").string();
+  map.ids = {4, 2, 9};
+  map.camera = camera(port);
+  map.pose = {Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix(), {1, 2, 3}};
+  map.min_depth = 0.25f;
+  map.max_depth = 4.5f;
+  map.depth.create(7, 9);
+  map.normal.create(7, 9);
+  map.confidence.create(7, 9);
+  for (int v = 0; v < 7; ++v)
+    for (int u = 0; u < 9; ++u) {
+      map.depth(v, u) = (u + v) % 5 == 0 ? 0.0f : 0.3f + 0.07f * static_cast<float>(9 * v + u);
+      map.normal(v, u) = {0.6f, static_cast<float>(u), -0.8f};
+      map.confidence(v, u) = 0.01f * static_cast<float>(u * v);
+    }
+  return map;
+}
+
+class DmapTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test::empty_folder();
+    file_ = folder_ / "depth0004.dmap";
+    side_ = folder_ / "depth0004.dmap.json";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string error() {
+    return error_of([&] { read_dmap(file_); });
+  }
+  // The error of the .dmap with the bytes at `offset` replaced.
+  template <class T>
+  std::string error_with(std::size_t offset, T value) {
+    write_dmap(file_, depth_map(folder_, true), "x");
+    std::string bytes = read_file(file_);
+    EXPECT_LE(offset + sizeof value, bytes.size());
+    std::memcpy(bytes.data() + offset, &value, sizeof value);
+    test::put(file_, bytes);
+    const std::string message = error();
+    EXPECT_THAT(message, HasSubstr(file_.string()));
+    return message;
+  }
+
+  fs::path folder_, file_, side_;
+};
+
+// Where the fields of depth_map()'s file lie: 30 bytes, "images/a.jpg", the ids, then K, R, C.
+constexpr std::size_t kName = 30, kIds = kName + 12, kK = kIds + 4 + 3 * 4, kR = kK + 9 * 8,
+                      kC = kR + 9 * 8, kDepth = kC + 3 * 8;
+
+TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
+  for (const bool port : {false, true}) {
+    const DepthMap map = depth_map(folder_, port);
+    write_dmap(file_, map, "fingerprint");
+    const StoredDepthMap stored = read_dmap(file_);
+    EXPECT_EQ(stored.made_from, "fingerprint");
+    EXPECT_EQ(stored.map.image_path, map.image_path);
+    EXPECT_EQ(stored.map.ids, map.ids);
+    EXPECT_EQ(stored.map.min_depth, map.min_depth);
+    EXPECT_EQ(stored.map.max_depth, map.max_depth);
+    EXPECT_EQ(stored.map.pose.rotation, map.pose.rotation);
+    EXPECT_EQ(stored.map.pose.centre, map.pose.centre);
+    EXPECT_EQ(stored.map.camera.lens.cx, map.camera.lens.cx);
+    ASSERT_EQ(stored.map.camera.port.has_value(), port);
+    if (port) {
+      EXPECT_LT((stored.map.camera.port->normal - map.camera.port->normal).norm(), 1e-15);
+    }
+    EXPECT_EQ(cv::norm(stored.map.normal, map.normal, cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(stored.map.confidence, map.confidence, cv::NORM_INF), 0);
+    for (int v = 0; v < 7; ++v)
+      for (int u = 0; u < 9; ++u) {
+        // z is rounded to float once, lambda once more: at most 2 half units in the last place
+        // each, and z exceeds lambda d_z by no more than the port's few centimetres.
+        const float tolerance = 4e-7f * map.depth(v, u);
+        EXPECT_NEAR(stored.map.depth(v, u), map.depth(v, u), tolerance) << u << ", " << v;
+        EXPECT_EQ(stored.map.depth(v, u) == 0, map.depth(v, u) == 0);
+      }
+  }
+}
+
+// The file's depth is z in the real camera's frame, found here without the conversion under test:
+// the pixel's ray is followed for lambda and its end point looked at.
+TEST_F(DmapTest, StoresZDepthOfTheRealCamera) {
+  const DepthMap map = depth_map(folder_, true);
+  write_dmap(file_, map, "");
+  const std::string bytes = read_file(file_);
+  const refractive::FlatPortCamera<double> exact(map.camera.lens, *map.camera.port, 9, 7);
+  for (int v = 0; v < 7; ++v)
+    for (int u = 0; u < 9; ++u) {
+      float z = 0;
+      std::memcpy(&z, bytes.data() + kDepth + sizeof z * static_cast<std::size_t>(9 * v + u),
+                  sizeof z);
+      if (map.depth(v, u) == 0) {
+        EXPECT_EQ(z, 0);
+      } else {
+        const Eigen::Vector3d x = exact.ray({u, v}).at(static_cast<double>(map.depth(v, u)));
+        EXPECT_NEAR(z, x.z(), 1e-7 * x.z());
+        const auto projected = exact.project(x);
+        EXPECT_TRUE(projected.visible);
+        EXPECT_LT((projected.pixel - Eigen::Vector2d(u, v)).norm(), 1e-9);
+      }
+    }
+}
+
+TEST_F(DmapTest, WritesTheHeaderOfTheFormat) {
+  const DepthMap map = depth_map(folder_, false);
+  write_dmap(file_, map, "");
+  const std::string bytes = read_file(file_);
+  EXPECT_EQ(bytes.substr(0, 4), std::string("DR\7\0", 4));
+  EXPECT_EQ(bytes.substr(4, 16), std::string("\11\0\0\0\7\0\0\0\11\0\0\0\7\0\0\0", 16));
+  EXPECT_EQ(bytes.substr(28, 2 + 12), std::string("\14\0images/a.jpg", 14));
+  EXPECT_EQ(bytes.substr(kIds, 8), std::string("\3\0\0\0\4\0\0\0", 8));
+  double k[9];
+  std::memcpy(k, bytes.data() + kK, sizeof k);
+  EXPECT_EQ(k[0], 6);
+  EXPECT_EQ(k[5], 3.1);
+  EXPECT_EQ(k[8], 1);
+  EXPECT_EQ(bytes.size(), kDepth + 63 * (4 + 12 + 4));
+}
+
+TEST_F(DmapTest, CountsAsPinholeWithoutItsSideFile) {
+  const DepthMap map = depth_map(folder_, false);
+  write_dmap(file_, map, "x");
+  fs::remove(side_);
+  const StoredDepthMap stored = read_dmap(file_);
+  EXPECT_FALSE(stored.map.camera.port);
+  EXPECT_EQ(stored.made_from, "");
+  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  EXPECT_NEAR(stored.map.depth(3, 3), map.depth(3, 3), 1e-6);
+  EXPECT_LE(stored.map.min_depth, 0.30f + 0.07f);
+  EXPECT_GE(stored.map.max_depth, 0.30f + 0.07f * 61);
+}
+
+// As OpenMVS may write it: half the image's resolution, depth only, and the views map.
+TEST_F(DmapTest, ReadsMapsSmallerThanTheImageAndSkipsViews) {
+  DepthMap map = depth_map(folder_, false);
+  map.normal.release();
+  map.confidence.release();
+  write_dmap(file_, map, "");
+  fs::remove(side_);
+  std::string bytes = read_file(file_);
+  bytes[2] = 1 | 8;
+  bytes[4] = 18;
+  bytes[8] = 14;
+  test::put(file_, bytes + std::string(4 * 63, '\1'));
+  const DepthMap read = read_dmap(file_).map;
+  EXPECT_EQ(read.camera.width, 9);
+  EXPECT_EQ(read.camera.lens.fx, 3);  // K is of the image, twice the size
+  EXPECT_EQ(read.camera.lens.cx, (3.9 + 0.5) / 2 - 0.5);
+  EXPECT_EQ(read.normal.size(), read.depth.size());
+  EXPECT_EQ(cv::norm(read.normal), 0);
+  EXPECT_TRUE(read.confidence.empty());
+}
+
+TEST_F(DmapTest, NamesWhatIsWrong) {
+  EXPECT_THAT(error_with(0, 'X'), HasSubstr("DR"));
+  EXPECT_THAT(error_with(2, std::uint8_t{6}), HasSubstr("flags are 6"));
+  EXPECT_THAT(error_with(2, std::uint8_t{23}), HasSubstr("flags are 23"));
+  EXPECT_THAT(error_with(2, std::uint8_t{15}), HasSubstr("views"));
+  EXPECT_THAT(error_with(2, std::uint8_t{3}), HasSubstr("bytes follow"));
+  EXPECT_THAT(error_with(4, 8u), HasSubstr("larger than the image"));
+  EXPECT_THAT(error_with(12, 0u), HasSubstr("0x7"));
+  EXPECT_THAT(error_with(16, 0xFFFFFFFFu), HasSubstr("4294967295"));
+  EXPECT_THAT(error_with(20, HUGE_VALF), HasSubstr("inf"));
+  EXPECT_THAT(error_with(28, std::uint16_t{65535}), HasSubstr("image name"));
+  EXPECT_THAT(error_with(kIds, 0u), HasSubstr("no ids"));
+  EXPECT_THAT(error_with(kIds, 0xFFFFFFFFu), HasSubstr("ids"));
+  EXPECT_THAT(error_with(kK, 0.0), HasSubstr("K is no calibration matrix"));
+  EXPECT_THAT(error_with(kR + 8, 0.5), HasSubstr("R is no rotation"));
+  EXPECT_THAT(error_with(kC, std::nan("")), HasSubstr("C is not finite"));
+  EXPECT_THAT(error_with(kDepth + 4, -1.0f), HasSubstr("pixel (1, 0) is -1"));
+  EXPECT_THAT(error_with(kDepth + 4, std::nanf("")), HasSubstr("depth at pixel 1 is nan"));
+  EXPECT_THAT(error_with(kDepth + 63 * 4 + 12, HUGE_VALF), HasSubstr("normal at pixel 1"));
+}
+
+TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
+  write_dmap(file_, depth_map(folder_, true), "x");
+  const std::string side = read_file(side_);
+  const auto message = [&](const std::string& from, const std::string& to) {
+    std::string text = side;
+    EXPECT_NE(text.find(from), std::string::npos);
+    test::put(side_, text.replace(text.find(from), from.size(), to));
+    return error();
+  };
+  EXPECT_THAT(message("\"width\": 9", "\"width\": 10"), HasSubstr("10x7"));
+  EXPECT_THAT(message("\"fx\": 6.0", "\"fx\": 7.0"), HasSubstr("lens"));
+  EXPECT_THAT(message("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
+  EXPECT_THAT(message("\"n_glass\": 1.49", "\"n_glass\": 0.5"), HasSubstr("n_glass is 0.5"));
+  EXPECT_THAT(message("\"made_from\"", "\"made_by\""), HasSubstr("made_by"));
+  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+}
+
+TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
+  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  write_dmap(file_, depth_map(folder_, true), "abc");
+  EXPECT_EQ(dmap_made_from(file_), "abc");
+  test::put(side_, "{");
+  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  write_dmap(file_, depth_map(folder_, true), "def");
+  EXPECT_EQ(dmap_made_from(file_), "def");
+  fs::remove(file_);
+  EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+}
+
+TEST_F(DmapTest, RefusesToWriteWhatCannotBeRead) {
+  DepthMap map = depth_map(folder_, true);
+  map.depth(2, 2) = -0.5f;
+  EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("-0.5"));
+  map = depth_map(folder_, true);
+  map.camera.width = 10;
+  EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("9x7"));
+  map = depth_map(folder_, true);
+  map.confidence.create(3, 3);
+  EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("another size"));
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(DmapTest, SurvivesWrongInput) {
+  write_dmap(file_, depth_map(folder_, true), "x");
+  const std::string bytes = read_file(file_);
+  const std::string side = read_file(side_);
+  const auto reader = [](const fs::path& file) { read_dmap(file); };
+  test::expect_prefixes_refused(file_, bytes, reader);
+  test::expect_damage_survived(file_, bytes.substr(0, kDepth + 63 * 20), reader, 4);
+  test::put(file_, bytes);
+  const auto read_side = [&](const fs::path&) { read_dmap(file_); };
+  test::expect_prefixes_refused(side_, side, read_side, side.size() - 1);
+  test::put(side_, side);
+  int survived = 0;
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    std::string damaged = side;
+    damaged[i] ^= 1;
+    test::put(side_, damaged);
+    survived += !test::fails_naming(file_, [&] { read_dmap(file_); });
+  }
+  EXPECT_LT(survived, static_cast<int>(side.size() / 2));
+}
+
+}  // namespace
+}  // namespace axial::io

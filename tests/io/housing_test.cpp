@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/housing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.h"
+#include "io/wrong_input.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using testing::HasSubstr;
+
+const std::string kExample = R"({ "version": 1,
+  "ports": {
+    "main": { "type": "flat", "distance_m": 0.020, "thickness_m": 0.014, "normal": [0, 0, 1],
+              "n_air": 1.0, "n_glass": 1.52, "n_water": 1.333 },
+    "tilted": { "type": "flat", "distance_m": 0, "thickness_m": 0.5, "normal": [0.3, 0, 1],
+                "n_glass": 1.33, "n_water": 1.49 } },
+  "default": "main",
+  "cameras": { "2": "tilted" },
+  "images": { "dry_0001.jpg": "none", "left/a.jpg": "tilted" } }
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+class HousingTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test::empty_folder();
+    file_ = folder_ / "scene.housing.json";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Housing read(const std::string& text) {
+    test::put(file_, text);
+    return read_housing(file_);
+  }
+  // The error of the example with `from` replaced.
+  std::string error(const std::string& from, const std::string& to) {
+    const std::string message = error_of([&] { read(replaced(kExample, from, to)); });
+    EXPECT_THAT(message, HasSubstr(file_.string()));
+    return message;
+  }
+
+  fs::path folder_, file_;
+};
+
+TEST_F(HousingTest, ReadsTheExample) {
+  const Housing housing = read(kExample);
+  ASSERT_EQ(housing.ports.size(), 2u);
+  const auto& main = housing.ports.at("main");
+  EXPECT_EQ(main.distance, 0.02);
+  EXPECT_EQ(main.thickness, 0.014);
+  EXPECT_EQ(main.n_glass, 1.52);
+  EXPECT_EQ(main.n_water, 1.333);
+  EXPECT_EQ(main.normal, Eigen::Vector3d(0, 0, 1));
+  const auto& tilted = housing.ports.at("tilted");
+  EXPECT_EQ(tilted.n_air, 1);
+  EXPECT_NEAR(tilted.normal.norm(), 1, 1e-15);
+  EXPECT_NEAR(tilted.normal.x() / tilted.normal.z(), 0.3, 1e-15);
+  EXPECT_EQ(housing.port_of("dry_0001.jpg", 2), "none");
+  EXPECT_EQ(housing.port_of("other.jpg", 2), "tilted");
+  EXPECT_EQ(housing.port_of("other.jpg", 1), "main");
+}
+
+TEST_F(HousingTest, ReadsBackWhatItWrites) {
+  Housing housing = read(kExample);
+  housing.ports["main"].normal = Eigen::Vector3d(0.01, -0.02, 1).normalized();
+  write_housing(file_, housing);
+  const Housing again = read_housing(file_);
+  EXPECT_EQ(again.default_port, housing.default_port);
+  EXPECT_EQ(again.cameras, housing.cameras);
+  EXPECT_EQ(again.images, housing.images);
+  for (const auto& [name, port] : housing.ports) {
+    EXPECT_EQ(again.ports.at(name).distance, port.distance);
+    EXPECT_EQ(again.ports.at(name).n_glass, port.n_glass);
+    EXPECT_LT((again.ports.at(name).normal - port.normal).norm(), 1e-15);
+  }
+  const std::string bytes = read_file(file_);
+  write_housing(file_, again);
+  EXPECT_EQ(read_file(file_), bytes);
+}
+
+TEST_F(HousingTest, NamesKeyAndValue) {
+  EXPECT_THAT(error("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
+  EXPECT_THAT(error("\"version\": 1,", ""), HasSubstr("'version' is missing"));
+  EXPECT_THAT(error("\"default\": \"main\",", ""), HasSubstr("'default' is missing"));
+  EXPECT_THAT(error("\"default\"", "\"defualt\""), HasSubstr("defualt"));
+  EXPECT_THAT(error("\"distance_m\": 0.020", "\"distance_mm\": 20"), HasSubstr("distance"));
+  EXPECT_THAT(error("0.020", "20"), HasSubstr("ports.main.distance_m is 20"));
+  EXPECT_THAT(error("0.020", "-0.02"), HasSubstr("distance_m is -0.02"));
+  EXPECT_THAT(error("0.020", "\"2 cm\""), HasSubstr("2 cm"));
+  EXPECT_THAT(error("0.014", "-0.014"), HasSubstr("thickness_m is -0.014"));
+  EXPECT_THAT(error("0.014", "null"), HasSubstr("thickness_m is null"));
+  EXPECT_THAT(error("1.52", "0.9"), HasSubstr("n_glass is 0.9"));
+  EXPECT_THAT(error("1.333", "1333"), HasSubstr("n_water is 1333"));
+  EXPECT_THAT(error("\"n_air\": 1.0", "\"n_air\": 1.4"), HasSubstr("n_air is 1.4"));
+  EXPECT_THAT(error("[0, 0, 1]", "[0, 0, 0]"), HasSubstr("main.normal"));
+  EXPECT_THAT(error("[0, 0, 1]", "[0, 0, -1]"), HasSubstr("backwards"));
+  EXPECT_THAT(error("[0, 0, 1]", "[0, 1, 0]"), HasSubstr("backwards"));
+  EXPECT_THAT(error("[0, 0, 1]", "[0, 0]"), HasSubstr("three numbers"));
+  EXPECT_THAT(error("[0, 0, 1]", "[0, 0, 1e400]"), HasSubstr("JSON"));
+  EXPECT_THAT(error("\"type\": \"flat\"", "\"type\": \"dome\""), HasSubstr("not supported yet"));
+  EXPECT_THAT(error("\"type\": \"flat\"", "\"type\": \"cube\""), HasSubstr("cube"));
+  EXPECT_THAT(error("\"default\": \"main\"", "\"default\": \"mian\""), HasSubstr("mian"));
+  EXPECT_THAT(error("\"2\": \"tilted\"", "\"2\": \"x\""), HasSubstr("cameras.2 is 'x'"));
+  EXPECT_THAT(error("\"2\": \"tilted\"", "\"two\": \"tilted\""), HasSubstr("two"));
+  EXPECT_THAT(error("\"2\": \"tilted\"", "\"2\": 3"), HasSubstr("expected a text"));
+  EXPECT_THAT(error("jpg\": \"none\"", "jpg\": \"nona\""), HasSubstr("nona"));
+  EXPECT_THAT(error("\"tilted\": {", "\"main\": {"), HasSubstr("occurs twice"));
+  EXPECT_THAT(error("\"tilted\": {", "\"none\": {"), HasSubstr("none"));
+  EXPECT_THAT(error("{ \"version\"", "[ \"version\""), HasSubstr("JSON"));
+}
+
+TEST_F(HousingTest, RefusesToWriteWhatCannotBeRead) {
+  Housing housing = read(kExample);
+  housing.default_port = "gone";
+  EXPECT_THAT(error_of([&] { write_housing(file_, housing); }), HasSubstr("gone"));
+  housing = read(kExample);
+  housing.ports["main"].thickness = -1;
+  EXPECT_THAT(error_of([&] { write_housing(file_, housing); }), HasSubstr("thickness_m is -1"));
+  housing = read(kExample);
+  housing.images["\xFF.jpg"] = "none";
+  EXPECT_THAT(error_of([&] { write_housing(file_, housing); }), HasSubstr(file_.string()));
+}
+
+TEST_F(HousingTest, StandsBesideTheScene) {
+  EXPECT_EQ(housing_beside("/a/scene.mvs"), "/a/scene.housing.json");
+  EXPECT_EQ(housing_beside("/a/b.c/scene"), "/a/b.c/scene.housing.json");
+}
+
+TEST_F(HousingTest, AttachesPortsByTheLongestMatchingName) {
+  Housing housing = read(kExample);
+  housing.cameras.clear();
+  housing.images["a.jpg"] = "main";
+  housing.default_port = "none";
+  Scene scene;
+  for (const char* path : {"/x/left/a.jpg", "/x/right/a.jpg", "/x/b.jpg", "/x/dry_0001.jpg",
+                           "left/a.jpg", "/x/notleft/aa.jpg"}) {
+    scene.images.emplace_back().path = path;
+    scene.images.back().port_name = "stale";
+  }
+  attach_ports(scene, housing);
+  const std::vector<std::string> expected{"tilted", "main", "", "", "tilted", ""};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(scene.images[i].port_name, expected[i]) << i;
+    EXPECT_EQ(scene.images[i].camera.port.has_value(), !expected[i].empty()) << i;
+  }
+  EXPECT_EQ(scene.images[0].camera.port->n_water, 1.49);
+}
+
+TEST_F(HousingTest, DoesNotGuessAtCameraIds) {
+  const Housing housing = read(kExample);
+  Scene scene;
+  scene.images.emplace_back().path = "/x/left/a.jpg";
+  attach_ports(scene, housing);
+  scene.images.emplace_back().path = "/x/b.jpg";
+  EXPECT_THAT(error_of([&] { attach_ports(scene, housing); }), HasSubstr("/x/b.jpg"));
+}
+
+TEST_F(HousingTest, SurvivesWrongInput) {
+  const auto reader = [](const fs::path& file) { read_housing(file); };
+  // The last byte is a newline, which JSON does not need.
+  test::expect_prefixes_refused(file_, kExample, reader, kExample.size() - 1);
+  test::expect_damage_survived(file_, kExample, reader);
+  const std::string deep(100000, '[');
+  EXPECT_THAT(error_of([&] { read(deep); }), HasSubstr("JSON"));
+  EXPECT_THAT(error_of([&] { read(deep + std::string(100000, ']')); }), HasSubstr("braces"));
+}
+
+}  // namespace
+}  // namespace axial::io
