@@ -2,7 +2,6 @@
 // The paper's lookup L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of its pixels' rays.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -52,7 +51,7 @@ class PixelLookup {
 
   const Vector3<T>& axis() const { return axis_; }
 
-  // The tabled pixel nearest to `pixel` (halves away from zero); far outside it is the nearest one
+  // The tabled pixel nearest to `pixel` (halves upwards); far outside it is the nearest one
   // of the table's edge, and for NaN a corner.
   IntegerPixel round(const Vector2<T>& pixel) const {
     return {round_clamped(pixel.x(), high_u_), round_clamped(pixel.y(), high_v_)};
@@ -87,7 +86,7 @@ class PixelLookup {
   int round_clamped(const T& x, int high) const {
     if (!(x > static_cast<T>(low_))) return low_;
     if (x >= static_cast<T>(high)) return high;
-    return static_cast<int>(std::lround(x));
+    return static_cast<int>(x - static_cast<T>(low_) + T(0.5)) + low_;
   }
 
   PinholeLens<T> lens_;

@@ -89,7 +89,9 @@ View random_fermat_view(Random& random) {
 
 TEST(Fermat, AgreesWithForwardProjection) {
   Random random(31);
-  for (int k = 0; k < 60; ++k) {
+  double largest = 0;
+  int tested = 0;
+  for (int k = 0; k < 200; ++k) {
     const View view = random_fermat_view(random);
     const auto camera = view.camera<double>();
     // A point by pinhole geometry alone, so that no ray of refractive/ is involved.
@@ -97,13 +99,18 @@ TEST(Fermat, AgreesWithForwardProjection) {
         view.lens.bearing(random_pixel(random, view)) * random.uniform(0.3, 3);
     const Projection<double> image = camera.project(X);
     if (!image.visible) continue;
-    EXPECT_LT((image.pixel - image_by_fermat(view, X).pixel).norm(), 1e-5);
+    largest = std::max(largest, (image.pixel - image_by_fermat(view, X).pixel).norm());
+    ++tested;
   }
+  report("Fermat against forward projection, largest [px]", largest);
+  EXPECT_LT(largest, 1e-5);
+  EXPECT_GT(tested, 100);  // refraction moves the others out of the image
 }
 
 TEST(Fermat, AgreesWithBackProjection) {
   Random random(32);
-  for (int k = 0; k < 60; ++k) {
+  double largest = 0;
+  for (int k = 0; k < 200; ++k) {
     const View view = random_fermat_view(random);
     const auto camera = view.camera<double>();
     const Vector2<double> pixel = random_pixel(random, view);
@@ -111,9 +118,11 @@ TEST(Fermat, AgreesWithBackProjection) {
     const AxialRay<double> ray = camera.ray(pixel);
     const Vector3<double> X = exit + random.uniform(0.3, 3) * ray.direction;
     const Image image = image_by_fermat(view, X);
-    EXPECT_LT((image.pixel - pixel).norm(), 1e-5);
+    largest = std::max(largest, (image.pixel - pixel).norm());
     EXPECT_LT((image.exit - exit).norm(), 1e-8);
   }
+  report("Fermat against back-projection, largest [px]", largest);
+  EXPECT_LT(largest, 1e-5);
 }
 
 // The oracle itself: moving a bend out of the plane of refraction, or along it, lengthens the path.

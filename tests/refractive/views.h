@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -13,6 +14,11 @@
 #include "refractive/flat_port_camera.h"
 
 namespace axial::refractive::testing {
+
+// Shows a measured number in the log, where an acceptance run looks for it.
+inline void report(const char* what, double value) {
+  std::printf("measured: %s %.3g\n", what, value);
+}
 
 inline constexpr double kDegree = std::numbers::pi / 180;
 
