@@ -18,15 +18,20 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
       tbb::simple_partitioner());
 }
 
+// Built where it stays: a copy of a global_control compiles, but limits nothing.
 struct ThreadLimit::Control {
+  explicit Control(std::size_t threads)
+      : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  Control(const Control&) = delete;
+  Control& operator=(const Control&) = delete;
+
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(unsigned threads) {
   const auto limit =
       threads > 0 ? threads : static_cast<unsigned>(tbb::info::default_concurrency());
-  control_ = std::make_unique<Control>(
-      Control{tbb::global_control(tbb::global_control::max_allowed_parallelism, limit)});
+  control_ = std::make_unique<Control>(limit);
 }
 
 ThreadLimit::~ThreadLimit() = default;

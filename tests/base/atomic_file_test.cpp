@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
 
 #include "base/error.h"
 
@@ -16,9 +20,16 @@ std::size_t files_in(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-TEST(AtomicFile, KeepsTheOldContentsWhenTheWriterFails) {
-  const fs::path folder = fs::path(testing::TempDir()) / "atomic_file_keeps";
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder =
+      fs::path(testing::TempDir()) / fmt::format("axial_atomic_file_{}_{}", name, ::getpid());
+  fs::remove_all(folder);
   fs::create_directories(folder);
+  return folder;
+}
+
+TEST(AtomicFile, KeepsTheOldContentsWhenTheWriterFails) {
+  const fs::path folder = fresh_folder("keeps");
   const fs::path file = folder / "a.txt";
   write_atomically(file, "old");
   EXPECT_THROW(write_atomically(file,
@@ -41,17 +52,90 @@ TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
   }
 }
 
-TEST(AtomicFile, ReportsAFullDisk) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  const fs::path folder = fs::path(testing::TempDir()) / "atomic_file_full";
-  fs::create_directories(folder);
-  EXPECT_THROW(write_atomically(folder / "a.txt",
-                                [](const fs::path& temporary) {
-                                  fs::create_symlink("/dev/full", temporary);
-                                  write_atomically(temporary / "x", "y");
-                                }),
-               Error);
-  EXPECT_EQ(files_in(folder), 0u);
+// While it lives, no file of this process can grow beyond `bytes`: writing more fails as it does on
+// a full disk, and the limit works on any file system.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
+  const fs::path folder = fresh_folder("full");
+  const fs::path file = folder / "a.txt";
+  write_atomically(file, "old");
+  // The limit falls within the first buffer, between buffers, and on the very last byte.
+  for (const rlim_t limit : {1, 5000, 99999}) {
+    std::string message;
+    {
+      const FileSizeLimit full(limit);
+      try {
+        write_atomically(file, std::string(100000, 'x'));
+      } catch (const Error& error) {
+        message = error.what();
+      }
+    }
+    EXPECT_THAT(message, testing::HasSubstr(file.string()));
+    EXPECT_THAT(message, testing::HasSubstr("too large"));  // what the limit is called
+    EXPECT_EQ(read_file(file), "old");
+    EXPECT_EQ(files_in(folder), 1u);
+  }
+  write_atomically(file, std::string(100000, 'x'));
+  EXPECT_EQ(read_file(file).size(), 100000u);
+  fs::remove_all(folder);
+}
+
+TEST(AtomicFile, KeepsTheExtensionOfTheTemporary) {
+  const fs::path folder = fresh_folder("extension");
+  write_atomically(folder / "a.b.tiff", [&](const fs::path& temporary) {
+    EXPECT_EQ(temporary.extension(), ".tiff");
+    EXPECT_EQ(temporary.parent_path(), folder);
+    EXPECT_NE(temporary.filename(), "a.b.tiff");
+    write_atomically(temporary, "x");
+  });
+  EXPECT_EQ(read_file(folder / "a.b.tiff"), "x");
+  fs::remove_all(folder);
+}
+
+TEST(AtomicFile, FailsWhereTheWriterWroteNothing) {
+  const fs::path folder = fresh_folder("nothing");
+  EXPECT_THROW(write_atomically(folder / "a.txt", [](const fs::path&) {}), Error);
+  fs::create_directories(folder / "b.txt" / "c");
+  EXPECT_THROW(write_atomically(folder / "b.txt", "x"), Error);  // a folder is in the way
+  EXPECT_EQ(files_in(folder), 1u);
+  fs::remove_all(folder);
+}
+
+TEST(ReadFile, ReadsBytesAsTheyAre) {
+  const fs::path folder = fresh_folder("read");
+  const std::string bytes("a\0\r\n\xFF", 5);
+  write_atomically(folder / "a", bytes);
+  EXPECT_EQ(read_file(folder / "a"), bytes);
+  EXPECT_EQ(read_file(folder / "a", 5), bytes);
+  write_atomically(folder / "empty", "");
+  EXPECT_EQ(read_file(folder / "empty"), "");
+  for (const fs::path& file : {folder / "missing", folder}) {
+    try {
+      read_file(file);
+      ADD_FAILURE() << file;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(file.string()));
+    }
+  }
+  EXPECT_THROW(read_file(folder / "a", 4), Error);
   fs::remove_all(folder);
 }
 
