@@ -78,8 +78,8 @@ int splat_side(std::span<const Eigen::Vector3f> images, const Viewpoint& view) {
            p.y() < static_cast<float>(view.height);
   });
   const double area = static_cast<double>(view.width) * view.height;
-  return std::clamp(
-      static_cast<int>(std::lround(1.5 * std::sqrt(area / static_cast<double>(inside + 1)))), 1, 7);
+  const double spacing = std::sqrt(area / static_cast<double>(inside + 1));
+  return std::clamp(static_cast<int>(std::lround(1.5 * spacing)), 2, 7);
 }
 
 std::pair<double, double> inner_range(std::vector<float> values, double percent) {

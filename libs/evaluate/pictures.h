@@ -13,8 +13,8 @@
 
 namespace axial::evaluate {
 
-// The colour ramp of all error pictures: OpenCV's "turbo", dark blue at 0 through cyan, green and
-// yellow to dark red at `upper` and beyond. Not finite: black.
+// The colour ramp of all error pictures: OpenCV's "turbo", dark violet at 0 through blue, cyan,
+// green and yellow to dark red at `upper` and beyond. Not finite: black.
 Rgb error_color(float error, double upper);
 std::vector<Rgb> error_colors(std::span<const float> errors, double upper);
 
