@@ -29,33 +29,40 @@ struct DepthAlongRay {
   double lambda(double z_depth) const { return (z_depth - origin_z) / direction_z; }
 };
 
-DepthAlongRay depth_along_ray(const CameraVariant<double>& camera, double u, double v) {
-  const auto ray = std::visit([&](const auto& c) { return c.ray({u, v}); }, camera);
+template <class Camera>
+DepthAlongRay depth_along_ray(const Camera& camera, double u, double v) {
+  const auto ray = camera.ray({u, v});
   return {ray.origin.z(), ray.direction.z()};
 }
 
-DepthAlongRay centre_ray(const CameraVariant<double>& camera, const cv::Mat1f& depth) {
-  return depth_along_ray(camera, (depth.cols - 1) / 2.0, (depth.rows - 1) / 2.0);
+DepthAlongRay centre_ray(const CameraModel& model) {
+  return std::visit(
+      [&](const auto& camera) {
+        return depth_along_ray(camera, (model.width - 1) / 2.0, (model.height - 1) / 2.0);
+      },
+      make_camera<double>(model));
 }
 
-// `depth` with every valid value replaced by convert(ray, value). Error for results that are no
-// depth: not finite or not positive.
+// `depth` with every valid value replaced by convert(ray, value). Error for values and results that
+// are no depth: not finite or not positive.
 template <class Convert>
-cv::Mat1f converted(const cv::Mat1f& depth, const CameraVariant<double>& camera,
-                    const std::string& file, Convert convert) {
-  cv::Mat1f result(depth.size());
-  for (int v = 0; v < depth.rows; ++v)
-    for (int u = 0; u < depth.cols; ++u) {
-      const float value = depth(v, u);
-      result(v, u) = 0;
-      if (value == 0) continue;
-      const auto other =
-          static_cast<float>(convert(depth_along_ray(camera, u, v), static_cast<double>(value)));
-      if (!(value > 0 && std::isfinite(value) && other > 0 && std::isfinite(other)))
-        fail("{}: depth at pixel ({}, {}) is {}, which is no depth before this camera", file, u, v,
-             value);
-      result(v, u) = other;
-    }
+cv::Mat1f converted(const cv::Mat1f& depth, const CameraModel& model, const std::string& file,
+                    Convert convert) {
+  cv::Mat1f result(depth.size(), 0.0f);
+  const auto convert_all = [&](const auto& camera) {
+    for (int v = 0; v < depth.rows; ++v)
+      for (int u = 0; u < depth.cols; ++u) {
+        const float value = depth(v, u);
+        if (value == 0) continue;
+        const DepthAlongRay ray = depth_along_ray(camera, u, v);
+        const auto other = static_cast<float>(convert(ray, static_cast<double>(value)));
+        if (!(value > 0 && std::isfinite(value) && other > 0 && std::isfinite(other)))
+          fail("{}: depth at pixel ({}, {}) is {}, which is no depth before this camera", file, u,
+               v, value);
+        result(v, u) = other;
+      }
+  };
+  std::visit(convert_all, make_camera<double>(model));
   return result;
 }
 
@@ -216,7 +223,7 @@ void write_header(ByteWriter& out, const fs::path& path, const DepthMap& map,
     out.write(static_cast<std::uint32_t>(map.width()));
     out.write(static_cast<std::uint32_t>(map.height()));
   }
-  const DepthAlongRay ray = centre_ray(make_camera<double>(map.camera), z_depth);
+  const DepthAlongRay ray = centre_ray(map.camera);
   const auto [lowest, highest] = enclosing(ray.z(static_cast<double>(map.min_depth)),
                                            ray.z(static_cast<double>(map.max_depth)), z_depth);
   out.write(lowest);
@@ -246,14 +253,13 @@ StoredDepthMap read_dmap(const fs::path& path) {
   const auto side = read_dmap_side_file(path);
   if (side) use_side_file(*side, dmap_side_path(path).string(), stored);
   map.image_path = (fs::absolute(path).parent_path() / map.image_path).lexically_normal().string();
-  const CameraVariant<double> camera = make_camera<double>(map.camera);
-  map.depth = converted(map.depth, camera, file,
+  map.depth = converted(map.depth, map.camera, file,
                         [](const DepthAlongRay& ray, double z) { return ray.lambda(z); });
   if (side) {
     map.min_depth = side->min_depth;
     map.max_depth = side->max_depth;
   } else {
-    const DepthAlongRay ray = centre_ray(camera, map.depth);
+    const DepthAlongRay ray = centre_ray(map.camera);
     std::tie(map.min_depth, map.max_depth) =
         enclosing(ray.lambda(static_cast<double>(map.min_depth)),
                   ray.lambda(static_cast<double>(map.max_depth)), map.depth);
@@ -264,9 +270,8 @@ StoredDepthMap read_dmap(const fs::path& path) {
 void write_dmap(const fs::path& path, const DepthMap& map, const std::string& made_from) {
   const std::string file = path.string();
   check_map(map, file);
-  const CameraVariant<double> camera = make_camera<double>(map.camera);
   const cv::Mat1f z_depth =
-      converted(map.depth, camera, file,
+      converted(map.depth, map.camera, file,
                 [](const DepthAlongRay& ray, double lambda) { return ray.z(lambda); });
   ByteWriter out;
   write_header(out, path, map, z_depth);
