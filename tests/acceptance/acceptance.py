@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The slow acceptance points: run by tests/acceptance.sh, which says how."""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = ROOT / "build" / "release" / "bin"
+BASE = ROOT / "build" / "acceptance"
+SHARED = ROOT.parent / "shared" / "data"
+TOLERANCE = {"closeup": 0.002, "reef": 0.005}
+GSD = {"closeup": 0.00125, "reef": 0.00459}  # [m], median depth / f
+
+POINTS = {}
+
+
+def point(wanted):
+    def register(function):
+        POINTS[function.__name__.replace("_", "-")] = (function, wanted)
+        return function
+    return register
+
+
+class Skipped(Exception):
+    pass
+
+
+# What is measured.
+
+def source_state():
+    """Names this source: the commit, and a hash of what differs from it."""
+    git = lambda *arguments: subprocess.run(["git", *arguments], cwd=ROOT, check=True,
+                                            capture_output=True, text=True).stdout
+    changes = git("diff", "HEAD", "--", ".", ":!*.md")
+    commit = git("rev-parse", "--short=12", "HEAD").strip()
+    if not changes:
+        return commit
+    hashed = subprocess.run(["sha1sum"], input=changes, capture_output=True, text=True).stdout
+    return f"{commit}-{hashed[:8]}"
+
+
+def measured(log, *command):
+    """Runs a command, output to `log`; wall and CPU seconds, peak memory in bytes."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    begin = time.monotonic()
+    with open(log, "w") as out:
+        process = subprocess.Popen([str(c) for c in command], stdout=out, stderr=subprocess.STDOUT,
+                                   stdin=subprocess.DEVNULL, cwd=ROOT)
+        _, status, usage = os.wait4(process.pid, 0)
+    if os.waitstatus_to_exitcode(status) != 0:
+        raise RuntimeError(f"{pathlib.Path(command[0]).name} failed, see {log}")
+    return {"wall": time.monotonic() - begin, "cpu": usage.ru_utime + usage.ru_stime,
+            "memory": usage.ru_maxrss * 1024}
+
+
+def step(name, *arguments):
+    """A shell function of apps/pipeline/steps.sh."""
+    script = f'source apps/pipeline/steps.sh; bin={BIN}; {name} "$@"'
+    subprocess.run(["bash", "-euo", "pipefail", "-c", script, name, *map(str, arguments)], cwd=ROOT,
+                   check=True)
+
+
+def scene_data(scene):
+    data = ROOT / "data" / "synthetic" / scene
+    if not data.is_dir():
+        raise Skipped(f"no {data}")
+    return data
+
+
+def points_in(folder):
+    header = (folder / "scene_dense.ply").read_bytes()[:2000].decode("ascii", "replace")
+    return int(re.search(r"element vertex (\d+)", header)[1])
+
+
+def megapixels(folder):
+    """Of all depth maps in a folder, from their headers."""
+    total = 0
+    for path in folder.glob("depth????.dmap"):
+        width, height = (int.from_bytes(path.read_bytes()[i:i + 4], "little") for i in (12, 16))
+        total += width * height
+    return total / 1e6
+
+
+def densified(folder, model, images, housing, *options):
+    """InterfaceCOLMAP and DensifyPointCloud; what the latter cost. Kept if there."""
+    cost = folder / "cost.json"
+    if cost.exists():
+        return json.loads(cost.read_text())
+    shutil.rmtree(folder, ignore_errors=True)
+    port = ["--housing", housing] if housing else []
+    measured(folder / "import.log", BIN / "InterfaceCOLMAP", "-i", model, "--image-folder", images,
+             "-o", folder / "scene.mvs", *port)
+    result = measured(folder / "densify.log", BIN / "DensifyPointCloud", "-i", "scene.mvs", "-w",
+                      folder, *(["--refractive"] if housing else []), *options)
+    result |= {"points": points_in(folder), "megapixels": megapixels(folder)}
+    cost.write_text(json.dumps(result))
+    return result
+
+
+def evaluated(folder, scene, housing):
+    data, truth = scene_data(scene), BASE / "truth" / scene
+    step("make_truth", scene, truth)
+    file = folder / "evaluation.json"
+    measured(folder / "evaluate.log", BIN / "EvaluateReconstruction", "-i",
+             folder / "scene_dense.ply", "-m", truth / "mesh.ply", "--cameras", data / "sparse",
+             "--tolerance", TOLERANCE[scene], "--json", file,
+             *(["--housing", data / "housing.json"] if housing else []))
+    result = json.loads(file.read_text())
+    return {"mean": result["accuracy"]["mean"], "median": result["accuracy"]["median"],
+            "points": result["accuracy"]["count"], "f": result["scores"][0]["f_score"]}
+
+
+def poses(scene, medium, number):
+    """A COLMAP run, brought to metres. It does not depend on this source, and is kept for good."""
+    data, work = scene_data(scene), BASE / "colmap" / f"{scene}-{medium}-{number}"
+    lens = subprocess.run(
+        ["bash", "-c", f'source apps/pipeline/steps.sh; pinhole_parameters "{data}/sparse"'],
+        cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+    if medium == "air":
+        step("colmap_model", data / "air", work, "PINHOLE", lens, "fixed")
+    else:
+        step("colmap_model", data / "water", work, "OPENCV", lens + ",0,0,0,0", "free")
+    step("align_to_truth", work / "model", data / "sparse", work / "metric")
+    return work / "metric"
+
+
+def cloud(work, scene, medium, model, name, *, housing=None, level=0):
+    data, folder = scene_data(scene), work / f"{scene}-{name}"
+    densified(folder, model, data / medium, housing, "--resolution-level", level)
+    return evaluated(folder, scene, medium == "water")
+
+
+def millimetres(result):
+    return (f"mean {result['mean'] * 1e3:.3f} mm, median {result['median'] * 1e3:.3f} mm, "
+            f"F {result['f']:.3f}, {result['points']:,} points")
+
+
+def both_media(work, scene, model, name):
+    housing = scene_data(scene) / "housing.json"
+    air = cloud(work, scene, "air", model, f"{name}-air")
+    water = cloud(work, scene, "water", model, f"{name}-water", housing=housing)
+    return air, water
+
+
+# The points.
+
+def shared_poses(work, scene):
+    runs = [both_media(work, scene, poses(scene, "air", i), f"colmap{i}") for i in (1, 2, 3)]
+    runs.sort(key=lambda run: run[1]["mean"] / run[0]["mean"])
+    air, water = runs[1]
+    ratios = ", ".join(f"{w['mean'] / a['mean']:.3f}" for a, w in runs)
+    seen = f"ratios {ratios}; median run: air {millimetres(air)}; refractive {millimetres(water)}"
+    return seen, water["mean"] <= 1.1 * air["mean"] and water["f"] >= air["f"] - 0.02
+
+
+SHARED_WANTED = "3 COLMAP runs, median: refractive mean at most 1.1 x in air, F no lower than -0.02"
+
+
+@point(SHARED_WANTED)
+def closeup_colmap_poses(work):
+    return shared_poses(work, "closeup")
+
+
+@point(SHARED_WANTED)
+def reef_colmap_poses(work):
+    return shared_poses(work, "reef")
+
+
+def true_poses(work, scene):
+    air, water = both_media(work, scene, scene_data(scene) / "sparse", "true")
+    return f"air {millimetres(air)}; refractive {millimetres(water)}", None
+
+
+@point("report both, on true poses")
+def closeup_true_poses(work):
+    return true_poses(work, "closeup")
+
+
+@point("report both, on true poses")
+def reef_true_poses(work):
+    return true_poses(work, "reef")
+
+
+def self_calibrated(work, scene):
+    result = cloud(work, scene, "water", poses(scene, "water", 1), "selfcalibrated")
+    return millimetres(result), None
+
+
+@point("report (OpenMVS: 2.4 mm mean, in air 0.65)")
+def closeup_self_calibrated(work):
+    return self_calibrated(work, "closeup")
+
+
+@point("report (OpenMVS: 2.0 mm mean, in air 2.1)")
+def reef_self_calibrated(work):
+    return self_calibrated(work, "reef")
+
+
+def in_gsd(work, scene):
+    air = cloud(work, scene, "air", scene_data(scene) / "sparse", "true-air")
+    gsd = GSD[scene]
+    return (f"mean {air['mean'] / gsd:.2f} GSD, median {air['median'] / gsd:.2f} GSD, "
+            f"F {air['f']:.3f}, {air['points']:,} points"), None
+
+
+@point("report beside OpenMVS: mean 0.52, median 0.36, F 0.715, 1.31 million points")
+def closeup_gsd(work):
+    return in_gsd(work, "closeup")
+
+
+@point("report beside OpenMVS: mean 0.45, median 0.37, F 0.776, 1.07 million points")
+def reef_gsd(work):
+    return in_gsd(work, "reef")
+
+
+def fountain(part):
+    path = SHARED / "fountain-P11" / part
+    if not path.exists():
+        raise Skipped(f"no {path}")
+    return path
+
+
+@point("at least 615,564 points (OpenMVS), CPU-seconds, peak memory")
+def fountain_points(work):
+    cost = densified(work / "fountain", fountain("sparse"), fountain("images"), None,
+                     "--resolution-level", 2)
+    seen = (f"{cost['points']:,} points, {cost['cpu']:.0f} CPU-s "
+            f"({cost['cpu'] / cost['megapixels']:.1f} per megapixel), "
+            f"{cost['memory'] / 2**20:.0f} MiB")
+    return seen, cost["points"] >= 615564
+
+
+@point("at least 90 % of the points that two held-out images see have ZNCC above 0.6 in them")
+def fountain_held_out(work):
+    folder = work / "fountain-held-out"
+    fountain("sparse")
+    densified(work / "fountain", fountain("sparse"), fountain("images"), None,
+              "--resolution-level", 2)
+    fractions = []
+    for a, b in (("0004.jpg", "0005.jpg"), ("0002.jpg", "0008.jpg")):
+        name = f"{a[:4]}-{b[:4]}"
+        step_log = folder / f"{name}.log"
+        measured(step_log, sys.executable, ROOT / "tests/acceptance/hold_out.py",
+                 fountain("sparse"), folder / f"model-{name}", a, b)
+        densified(folder / name, folder / f"model-{name}", fountain("images"), None,
+                  "--resolution-level", 2)
+        measured(step_log, BIN / "held_out_check", work / "fountain" / "scene.mvs",
+                 folder / name / "scene_dense.ply", a, b, 2)
+        numbers = re.search(r"seen (\d+) agree (\d+) fraction ([\d.]+)", step_log.read_text())
+        fractions.append((name, int(numbers[1]), float(numbers[3])))
+    seen = "; ".join(f"{name}: {fraction:.1%} of {count:,}" for name, count, fraction in fractions)
+    return seen, min(fraction for _, _, fraction in fractions) >= 0.9
+
+
+@point("11 of 11 images registered by a COLMAP run of one's own")
+def fountain_colmap(work):
+    k = [float(x) for x in fountain("K.txt").read_text().split()]
+    model = BASE / "colmap" / "fountain"
+    step("colmap_model", fountain("images"), model, "PINHOLE",
+         f"{k[0]},{k[4]},{k[2] + 0.5},{k[5] + 0.5}", "fixed")
+    count = int.from_bytes((model / "model" / "images.bin").read_bytes()[:8], "little")
+    return f"{count} of 11", count == 11
+
+
+@point("report (OpenMVS: 183,051 points)")
+def scene_v6(work):
+    source = SHARED / "openmvs-files"
+    if not source.exists():
+        raise Skipped(f"no {source}")
+    folder = work / "scene-v6"
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source / "scene_v6.mvs", folder / "scene.mvs")
+    if not (folder / "images").exists():
+        (folder / "images").symlink_to(source / "images")
+    for path in folder.glob("*.dmap*"):
+        path.unlink()
+    cost = measured(folder / "densify.log", BIN / "DensifyPointCloud", "-i", "scene.mvs", "-w",
+                    folder, "--resolution-level", 0)
+    return f"{points_in(folder):,} points, {cost['cpu']:.1f} CPU-s", None
+
+
+@point("at most 40 CPU-s per megapixel of depth map at the defaults")
+def speed(work):
+    data, seen, worst = scene_data("closeup"), [], 0
+    for medium, housing in (("air", None), ("water", data / "housing.json")):
+        # At 1024 x 768 the defaults are level 0: --min-resolution 640 forbids to halve.
+        cost = densified(work / f"closeup-true-{medium}", data / "sparse", data / medium, housing,
+                         "--resolution-level", 0)
+        per = cost["cpu"] / cost["megapixels"]
+        worst = max(worst, per)
+        seen.append(f"{medium} {per:.1f} CPU-s/Mpx, {cost['memory'] / 2**20:.0f} MiB")
+    return "; ".join(seen), worst <= 40
+
+
+@point("one clear line, exit 1, no crash, no partial output")
+def wrong_input(work):
+    return program_test(work, "wrong_input_test")
+
+
+@point("same bytes after kill -9 and for 1 and 2 threads; finished maps not recomputed")
+def kill_and_threads(work):
+    return program_test(work, "end_to_end_test")
+
+
+def program_test(work, name):
+    os.environ["AXIAL_BIN"] = str(BIN)
+    log = work / f"{name}.log"
+    try:
+        measured(log, sys.executable, "-B", ROOT / "tests" / "apps" / f"{name}.py")
+    except RuntimeError as error:
+        return str(error), False
+    return re.search(r"Ran \d+ tests", log.read_text())[0] + ", all pass", True
+
+
+@point("the demo, at most 20 minutes (here with packages and build already there)")
+def demo(work):
+    shutil.rmtree(ROOT / "build" / "demo", ignore_errors=True)
+    cost = measured(work / "demo.log", "bash", ROOT / "apps/pipeline/demo.sh")
+    table = (work / "demo.log").read_text().strip().splitlines()[-3:]
+    return f"{cost['wall'] / 60:.1f} minutes: " + "; ".join(" ".join(t.split()) for t in table), \
+        cost["wall"] <= 1200
+
+
+# The table.
+
+def run_point(name, state):
+    function, wanted = POINTS[name]
+    file = BASE / state / "results" / f"{name}.json"
+    if file.exists():
+        return json.loads(file.read_text())
+    print(f"=== {name}: {wanted}", flush=True)
+    begin = time.monotonic()
+    try:
+        seen, good = function(BASE / state)
+        verdict = {None: "reported", True: "pass", False: "FAIL"}[good]
+    except Skipped as reason:
+        seen, verdict = str(reason), "skipped"
+    except (RuntimeError, OSError, KeyError, TypeError, subprocess.SubprocessError) as error:
+        seen, verdict = str(error), "FAIL"
+    result = {"point": name, "wanted": wanted, "seen": seen, "verdict": verdict,
+              "minutes": round((time.monotonic() - begin) / 60, 1)}
+    print(f"    {verdict}: {seen}", flush=True)
+    if verdict in ("pass", "reported"):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(result, indent=1))
+    return result
+
+
+def main():
+    names = [a for a in sys.argv[1:] if a != "--list"] or list(POINTS)
+    unknown = [name for name in names if name not in POINTS]
+    if unknown:
+        sys.exit(f"no such point: {' '.join(unknown)}; there are: {' '.join(POINTS)}")
+    if "--list" in sys.argv:
+        for name, (_, wanted) in POINTS.items():
+            print(f"{name:24} {wanted}")
+        return
+    state = source_state()
+    rows = ["| point | wanted | seen | verdict | minutes |", "|---|---|---|---|---|"]
+    failed = False
+    for name in names:
+        result = run_point(name, state)
+        failed |= result["verdict"] == "FAIL"
+        rows.append("| {point} | {wanted} | {seen} | {verdict} | {minutes} |".format(**result))
+    table = f"Source: {state}\n\n" + "\n".join(rows) + "\n"
+    BASE.mkdir(parents=True, exist_ok=True)
+    (BASE / "table.md").write_text(table)
+    print("\n" + table)
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
