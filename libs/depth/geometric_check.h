@@ -37,20 +37,18 @@ inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float
   return weight_sum > 0 ? sum / weight_sum : 0;
 }
 
-// sqrt(e (e + 2)) of the forward-backward error e in pixels, at most `limit`; `limit` where the
-// point is not visible in the source view or no consistent depth is stored there.
+// sqrt(e (e + 2)) of the forward-backward error e in pixels, at most `limit`; `limit` where no
+// consistent depth is stored at the point's image. `in_source`: the hypothesis' point in the source
+// view's frame, `seen_at`: its image there.
 template <class Camera>
 float inconsistency(const Camera& reference, const Eigen::Vector2f& pixel,
-                    const Eigen::Vector3f& point, const Camera& source,
-                    const RelativePose& from_reference, const cv::Mat1f& source_depth,
-                    float limit) {
+                    const Eigen::Vector3f& in_source, const Eigen::Vector2f& seen_at,
+                    const Camera& source, const RelativePose& from_reference,
+                    const cv::Mat1f& source_depth, float limit) {
   constexpr float kSameSurface = 0.03f;
-  const Eigen::Vector3f in_source = from_reference.apply(point);
-  const auto forward = source.project(in_source);
-  if (!forward.visible) return limit;
-  const auto ray = source.ray(forward.pixel);
+  const auto ray = source.ray(seen_at);
   const float expected = (in_source - ray.origin).norm();
-  const float found = depth_near(source_depth, forward.pixel, expected, kSameSurface);
+  const float found = depth_near(source_depth, seen_at, expected, kSameSurface);
   if (!(found > 0)) return limit;
   const auto backward = reference.project(from_reference.inverse(ray.at(found)));
   if (!backward.visible) return limit;

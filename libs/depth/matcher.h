@@ -39,6 +39,8 @@ struct ReferencePixel {
   ReferencePatch patch;
   float prior_depth = 0;   // from the coarser level; 0: none
   float prior_weight = 0;  // how little the texture says, 0 to 1
+
+  Eigen::Vector2f at() const { return {static_cast<float>(x), static_cast<float>(y)}; }
 };
 
 // Per-view costs of one hypothesis and the order of the views, best first.
@@ -86,25 +88,7 @@ class Matcher {
   // Cost of one hypothesis in one view, in [0, 2].
   float view_cost(const ReferencePixel& pixel, const PlaneHypothesis& plane,
                   const PatchDerivative& patch, std::size_t view) const {
-    const SourceView<Camera>& source = sources_[view];
-    TexelPositions at;
-    float correlation = kNoCorrelation;
-    if (Warp::texels(camera_, pixel.x, pixel.y, pixel.ray, plane, patch, source.camera,
-                     source.from_reference, at))
-      correlation = zncc_(pixel.patch, *source.image, at);
-    float cost = correlation == kNoCorrelation ? kOutsideCost : 1.0f - correlation;
-    if (source.depth)
-      cost +=
-          options_.geometric_weight *
-          inconsistency(camera_,
-                        Eigen::Vector2f(static_cast<float>(pixel.x), static_cast<float>(pixel.y)),
-                        patch.point, source.camera, source.from_reference, *source.depth,
-                        options_.geometric_limit);
-    if (pixel.prior_weight > 0) {
-      const float off = std::abs(plane.depth - pixel.prior_depth) / pixel.prior_depth;
-      cost += pixel.prior_weight * (std::min(off, 0.5f) - cost);
-    }
-    return std::min(cost, kMaxCost);
+    return cost_of(pixel, plane, patch, view, map_into(pixel, plane, patch, view));
   }
 
   // Photometric (and geometric) cost over all views; `costs` gets each view's and their order.
@@ -112,8 +96,10 @@ class Matcher {
                   ViewCosts& costs) const {
     const PatchDerivative patch = patch_derivative(pixel.ray, pixel.jacobian, plane);
     const std::size_t count = sources_.size();
+    std::array<typename Warp::Map, kMaxSources> maps;
+    for (std::size_t i = 0; i < count; ++i) maps[i] = map_into(pixel, plane, patch, i);
     for (std::size_t i = 0; i < count; ++i) {
-      costs.cost[i] = view_cost(pixel, plane, patch, i);
+      costs.cost[i] = cost_of(pixel, plane, patch, i, maps[i]);
       std::size_t k = i;  // insertion: ties keep the better-scored neighbour first
       for (; k > 0 && costs.cost[costs.order[k - 1]] > costs.cost[i]; --k)
         costs.order[k] = costs.order[k - 1];
@@ -128,10 +114,13 @@ class Matcher {
                    const ViewCosts& ranked, std::size_t views) const {
     const PatchDerivative patch = patch_derivative(pixel.ray, pixel.jacobian, plane);
     views = std::min(views, sources_.size());
+    std::array<typename Warp::Map, kMaxSources> maps;
+    for (std::size_t k = 0; k < views; ++k)
+      maps[k] = map_into(pixel, plane, patch, ranked.order[k]);
     float smallest = kMaxCost;
     float second = kMaxCost;
     for (std::size_t k = 0; k < views; ++k) {
-      const float cost = view_cost(pixel, plane, patch, ranked.order[k]);
+      const float cost = cost_of(pixel, plane, patch, ranked.order[k], maps[k]);
       if (cost < smallest) {
         second = smallest;
         smallest = cost;
@@ -153,6 +142,37 @@ class Matcher {
   }
 
  private:
+  typename Warp::Map map_into(const ReferencePixel& pixel, const PlaneHypothesis& plane,
+                              const PatchDerivative& patch, std::size_t view) const {
+    return Warp::between(camera_, pixel.at(), plane, patch, sources_[view].camera,
+                         sources_[view].from_reference);
+  }
+
+  float cost_of(const ReferencePixel& pixel, const PlaneHypothesis& plane,
+                const PatchDerivative& patch, std::size_t view,
+                const typename Warp::Map& map) const {
+    const SourceView<Camera>& source = sources_[view];
+    float correlation = kNoCorrelation;
+    if (map.visible) {
+      TexelPositions at;
+      Warp::texels(map, pixel.at(), at);
+      correlation = zncc_(pixel.patch, *source.image, at);
+    }
+    float cost = correlation == kNoCorrelation ? kOutsideCost : 1.0f - correlation;
+    if (source.depth)
+      cost += options_.geometric_weight *
+              (map.visible
+                   ? inconsistency(camera_, pixel.at(), source.from_reference.apply(patch.point),
+                                   map.centre, source.camera, source.from_reference, *source.depth,
+                                   options_.geometric_limit)
+                   : options_.geometric_limit);
+    if (pixel.prior_weight > 0) {
+      const float off = std::abs(plane.depth - pixel.prior_depth) / pixel.prior_depth;
+      cost += pixel.prior_weight * (std::min(off, 0.5f) - cost);
+    }
+    return std::min(cost, kMaxCost);
+  }
+
   const cv::Mat1b& image_;
   Camera camera_;
   std::vector<SourceView<Camera>> sources_;

@@ -43,48 +43,67 @@ inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
           refractive::plane_point_derivative(ray, jacobian, plane.depth, plane.normal)};
 }
 
+// A warp policy computes, per hypothesis and source view, a Map (`between`) and from it where the
+// texels fall (`texels`). Two steps, so that the projections of all views can run side by side.
+
 // Exact centre and exact first derivative: no division per texel.
 struct AffineWarp {
-  // False if the centre is not visible in the source view.
+  struct Map {
+    Eigen::Vector2f centre;  // where the source view sees the surface point
+    bool visible;            // false: it does not; nothing else means anything
+    Eigen::Matrix2f linear;
+  };
+
   template <class Camera>
-  static bool texels(const Camera&, int, int, const refractive::AxialRay<float>&,
-                     const PlaneHypothesis&, const PatchDerivative& patch, const Camera& source,
-                     const RelativePose& from_reference, TexelPositions& at) {
+  static Map between(const Camera&, const Eigen::Vector2f&, const PlaneHypothesis&,
+                     const PatchDerivative& patch, const Camera& source,
+                     const RelativePose& from_reference) {
     refractive::Matrix23<float> jacobian;
-    const auto centre = source.project(from_reference.apply(patch.point), &jacobian);
-    if (!centre.visible) return false;
-    const Eigen::Matrix2f a = jacobian * (from_reference.rotation * patch.by_pixel);
+    const auto image = source.project(from_reference.apply(patch.point), &jacobian);
+    return {image.pixel, image.visible,
+            refractive::warp_derivative(jacobian, from_reference.rotation, patch.by_pixel)};
+  }
+
+  static void texels(const Map& map, const Eigen::Vector2f&, TexelPositions& at) {
+    const Eigen::Matrix2f& a = map.linear;
     for (std::size_t k = 0; k < kPaddedTexels; ++k) {
-      at.x[k] = centre.pixel.x() + a(0, 0) * kTexelOffsets.x[k] + a(0, 1) * kTexelOffsets.y[k];
-      at.y[k] = centre.pixel.y() + a(1, 0) * kTexelOffsets.x[k] + a(1, 1) * kTexelOffsets.y[k];
+      at.x[k] = map.centre.x() + a(0, 0) * kTexelOffsets.x[k] + a(0, 1) * kTexelOffsets.y[k];
+      at.y[k] = map.centre.y() + a(1, 0) * kTexelOffsets.x[k] + a(1, 1) * kTexelOffsets.y[k];
     }
-    return true;
   }
 };
 
 // The paper's warp: the homography between the virtual cameras of the reference pixel and of the
 // rounded pixel it is seen at (eqs. 1-3). For a pinhole, the plain homography.
 struct HomographyWarp {
+  struct Map {
+    Eigen::Vector2f centre;
+    bool visible;
+    Eigen::Matrix3f homography;
+  };
+
   template <class Camera>
-  static bool texels(const Camera& reference, int x, int y, const refractive::AxialRay<float>&,
+  static Map between(const Camera& reference, const Eigen::Vector2f& pixel,
                      const PlaneHypothesis& plane, const PatchDerivative& patch,
-                     const Camera& source, const RelativePose& from_reference, TexelPositions& at) {
-    const auto centre = source.project(from_reference.apply(patch.point));
-    if (!centre.visible) return false;
-    const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
-    const Eigen::Vector2f rounded = centre.pixel.array().round();
+                     const Camera& source, const RelativePose& from_reference) {
+    const auto image = source.project(from_reference.apply(patch.point));
+    const Eigen::Vector2f rounded = image.pixel.array().round();
     const Eigen::Vector3f source_centre =
         -(from_reference.rotation.transpose() * from_reference.translation);
-    const Eigen::Matrix3f h = refractive::virtual_homography<float>(
-        refractive::virtual_camera(reference, pixel), refractive::virtual_camera(source, rounded),
-        from_reference.rotation, source_centre, patch.point, plane.normal);
+    return {image.pixel, image.visible,
+            refractive::virtual_homography<float>(refractive::virtual_camera(reference, pixel),
+                                                  refractive::virtual_camera(source, rounded),
+                                                  from_reference.rotation, source_centre,
+                                                  patch.point, plane.normal)};
+  }
+
+  static void texels(const Map& map, const Eigen::Vector2f& pixel, TexelPositions& at) {
     for (std::size_t k = 0; k < kPaddedTexels; ++k) {
       const Eigen::Vector2f texel(pixel.x() + kTexelOffsets.x[k], pixel.y() + kTexelOffsets.y[k]);
-      const Eigen::Vector2f image = refractive::apply_homography(h, texel);
+      const Eigen::Vector2f image = refractive::apply_homography(map.homography, texel);
       at.x[k] = image.x();
       at.y[k] = image.y();
     }
-    return true;
   }
 };
 
