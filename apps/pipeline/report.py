@@ -85,13 +85,12 @@ def histogram_svg(rows, width=960, height=320):
     for row in rows:
         counts = row["histogram"]["counts"]
         total = sum(counts) + row["histogram"]["beyond"]
-        # Per millimetre, so that the height does not depend on the width of the bins.
-        per_mm = len(counts) / (upper * 1e3)
-        shares.append([count / total * per_mm * 100 for count in counts])
+        shares.append([100 * count / total for count in counts])
     highest = max(max(share) for share in shares) * 1.05
     x = lambda metres: left + (width - left - right) * metres / upper
     y = lambda share: height - bottom - (height - top - bottom) * share / highest
 
+    bin_width = upper / len(shares[0])
     parts = []
     step = nice_step(highest, 4)
     for i in range(int(highest / step) + 1):
@@ -103,7 +102,6 @@ def histogram_svg(rows, width=960, height=320):
         parts.append(f'<text x="{x(i * step / 1e3):.1f}" y="{height - bottom + 18}" '
                      f'text-anchor="middle">{i * step:g}</text>')
     for row, share in zip(rows, shares):
-        bin_width = upper / len(share)
         line = " ".join(f"{x((i + 0.5) * bin_width):.1f},{y(s):.1f}" for i, s in enumerate(share))
         median = x(min(row["median_m"], upper))
         parts.append(f'<polyline points="{line}" stroke="{row["color"]}"/>')
@@ -112,7 +110,7 @@ def histogram_svg(rows, width=960, height=320):
     middle = (left + width - right) / 2
     parts.append(f'<text x="{middle}" y="{height - 6}" text-anchor="middle">distance from the true '
                  f'surface [mm]</text><text transform="translate(14 {(height - bottom) / 2}) '
-                 f'rotate(-90)" text-anchor="middle">% of the points per mm</text>')
+                 f'rotate(-90)" text-anchor="middle">% of the points per {bin_width * 1e3:g} mm</text>')
     legend = "".join(f'<span><i style="background:{row["color"]}"></i>{row["title"]}: '
                      f'{100 * row["histogram"]["beyond"] / max(row["points"], 1):.1f} % lie beyond '
                      f'{upper * 1e3:g} mm</span>' for row in rows)
@@ -154,7 +152,8 @@ body { margin: 0; background: var(--page); color: var(--ink);
        font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
 header { background: linear-gradient(160deg, #06263f, #0b4f6c 60%, #12708a); color: #fff;
          padding: 3rem 1.25rem 2.5rem; }
-header div, main { max-width: 1100px; margin: auto; }
+header div { max-width: 1100px; margin: auto; }
+main { max-width: calc(1100px + 2.5rem); margin: auto; }
 header h1 { margin: 0 0 .5rem; font-size: 2rem; line-height: 1.2; letter-spacing: -.01em; }
 header p { margin: 0; max-width: 46rem; color: #d5e7f0; }
 main { padding: 1.5rem 1.25rem 4rem; }
