@@ -35,10 +35,10 @@ struct PatchMatchOptions {
 
   float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
 
-  int refinement_trials = 6;
+  int refinement_trials = 4;
   float refinement_pixels = 1.5f;        // depth trial: largest motion in a source view
   float refinement_angle = radians(16);  // normal trial
-  int refinement_views = 3;              // best views in which trials are scored
+  int refinement_views = 2;              // best views in which trials are scored
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
   float keep_cost_before_geometric = 1.2f;  // hypotheses at or above are cleared
