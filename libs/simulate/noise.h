@@ -8,7 +8,7 @@
 
 namespace axial::simulate {
 
-// Gradient noise with unit lattice spacing: smooth (C2), zero mean, standard deviation about 0.24,
+// Gradient noise with unit lattice spacing: smooth (C2), zero mean, standard deviation about 0.19,
 // most energy at wavelengths near 1.5. `seed` picks one of 2^32 unrelated fields.
 float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed);
 

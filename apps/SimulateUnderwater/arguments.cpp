@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arguments.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace axial {
+namespace po = boost::program_options;
+
+ProgramOptions describe(Arguments& a) {
+  ProgramOptions program;
+  program.name = "SimulateUnderwater";
+  program.description = "makes a synthetic scene with ground truth, in air and under water";
+  const simulate::PresetOptions preset;
+  program.visible.add_options()("preset", po::value(&a.preset.name)->default_value(preset.name),
+                                "reef or closeup")(
+      "seed", po::value(&a.preset.seed)->default_value(preset.seed), "of everything random")(
+      "output,o", po::value(&a.output), "folder of the scene (required)")(
+      "views", po::value(&a.preset.views)->default_value(0), "images (0: the preset's number)")(
+      "width", po::value(&a.preset.width)->default_value(preset.width), "of the images [px]")(
+      "height", po::value(&a.preset.height)->default_value(preset.height), "of the images [px]")(
+      "fov-degrees",
+      po::value(&a.preset.horizontal_fov_degrees)->default_value(preset.horizontal_fov_degrees),
+      "horizontal field of view in air")("samples", po::value(&a.samples)->default_value(3),
+                                         "rays along each side of a pixel")(
+      "port-distance", po::value(&a.port_distance), "camera centre to glass [m]")(
+      "port-thickness", po::value(&a.port_thickness), "of the glass [m]")(
+      "tilt-degrees", po::value(&a.tilt_degrees), "of the port against the optical axis")(
+      "n-glass", po::value(&a.n_glass), "refractive index")("n-water", po::value(&a.n_water),
+                                                            "refractive index")(
+      "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
+      "jpeg-quality", po::value(&a.jpeg_quality)->default_value(93), "1 to 100")(
+      "truth-only", po::value(&a.truth_only)->default_value(false)->implicit_value(true),
+      "write mesh.ply, distances and normals, nothing else")(
+      "medium", po::value(&a.medium)->default_value("both"), "air, water or both");
+  return program;
+}
+
+void check(const Arguments& a) {
+  if (a.output.empty()) fail("no output folder given (-o DIR)");
+  if (a.medium != "air" && a.medium != "water" && a.medium != "both")
+    fail("--medium is '{}': must be air, water or both", a.medium);
+  if (!(a.noise >= 0 && a.noise <= 255)) fail("--noise is {}: must be between 0 and 255", a.noise);
+  if (a.jpeg_quality < 1 || a.jpeg_quality > 100)
+    fail("--jpeg-quality is {}: must be between 1 and 100", a.jpeg_quality);
+  if (a.samples < 1 || a.samples > 16) fail("--samples is {}: must be between 1 and 16", a.samples);
+  if (!(std::abs(a.tilt_degrees) <= 45))
+    fail("--tilt-degrees is {}: must be between -45 and 45", a.tilt_degrees);
+}
+
+void apply_port_options(simulate::Port& port, const Arguments& a, const po::variables_map& values) {
+  if (given(values, "port-distance")) port.distance = a.port_distance;
+  if (given(values, "port-thickness")) port.thickness = a.port_thickness;
+  if (given(values, "tilt-degrees")) port.normal = simulate::tilted_normal(a.tilt_degrees);
+  if (given(values, "n-glass")) port.n_glass = a.n_glass;
+  if (given(values, "n-water")) port.n_water = a.n_water;
+}
+
+}  // namespace axial

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "base/program.h"
+#include "simulate/presets.h"
+
+namespace axial {
+
+struct Arguments {
+  simulate::PresetOptions preset;
+  std::string output, medium;
+  int samples = 0, jpeg_quality = 0;
+  double noise = 0;
+  bool truth_only = false;
+  double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
+};
+
+// The options of SimulateUnderwater, bound to `a`.
+ProgramOptions describe(Arguments& a);
+
+// Error that names the option and its value.
+void check(const Arguments& a);
+
+// Replaces those properties of the preset's port that the user gave.
+void apply_port_options(simulate::Port& port, const Arguments& a,
+                        const boost::program_options::variables_map& values);
+
+}  // namespace axial

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace axial::simulate {
+namespace {
+
+struct Moments {
+  double mean, deviation;
+};
+
+Moments moments(const std::function<float(const Eigen::Vector3d&)>& field) {
+  double sum = 0, squares = 0;
+  constexpr int kCount = 100000;
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    const Eigen::Vector3d p(uniform(1, 3 * i), uniform(1, 3 * i + 1), uniform(1, 3 * i + 2));
+    const double value = field(500 * (p - Eigen::Vector3d::Constant(0.5)));
+    sum += value;
+    squares += value * value;
+  }
+  const double mean = sum / kCount;
+  return {mean, std::sqrt(squares / kCount - mean * mean)};
+}
+
+TEST(Noise, HasTheMomentsItPromises) {
+  const Moments m = moments([](const Eigen::Vector3d& p) { return gradient_noise(p, 7); });
+  EXPECT_NEAR(m.mean, 0, 0.004);  // five standard errors
+  EXPECT_NEAR(m.deviation, 0.19, 0.01);
+}
+
+TEST(Noise, IsZeroOnTheLatticeAndSmoothAcrossIt) {
+  for (const double x : {-3.0, 0.0, 12.0}) {
+    EXPECT_EQ(gradient_noise({x, 5, -2}, 3), 0.0f);
+    const double h = 1e-4;
+    const double left = gradient_noise({x - h, 5.3, -2.6}, 3);
+    const double right = gradient_noise({x + h, 5.3, -2.6}, 3);
+    EXPECT_NEAR(left, right, 10 * h);  // slopes stay below about 3
+  }
+}
+
+TEST(Noise, FieldsOfDifferentSeedsAreUnrelated) {
+  const Moments a = moments([](const Eigen::Vector3d& p) { return gradient_noise(p, 1); });
+  const Moments sum =
+      moments([](const Eigen::Vector3d& p) { return gradient_noise(p, 1) + gradient_noise(p, 2); });
+  EXPECT_NEAR(sum.deviation, std::sqrt(2.0) * a.deviation, 0.02 * sum.deviation);
+}
+
+TEST(Noise, DoesNotRepeat) {
+  // Were the field periodic along an axis with one of these periods, the difference would vanish.
+  for (const double period : {16.0, 64.0, 256.0, 289.0, 1024.0}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d shift = period * Eigen::Vector3d::Unit(axis);
+      const Moments m = moments([&](const Eigen::Vector3d& p) {
+        return gradient_noise(p, 7) - gradient_noise(p + shift, 7);
+      });
+      EXPECT_GT(m.deviation, 0.25) << "period " << period << ", axis " << axis;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace axial::simulate

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/optics.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "base/error.h"
+#include "refractive/flat_port_camera.h"
+
+namespace axial::simulate {
+namespace {
+
+using Eigen::Vector3d;
+
+const Port kPaperPort{{0, 0, 1}, 0.020, 0.014, 1.0, 1.52, 1.333};
+
+double between(double a, double b) {
+  return a + (b - a) * *rc::gen::inRange(0, 1000001) * 1e-6;
+}
+
+Port any_port() {
+  const double tilt = between(0, 15);
+  Port port{tilted_normal(tilt), between(0.001, 0.1), between(0, 0.03), 1,
+            between(1.4, 1.8),   between(1.32, 1.36)};
+  return port;
+}
+
+Lens any_lens() {
+  return make_lens(1024, 768, between(50, 110));
+}
+
+TEST(Optics, FollowsARayWorkedOutByHand) {
+  // tan 0.75 in air: a 3-4-5 triangle. Snell: sin in glass 0.6/1.52, in water 0.6/1.333.
+  Lens lens = make_lens(1024, 768, 80);
+  const auto ray = trace_pixel(lens, &kPaperPort, lens.cx + 0.75 * lens.focal, lens.cy);
+  ASSERT_TRUE(ray);
+  // Radius 0.020 * 0.75 + 0.014 * 0.4296248625946536 where the light leaves the glass.
+  EXPECT_NEAR((ray->start - Vector3d(0.02101474807632515, 0, 0.034)).norm(), 0, 1e-15);
+  const Vector3d in_water(0.450112528132033, 0, 0.8929718427915797);
+  EXPECT_NEAR((ray->direction - in_water).norm(), 0, 1e-15);
+  // 0.034 - radius / tan in water: behind the camera.
+  EXPECT_NEAR((ray->on_axis - Vector3d(0, 0, -0.007690859824306652)).norm(), 0, 1e-15);
+}
+
+TEST(Optics, RefractsAtTheCriticalAngleAndNotBeyond) {
+  const double critical = 1.0 / 1.333;
+  const auto at_sine = [&](double s) {
+    return refract({s, 0, std::sqrt(1 - s * s)}, {0, 0, 1}, 1.333, 1.0);
+  };
+  ASSERT_TRUE(at_sine(critical - 1e-9));
+  EXPECT_NEAR(at_sine(critical - 1e-9)->z(), 0, 1e-4);
+  EXPECT_FALSE(at_sine(critical + 1e-9));
+}
+
+TEST(Optics, LimitOnTheAxisIsTheParaxialCentre) {
+  const Lens lens = make_lens(1024, 768, 80);
+  const auto ray = trace_pixel(lens, &kPaperPort, lens.cx, lens.cy);
+  ASSERT_TRUE(ray);
+  const double paraxial = 0.020 * (1 - 1.333) + 0.014 * (1 - 1.333 / 1.52);
+  // The limit is taken a ten-thousandth off the axis, where the centre has moved by the square.
+  EXPECT_NEAR(ray->on_axis.z(), paraxial, 1e-8);
+  EXPECT_NEAR(ray->direction.z(), 1, 1e-15);
+}
+
+RC_GTEST_PROP(Optics, EveryWaterRayMeetsTheAxis, ()) {
+  const Port port = any_port();
+  const Lens lens = any_lens();
+  const auto ray = trace_pixel(lens, &port, between(0, 1023), between(0, 767));
+  RC_ASSERT(bool(ray));
+  RC_ASSERT(std::abs(ray->direction.norm() - 1) < 1e-14);
+  RC_ASSERT(std::abs(ray->start.dot(port.normal) - port.distance - port.thickness) < 1e-14);
+  // The point is on the axis by construction: it must lie on the ray's line too. Within a
+  // thousandth of a radian around the axis the crossing is ill-conditioned, and further in the
+  // limit takes its place.
+  const double slant = ray->direction.cross(port.normal).norm();
+  const double tolerance = slant > 1e-3 ? 1e-14 : 1e-11;
+  RC_ASSERT((ray->on_axis - ray->start).cross(ray->direction).norm() < tolerance);
+}
+
+RC_GTEST_PROP(Optics, AgreesWithTheClosedForm, ()) {
+  const Port port = any_port();
+  const Lens lens = any_lens();
+  const refractive::FlatPortCamera<double> camera(
+      {lens.focal, lens.focal, lens.cx, lens.cy},
+      {port.normal, port.distance, port.thickness, port.n_air, port.n_glass, port.n_water},
+      lens.width, lens.height);
+  const Eigen::Vector2d pixel(between(0, 1023), between(0, 767));
+  const auto traced = trace_pixel(lens, &port, pixel.x(), pixel.y());
+  RC_ASSERT(bool(traced));
+  const auto closed = camera.ray(pixel);
+  RC_ASSERT((closed.direction - traced->direction).norm() < 1e-13);
+  // See above for the crossing near the axis.
+  const double slant = traced->direction.cross(port.normal).norm();
+  RC_ASSERT((closed.origin - traced->on_axis).norm() < (slant > 1e-3 ? 1e-11 : 1e-7));
+  RC_ASSERT((camera.exit_point(pixel) - traced->start).norm() < 1e-13);
+}
+
+TEST(Optics, WithoutPortTheRayStartsAtTheCentre) {
+  const Lens lens = make_lens(101, 51, 60);
+  const auto ray = trace_pixel(lens, nullptr, 100, 25);
+  ASSERT_TRUE(ray);
+  EXPECT_EQ(ray->start, Vector3d::Zero());
+  EXPECT_EQ(ray->on_axis, Vector3d::Zero());
+  EXPECT_NEAR(ray->direction.x() / ray->direction.z(), 50 / lens.focal, 1e-15);
+}
+
+TEST(Optics, RefusesWhatNoHousingHas) {
+  const Lens lens = make_lens(1024, 768, 80);
+  const auto refused = [&](auto change) {
+    Port port = kPaperPort;
+    change(port);
+    EXPECT_THROW(check_port(port, lens), Error);
+  };
+  EXPECT_NO_THROW(check_port(kPaperPort, lens));
+  refused([](Port& p) { p.distance = -0.01; });
+  refused([](Port& p) { p.distance = std::nan(""); });
+  refused([](Port& p) { p.thickness = 2; });
+  refused([](Port& p) { p.n_water = 0.9; });
+  refused([](Port& p) { p.normal = tilted_normal(60); });
+  EXPECT_THROW(make_lens(0, 10, 80), Error);
+  EXPECT_THROW(make_lens(10, 10, 180), Error);
+}
+
+}  // namespace
+}  // namespace axial::simulate

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SimulateUnderwater as its users meet it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/colmap.h"
+#include "io/housing.h"
+#include "io/image.h"
+#include "io/ply.h"
+
+namespace axial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit_code;
+  std::string output;  // both streams
+};
+
+class SimulateUnderwater : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("simulate_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = fmt::format("'{}/bin/SimulateUnderwater' -w '{}' {} 2>&1",
+                                            AXIAL_BINARY_DIR, folder_.string(), arguments);
+    std::FILE* pipe = popen(command.c_str(), "r");
+    std::string output;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+      output.push_back(static_cast<char>(c));
+    const int status = pclose(pipe);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+  }
+
+  void refuses(const std::string& expected, const std::string& arguments) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments;
+    EXPECT_THAT(outcome.output, testing::HasSubstr(expected)) << arguments;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+  }
+
+  fs::path folder_;
+};
+
+const std::string kSmall = "--preset closeup --views 3 --width 96 --height 72 --samples 1 ";
+
+TEST_F(SimulateUnderwater, WritesAWholeScene) {
+  const Outcome outcome =
+      run(kSmall + "-o a --port-distance 0.05 --tilt-degrees 0 --n-glass 1.6 --noise 0");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const fs::path scene = folder_ / "a";
+  const io::ColmapModel model = io::read_colmap_model(scene / "sparse");
+  ASSERT_EQ(model.images.size(), 3u);
+  EXPECT_GT(model.points.size(), 100u);
+  EXPECT_GT(io::read_mesh_ply(scene / "mesh.ply").faces.size(), 1000u);
+  const io::Housing housing = io::read_housing(scene / "housing.json");
+  EXPECT_EQ(housing.ports.at("main").distance, 0.05);
+  EXPECT_EQ(housing.ports.at("main").n_glass, 1.6);
+  EXPECT_EQ(housing.ports.at("main").normal, Eigen::Vector3d::UnitZ());
+  for (const std::string medium : {"air", "water"}) {
+    for (const io::ColmapImage& image : model.images) {
+      const fs::path base = (scene / medium / image.name).replace_extension();
+      EXPECT_EQ(io::read_color_image(base.string() + ".jpg").size(), cv::Size(96, 72));
+      const cv::Mat1f distance = io::read_float_tiff(base.string() + ".distance.tiff");
+      const cv::Mat3f normal = io::read_float3_tiff(base.string() + ".normal.tiff");
+      EXPECT_GT(*std::min_element(distance.begin(), distance.end()), 0.3f);
+      EXPECT_NEAR(cv::norm(normal(40, 40)), 1, 1e-5);
+    }
+  }
+}
+
+TEST_F(SimulateUnderwater, RemakesTheSameTruthAlone) {
+  ASSERT_EQ(run(kSmall + "-o whole --max-threads 1").exit_code, 0);
+  ASSERT_EQ(run(kSmall + "-o truth --max-threads 2 --truth-only").exit_code, 0);
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "truth")) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path name = fs::relative(entry.path(), folder_ / "truth");
+    EXPECT_EQ(read_file(entry.path()), read_file(folder_ / "whole" / name)) << name;
+    ++files;
+  }
+  EXPECT_EQ(files, 1u + 3 * 2 * 2);  // the mesh; three views, two media, two kinds
+}
+
+TEST_F(SimulateUnderwater, MakesOneMediumWhenAsked) {
+  ASSERT_EQ(run(kSmall + "-o a --medium water").exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "a" / "water" / "0000.jpg"));
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "air"));
+}
+
+TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {
+  refuses("no output folder", "--preset reef");
+  refuses("preset 'lake' is unknown", "-o a --preset lake");
+  refuses("number of views is -2", "-o a --views -2");
+  refuses("width is 0", "-o a --width 0");
+  refuses("--samples is 0", "-o a --samples 0");
+  refuses("--noise is -1", "-o a --noise -1");
+  refuses("--jpeg-quality is 101", "-o a --jpeg-quality 101");
+  refuses("--medium is 'fog'", "-o a --medium fog");
+  refuses("--tilt-degrees is 80", "-o a --tilt-degrees 80");
+  refuses("port distance is 2", "-o a --port-distance 2");
+  refuses("refractive index is 0.5", "-o a --n-water 0.5");
+  refuses("refractive index is nan", "-o a --n-glass nan");
+  refuses("port does not cover", "-o a --tilt-degrees 45");
+  refuses("unrecognised option", "-o a --nonsense 1");
+  refuses("cannot be created", kSmall + "-o /proc/none --medium air --truth-only");
+}
+
+}  // namespace
+}  // namespace axial

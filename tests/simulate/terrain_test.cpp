@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulate/terrain.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "base/error.h"
+#include "simulate/presets.h"
+#include "simulate/render.h"
+
+namespace axial::simulate {
+namespace {
+
+// z-depths and world-upward parts of the normals of all views in one medium.
+struct Seen {
+  std::size_t background = 0;
+  std::vector<double> depths;
+  std::size_t facing_down = 0;
+  std::size_t views = 0;
+
+  double quantile(double q) const {
+    return depths[static_cast<std::size_t>(q * static_cast<double>(depths.size() - 1))];
+  }
+};
+
+Seen look_around(const std::string& name, bool water) {
+  Preset preset = make_preset({name, 1, 0, 64, 48, 80});
+  preset.terrain.cell *= 3;
+  const RayScene scene(terrain_mesh(preset.terrain));
+  const Port* port = water ? &preset.port : nullptr;
+  Seen seen;
+  seen.views = preset.views.size();
+  for (const View& view : preset.views) {
+    const Truth truth = render_truth(scene, preset.lens, port, view);
+    for (int y = 0; y < preset.lens.height; ++y) {
+      for (int x = 0; x < preset.lens.width; ++x) {
+        const double distance = truth.distance(y, x);
+        if (!(distance > 0)) {
+          ++seen.background;
+          continue;
+        }
+        const auto ray = *trace_pixel(preset.lens, port, x, y);
+        seen.depths.push_back((ray.on_axis + distance * ray.direction).z());
+        if (truth.normal(y, x)[2] < -0.1f) ++seen.facing_down;
+      }
+    }
+  }
+  std::sort(seen.depths.begin(), seen.depths.end());
+  return seen;
+}
+
+TEST(Terrain, ReefIsWhereTheSpecificationPutsIt) {
+  for (const bool water : {false, true}) {
+    const Seen seen = look_around("reef", water);
+    EXPECT_EQ(seen.views, 10u);
+    EXPECT_EQ(seen.background, 0u);
+    EXPECT_GT(seen.quantile(0.001), 2.0);
+    EXPECT_LT(seen.quantile(0.999), 3.5);
+    // Relief of 30 to 50 % of the viewing distance.
+    const double relief = (seen.quantile(0.999) - seen.quantile(0.001)) / seen.quantile(0.5);
+    EXPECT_GT(relief, 0.3);
+    EXPECT_LT(relief, 0.5);
+  }
+}
+
+TEST(Terrain, CloseupIsWhereTheSpecificationPutsIt) {
+  const Seen seen = look_around("closeup", false);
+  EXPECT_EQ(seen.views, 12u);
+  EXPECT_EQ(seen.background, 0u);
+  EXPECT_GT(seen.quantile(0.02), 0.45);
+  EXPECT_GT(seen.quantile(0.5), 0.70);
+  EXPECT_LT(seen.quantile(0.5), 0.80);
+  // The views from the side look across the object to the far wall of its hollow.
+  EXPECT_LT(seen.quantile(0.8), 0.90);
+  EXPECT_LT(seen.quantile(0.999), 1.1);
+  // Overhangs that are seen, not just present: more than a view's worth of pixels in a thousand.
+  EXPECT_GT(1000 * seen.facing_down, seen.depths.size());
+}
+
+TEST(Terrain, HasOverhangs) {
+  for (const char* name : {"reef", "closeup"}) {
+    Preset preset = make_preset({name, 1, 0, 64, 48, 80});
+    preset.terrain.cell *= 3;
+    const TriangleMesh mesh = terrain_mesh(preset.terrain);
+    std::size_t facing_down = 0;
+    for (const Eigen::Vector3f& n : vertex_normals(mesh)) facing_down += n.z() < -0.3f;
+    EXPECT_GT(100 * facing_down, mesh.vertices.size()) << name;
+  }
+}
+
+TEST(Terrain, SeedsGiveDifferentScenes) {
+  const auto height = [](std::uint32_t seed) {
+    return make_preset({"reef", seed, 0, 64, 48, 80}).terrain.floor.at(0.3, 0.4);
+  };
+  EXPECT_NE(height(1), height(2));
+  EXPECT_EQ(height(1), height(1));
+}
+
+TEST(Terrain, RefusesUnknownPresets) {
+  EXPECT_THROW(make_preset({"lake", 1, 0, 64, 48, 80}), Error);
+  EXPECT_THROW(make_preset({"reef", 1, -1, 64, 48, 80}), Error);
+  EXPECT_THROW(make_preset({"reef", 1, 0, 0, 48, 80}), Error);
+}
+
+TEST(TriangleMesh, SphereIsClosedAndFacesOutwards) {
+  const TriangleMesh sphere = unit_sphere(3);
+  EXPECT_EQ(sphere.faces.size(), 20u * 64u);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
+  for (const auto& [a, b, c] : sphere.faces) {
+    ++directed[{a, b}], ++directed[{b, c}], ++directed[{c, a}];
+  }
+  // Closed and consistently turned: every edge once each way.
+  for (const auto& [edge, count] : directed) {
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(directed.count({edge.second, edge.first}), 1u);
+  }
+  const auto normals = vertex_normals(sphere);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    EXPECT_GT(normals[i].dot(sphere.vertices[i]), 0.99f);
+}
+
+TEST(TriangleMesh, RemovesHiddenFacesAndTheirVertices) {
+  TriangleMesh sphere = unit_sphere(2);
+  remove_hidden(sphere, [](const Eigen::Vector3d& p) { return p.z() < 0; });
+  EXPECT_GT(sphere.faces.size(), 160u);  // the upper half and the faces across the equator
+  EXPECT_LT(sphere.faces.size(), 220u);
+  std::vector<bool> used(sphere.vertices.size());
+  for (const Face& face : sphere.faces)
+    for (const std::uint32_t corner : face) used.at(corner) = true;
+  EXPECT_THAT(used, testing::Each(true));
+}
+
+TEST(Blob, ContainsWhatLiesInsideItsMesh) {
+  Blob blob;
+  blob.centre = {1, 2, 3};
+  blob.radii = {0.5, 0.4, 0.3};
+  blob.roughness = 0.3;
+  for (const Eigen::Vector3f& vertex : blob_mesh(blob, 0.05).vertices) {
+    const Eigen::Vector3d p = vertex.cast<double>();
+    EXPECT_TRUE(blob.contains(blob.centre + 0.99 * (p - blob.centre), 0));
+    EXPECT_FALSE(blob.contains(blob.centre + 1.01 * (p - blob.centre), 0));
+  }
+}
+
+}  // namespace
+}  // namespace axial::simulate
