@@ -52,15 +52,15 @@ void expect_papers_error(double fov, double distance, double tilt) {
 }
 
 TEST(LineSearch, MeanErrorOverFieldsOfView) {
-  for (const double fov : {40, 60, 80, 100, 120}) expect_papers_error(fov, 0.02, 0);
+  for (const double fov : {40, 80, 120}) expect_papers_error(fov, 0.02, 0);
 }
 
 TEST(LineSearch, MeanErrorOverDistances) {
-  for (const double distance : {0.001, 0.005, 0.05, 0.1}) expect_papers_error(80, distance, 0);
+  for (const double distance : {0.001, 0.01, 0.1}) expect_papers_error(80, distance, 0);
 }
 
 TEST(LineSearch, MeanErrorOverTilts) {
-  for (const double tilt : {2, 6, 12, 20}) expect_papers_error(80, 0.02, tilt);
+  for (const double tilt : {6, 12, 20}) expect_papers_error(80, 0.02, tilt);
 }
 
 TEST(LineSearch, ReturnsThePinholeImageOnTheAxis) {
