@@ -6,7 +6,9 @@ target_compile_features(axial_flags INTERFACE cxx_std_20)
 target_compile_options(axial_flags INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror
   # Same bytes whatever the optimiser contracts; see "Same input, same options" in CONTRIBUTING.md.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nobody asks errno or floating-point traps: the same values, and square roots lose their branch.
+  -fno-math-errno -fno-trapping-math)
 if(AXIAL_SANITIZE)
   target_compile_options(axial_flags INTERFACE -fsanitize=address,undefined
     -fno-sanitize-recover=all -fno-omit-frame-pointer)
