@@ -68,13 +68,14 @@ reconstruct refractive "$work/poses/metric" water --housing "$data/housing.json"
 stage "(c) Under water, self-calibrated lens, no refraction"
 reconstruct selfcalibrated "$work/poses-today/metric" water --
 
-# evaluate RUN OPTION...: the cloud against the true mesh, with an error-coloured picture and cloud.
+# evaluate RUN NAME OPTION...: the cloud against the true mesh: RUN/NAME.json, an error-coloured cloud
+# and its picture.
 evaluate() {
-  local run=$work/$1
-  shift
+  local run=$work/$1 name=$2
+  shift 2
   "$bin/EvaluateReconstruction" -i "$run/scene_dense.ply" -m "$truth/mesh.ply" \
-    --cameras "$data/sparse" --tolerance "$tolerance" --json "$run/evaluation.json" \
-    --error-cloud "$run/errors.ply" --picture "$run/errors.png" --picture-width 900 "$@"
+    --cameras "$data/sparse" --tolerance "$tolerance" --json "$run/$name.json" \
+    --error-cloud "$run/$name.ply" --picture "$run/$name.png" --picture-width 900 "$@"
 }
 
 # depth_pictures RUN MEDIUM POSES: two depth maps beside the truth. Their files are numbered by
@@ -90,9 +91,11 @@ depth_pictures() {
 }
 
 stage "Against the truth"
-evaluate air
-evaluate refractive --housing "$data/housing.json"
-evaluate selfcalibrated --housing "$data/housing.json"
+wet=(--housing "$data/housing.json")
+evaluate air evaluation
+evaluate refractive evaluation "${wet[@]}"
+evaluate selfcalibrated evaluation "${wet[@]}"
+evaluate selfcalibrated evaluation-moved "${wet[@]}" --align icp
 depth_pictures air air "$work/poses/metric" >"$work/depth.log"
 depth_pictures refractive water "$work/poses/metric" >>"$work/depth.log"
 for run in air refractive selfcalibrated; do cp "$work/$run/scene_dense.ply" "$out/$run.ply"; done
