@@ -29,7 +29,7 @@ struct Seen {
 
 Seen look_around(const std::string& name, bool water) {
   Preset preset = make_preset({name, 1, 0, 64, 48, 80});
-  preset.terrain.cell *= 3;
+  preset.terrain.cell *= 6;
   const RayScene scene(terrain_mesh(preset.terrain));
   const Port* port = water ? &preset.port : nullptr;
   Seen seen;
@@ -84,7 +84,7 @@ TEST(Terrain, CloseupIsWhereTheSpecificationPutsIt) {
 TEST(Terrain, HasOverhangs) {
   for (const char* name : {"reef", "closeup"}) {
     Preset preset = make_preset({name, 1, 0, 64, 48, 80});
-    preset.terrain.cell *= 3;
+    preset.terrain.cell *= 6;
     const TriangleMesh mesh = terrain_mesh(preset.terrain);
     std::size_t facing_down = 0;
     for (const Eigen::Vector3f& n : vertex_normals(mesh)) facing_down += n.z() < -0.3f;
