@@ -134,10 +134,10 @@ void draw(const Options& options, const PointCloud& cloud, std::span<const evalu
 }  // namespace
 
 nlohmann::ordered_json run_cloud(const Options& options) {
+  Input input = read_input(options.input);
   const Mesh truth = io::read_mesh_ply(options.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options);
-  Input input = read_input(options.input);
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   report["align"] = align(options, input, surface);
 
