@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <spdlog/spdlog.h>
 
+#include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "depth_stage.h"
 #include "fusion_stage.h"
@@ -43,6 +44,8 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
+  axial::require_writable(options.output);
+  axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
   const densify::Project project = densify::load_project(options);
   densify::make_depth_maps(project, options);
   const axial::PointCloud cloud =

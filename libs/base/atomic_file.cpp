@@ -61,6 +61,16 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
   });
 }
 
+void require_writable(const std::filesystem::path& path) {
+  const std::filesystem::path temporary = temporary_beside(path);
+  errno = 0;
+  const bool opened = std::ofstream(temporary, std::ios::binary).is_open();
+  const int error = errno;
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  if (!opened) fail("{}: cannot be written: {}", path.string(), std::strerror(error));
+}
+
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))

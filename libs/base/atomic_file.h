@@ -20,6 +20,10 @@ void write_atomically(const std::filesystem::path& path,
 // The same for bytes that are in memory.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
+// Fails as write_atomically would if `path` cannot be written, before hours of work: tries a
+// temporary file beside it and removes it again.
+void require_writable(const std::filesystem::path& path);
+
 // The whole file. Error that names `path` if it cannot be read or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 

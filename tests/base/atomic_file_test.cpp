@@ -28,6 +28,15 @@ fs::path fresh_folder(const std::string& name) {
   return folder;
 }
 
+TEST(AtomicFile, TellsBeforeTheWorkThatAFileCannotBeWritten) {
+  const fs::path folder = fs::path(testing::TempDir()) / "atomic_file_probe";
+  fs::create_directories(folder);
+  EXPECT_NO_THROW(require_writable(folder / "a.txt"));
+  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_THROW(require_writable(folder / "no_such_folder" / "a.txt"), Error);
+  fs::remove_all(folder);
+}
+
 TEST(AtomicFile, KeepsTheOldContentsWhenTheWriterFails) {
   const fs::path folder = fresh_folder("keeps");
   const fs::path file = folder / "a.txt";
