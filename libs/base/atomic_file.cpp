@@ -75,6 +75,9 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     fail("{}: is a folder, not a file", path.string());
+  // A pipe would keep the reader waiting, and has no size to check counts against.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    fail("{}: is not a regular file", path.string());
   errno = 0;
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) fail("{}: cannot be opened: {}", path.string(), std::strerror(errno));
