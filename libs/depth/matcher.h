@@ -66,7 +66,6 @@ class Matcher {
         sampler_(options),
         zncc_(fastest_zncc()) {}
 
-  std::size_t source_count() const { return sources_.size(); }
   const Camera& camera() const { return camera_; }
 
   // Precondition: the window around (x, y) lies inside the image.

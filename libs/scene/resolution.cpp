@@ -53,19 +53,4 @@ cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size) {
   return result;
 }
 
-cv::Mat1f gray_image(const cv::Mat3b& image) {
-  cv::Mat1f gray(image.size());
-  constexpr float kScale = 1.0f / 255.0f;
-  for (int y = 0; y < image.rows; ++y) {
-    const cv::Vec3b* in = image[y];
-    float* out = gray[y];
-    for (int x = 0; x < image.cols; ++x) {
-      out[x] = (0.114f * static_cast<float>(in[x][0]) + 0.587f * static_cast<float>(in[x][1]) +
-                0.299f * static_cast<float>(in[x][2])) *
-               kScale;
-    }
-  }
-  return gray;
-}
-
 }  // namespace axial

@@ -25,7 +25,4 @@ cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);
 // Label images must not be filtered: nearest neighbour.
 cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size);
 
-// 0.299 R + 0.587 G + 0.114 B, scaled to [0, 1]. Channel order B G R.
-cv::Mat1f gray_image(const cv::Mat3b& image);
-
 }  // namespace axial

@@ -15,6 +15,7 @@
 #include "io/dmap.h"
 #include "io/image.h"
 #include "io/ply.h"
+#include "support/program_run.h"
 
 namespace axial::evaluate {
 namespace {
@@ -22,39 +23,19 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Outcome {
-  int exit_code;
-  std::string output;  // both streams
-};
+using test::Outcome;
 
-class Programs : public testing::Test {
+class Programs : public test::ProgramTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("evaluate_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  Programs() : ProgramTest("evaluate_") {}
 
   Outcome run(const std::string& program, const std::string& arguments) const {
-    const std::string command = fmt::format("'{}/bin/{}' -w '{}' {} 2>&1", AXIAL_BINARY_DIR,
-                                            program, folder_.string(), arguments);
-    std::FILE* pipe = popen(command.c_str(), "r");
-    std::string output;
-    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
-      output.push_back(static_cast<char>(c));
-    const int status = pclose(pipe);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+    return run_program(program, arguments);
   }
 
-  // Exit code 1 and one line that says `expected`.
   void refuses(const std::string& expected, const std::string& arguments,
                const std::string& program = "EvaluateReconstruction") const {
-    const Outcome outcome = run(program, arguments);
-    EXPECT_EQ(outcome.exit_code, 1) << arguments << "\n" << outcome.output;
-    EXPECT_THAT(outcome.output, HasSubstr(expected)) << arguments;
-    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    expect_refusal(program, arguments, expected);
   }
 
   nlohmann::json read_json(const std::string& name) const {
@@ -87,8 +68,6 @@ class Programs : public testing::Test {
     }
     return result;
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Programs, EvaluateACloud) {

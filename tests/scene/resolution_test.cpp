@@ -31,10 +31,5 @@ TEST(ResizedImage, AveragesAreas) {
   EXPECT_THROW(resized_image({}, {2, 2}), Error);
 }
 
-TEST(GrayImage, WeighsChannels) {
-  const cv::Mat3b image(1, 1, cv::Vec3b(10, 100, 200));
-  EXPECT_NEAR(gray_image(image)(0, 0), (1.14 + 58.7 + 59.8) / 255, 1e-6);
-}
-
 }  // namespace
 }  // namespace axial

@@ -12,46 +12,26 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/ply.h"
+#include "support/program_run.h"
 
 namespace axial {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code;
-  std::string output;  // both streams
-};
+using test::Outcome;
 
-class SimulateUnderwater : public testing::Test {
+class SimulateUnderwater : public test::ProgramTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("simulate_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  SimulateUnderwater() : ProgramTest("simulate_") {}
 
   Outcome run(const std::string& arguments) const {
-    const std::string command = fmt::format("'{}/bin/SimulateUnderwater' -w '{}' {} 2>&1",
-                                            AXIAL_BINARY_DIR, folder_.string(), arguments);
-    std::FILE* pipe = popen(command.c_str(), "r");
-    std::string output;
-    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
-      output.push_back(static_cast<char>(c));
-    const int status = pclose(pipe);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+    return run_program("SimulateUnderwater", arguments);
   }
 
   void refuses(const std::string& expected, const std::string& arguments) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 1) << arguments;
-    EXPECT_THAT(outcome.output, testing::HasSubstr(expected)) << arguments;
-    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    expect_refusal("SimulateUnderwater", arguments, expected);
   }
-
-  fs::path folder_;
 };
 
 const std::string kSmall =

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs one of the project's programs in a folder of the test's own.
+#pragma once
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace axial::test {
+
+struct Outcome {
+  int exit_code;
+  std::string output;  // both streams
+};
+
+// A fixture with an empty folder, "<prefix><test name>", that goes with the test.
+class ProgramTest : public testing::Test {
+ protected:
+  explicit ProgramTest(const std::string& prefix) : prefix_(prefix) {}
+
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (prefix_ + test->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Outcome run_program(const std::string& program, const std::string& arguments) const {
+    const std::string command = fmt::format("'{}/bin/{}' -w '{}' {} 2>&1", AXIAL_BINARY_DIR,
+                                            program, folder_.string(), arguments);
+    std::FILE* pipe = popen(command.c_str(), "r");
+    std::string output;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+      output.push_back(static_cast<char>(c));
+    const int status = pclose(pipe);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+  }
+
+  // Exit code 1 and one line that says `expected`.
+  void expect_refusal(const std::string& program, const std::string& arguments,
+                      const std::string& expected) const {
+    const Outcome outcome = run_program(program, arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments << "\n" << outcome.output;
+    EXPECT_THAT(outcome.output, testing::HasSubstr(expected)) << arguments;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+  }
+
+  std::filesystem::path folder_;
+
+ private:
+  std::string prefix_;
+};
+
+}  // namespace axial::test
