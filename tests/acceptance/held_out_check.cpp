@@ -7,10 +7,14 @@
 // SCENE holds all images; IMAGE_A and IMAGE_B are the names of the two that the cloud was made
 // without. A point counts as seen where it is the front-most of the cloud within 1 % of depth and
 // its normal faces both cameras; it agrees if the ZNCC of the window around it in A with the window
-// carried into B over its tangent plane is above 0.6. Prints "seen N agree M fraction F".
+// carried into B over its tangent plane is above 0.6. Prints "seen N agree M fraction F angle D",
+// D the median angle in degrees at which the two see a point: the wider, the less a plane can stand
+// for the surface under a window, whatever the cloud.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
@@ -76,6 +80,13 @@ bool in_front(const View& view, const Seen& seen) {
   return seen.inside && seen.depth < 1.01f * view.nearest(seen.y, seen.x);
 }
 
+float median(std::vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 int run(char** argv) {
   const Scene scene = io::read_mvs(argv[1], std::filesystem::path(argv[1]).parent_path());
   const PointCloud cloud = io::read_cloud_ply(argv[2]);
@@ -91,7 +102,7 @@ int run(char** argv) {
   const depth::QuadImage quad(b.grey);
   const depth::Matcher<Camera, depth::AffineWarp> matcher(
       a.grey, camera_a, {{camera_b, depth::RelativePose(a.pose, b.pose), &quad, nullptr}}, {});
-  std::size_t seen_count = 0;
+  std::vector<float> angles;  // of the points seen [degrees]
   std::size_t agree = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f& point = cloud.positions[i];
@@ -99,19 +110,22 @@ int run(char** argv) {
     if (!in_front(a, in_a) || !in_front(b, see(b, camera_b, point))) continue;
     const Eigen::Vector3f x = a.pose.to_camera(point.cast<double>()).cast<float>();
     const Eigen::Vector3f normal = (a.pose.rotation.cast<float>() * cloud.normals[i]).normalized();
-    const Eigen::Vector3f from_b = point - b.pose.centre.cast<float>();
+    const Eigen::Vector3f from_a = (point - a.pose.centre.cast<float>()).normalized();
+    const Eigen::Vector3f from_b = (point - b.pose.centre.cast<float>()).normalized();
     const depth::ReferencePixel pixel = matcher.prepare(in_a.x, in_a.y);
     const float along = normal.dot(pixel.ray.direction);
-    if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b.normalized()) < -0.2f)) continue;
+    if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b) < -0.2f)) continue;
     const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
     const float cost = matcher.view_cost(
         pixel, plane, depth::patch_derivative(pixel.ray, pixel.jacobian, plane), 0);
-    ++seen_count;
+    angles.push_back(std::acos(std::clamp(from_a.dot(from_b), -1.0f, 1.0f)) * 180.0f /
+                     std::numbers::pi_v<float>);
     if (cost < 0.4f) ++agree;
   }
-  std::cout << fmt::format(
-      "seen {} agree {} fraction {:.4f}\n", seen_count, agree,
-      seen_count ? static_cast<double>(agree) / static_cast<double>(seen_count) : 0.0);
+  const auto seen = static_cast<double>(angles.size());
+  std::cout << fmt::format("seen {} agree {} fraction {:.4f} angle {:.0f}\n", angles.size(), agree,
+                           angles.empty() ? 0.0 : static_cast<double>(agree) / seen,
+                           median(angles));
   return 0;
 }
 
