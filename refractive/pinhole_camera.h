@@ -67,6 +67,9 @@ class PinholeCamera {
     return {Vector3<T>::Zero(), direction};
   }
 
+  // The last point of the light's path in the scene's medium, in the camera frame.
+  Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
+
   // Where X is not visible, pixel and Jacobian are finite and mean nothing.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
     using std::abs;

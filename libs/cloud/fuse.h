@@ -39,8 +39,6 @@ struct FuseOptions {
   std::size_t min_views = 3;
   double depth_threshold = 0.01;                              // relative, along the neighbour's ray
   double normal_threshold = 25.0 * std::numbers::pi / 180.0;  // [rad]
-  // Distance of the neighbour's point to the pixel that asks, seen there [px]; 0: not tested.
-  double reprojection_threshold = 0;
   bool normals = true;  // fill PointCloud::normals
 };
 

@@ -51,20 +51,18 @@ void back_project_row(const Camera& camera, int y, FusionMap& view) {
 
 // Answers of one neighbour. Float projection: its error of a thousandth of a pixel only matters to
 // points that fall between two pixels anyway.
-template <class ReferenceCamera, class Camera>
+template <class Camera>
 class Neighbour {
  public:
-  Neighbour(const FusionMap& reference, const ReferenceCamera& reference_camera,
-            const FusionMap& neighbour, const Camera& camera, const FuseOptions& options)
+  Neighbour(const FusionMap& reference, const FusionMap& neighbour, const Camera& camera,
+            const FuseOptions& options)
       : reference_(reference),
-        reference_camera_(reference_camera),
         neighbour_(neighbour),
         camera_(camera),
         width_(neighbour.map.width()),
         height_(neighbour.map.height()),
         depth_threshold_(static_cast<float>(options.depth_threshold)),
-        least_cosine_(static_cast<float>(std::cos(options.normal_threshold))),
-        largest_shift_(static_cast<float>(options.reprojection_threshold)) {}
+        least_cosine_(static_cast<float>(std::cos(options.normal_threshold))) {}
 
   Answer operator()(std::uint32_t asking) const {
     const Eigen::Vector3f X = in_camera(neighbour_, reference_.point[asking]);
@@ -84,7 +82,7 @@ class Neighbour {
     if (std::abs(depth - seen) >= depth_threshold_ * depth) {
       return depth < seen ? Answer::contradicts(pixel) : Answer();
     }
-    return same_normal(asking, pixel) && returns(asking, pixel) ? Answer::joins(pixel) : Answer();
+    return same_normal(asking, pixel) ? Answer::joins(pixel) : Answer();
   }
 
  private:
@@ -99,22 +97,11 @@ class Neighbour {
     return mine.isZero(0) || other.isZero(0) || mine.dot(other) > least_cosine_;
   }
 
-  // The neighbour's own point projects back to where the question came from.
-  bool returns(std::uint32_t asking, std::uint32_t pixel) const {
-    if (!(largest_shift_ > 0)) return true;
-    const auto back = reference_camera_.project(in_camera(reference_, neighbour_.point[pixel]));
-    const auto width = static_cast<std::uint32_t>(reference_.map.width());
-    const Eigen::Vector2f from(static_cast<float>(asking % width),
-                               static_cast<float>(asking / width));
-    return back.visible && (back.pixel - from).norm() <= largest_shift_;
-  }
-
   const FusionMap& reference_;
-  const ReferenceCamera& reference_camera_;
   const FusionMap& neighbour_;
   const Camera& camera_;
   int width_, height_;
-  float depth_threshold_, least_cosine_, largest_shift_;
+  float depth_threshold_, least_cosine_;
 };
 
 }  // namespace
@@ -144,13 +131,13 @@ void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
                    std::span<const std::uint32_t> asking, const FuseOptions& options,
                    std::span<Answer> answers) {
   std::visit(
-      [&](const auto& reference_camera, const auto& camera) {
-        const Neighbour ask(reference, reference_camera, neighbour, camera, options);
+      [&](const auto& camera) {
+        const Neighbour ask(reference, neighbour, camera, options);
         constexpr std::size_t kGrain = 4096;
         parallel_for(
             asking.size(), [&](std::size_t i) { answers[i] = ask(asking[i]); }, kGrain);
       },
-      make_camera<float>(reference.map.camera), make_camera<float>(neighbour.map.camera));
+      make_camera<float>(neighbour.map.camera));
 }
 
 }  // namespace axial::cloud

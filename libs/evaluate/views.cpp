@@ -23,15 +23,6 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
   return model;
 }
 
-// The last point of the light's path in the scene medium, in the camera frame.
-Eigen::Vector3d entrance(const refractive::PinholeCamera<double>&, const Eigen::Vector2d&) {
-  return Eigen::Vector3d::Zero();
-}
-Eigen::Vector3d entrance(const refractive::FlatPortCamera<double>& camera,
-                         const Eigen::Vector2d& pixel) {
-  return camera.exit_point(pixel);
-}
-
 template <class Camera>
 bool sees(const Camera& camera, const View& view, const Surface& surface,
           const Eigen::Vector3d& point) {
@@ -39,7 +30,7 @@ bool sees(const Camera& camera, const View& view, const Surface& surface,
   const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
                       image.pixel.x() < view.camera.width - 0.5 &&
                       image.pixel.y() < view.camera.height - 0.5;
-  return inside && !surface.blocked(point, view.pose.to_world(entrance(camera, image.pixel)));
+  return inside && !surface.blocked(point, view.pose.to_world(camera.exit_point(image.pixel)));
 }
 
 }  // namespace

@@ -4,13 +4,15 @@ views of 512 x 384 of the close-up scene, on true poses."""
 
 import json
 import os
+import re
 import signal
 import subprocess
 import tempfile
 import time
 import unittest
 
-from programs import BIN, ProgramTest, files_below, main, read, run
+from programs import (BIN, ProgramTest, cloud_size, depth_rows, files_below, grey_png, main, read, run,
+                      write)
 
 # One pixel's width at the scene's depth: the median distance (0.7 m) over the focal length (305 px).
 GSD = 0.7 / 305
@@ -105,6 +107,43 @@ class EndToEnd(ProgramTest):
                       self.densify("killed", "--refractive", *QUICK))
         changed = self.densify("killed", "--refractive", "--iters", "2", *QUICK)
         self.assertNotIn("there already", changed, "maps of other options were taken over")
+
+    def test_masked_pixels_get_no_depth(self):
+        self.import_scene("air", "masked")
+        left_half = grey_png([bytes([5] * 256 + [7] * 256)] * 384)
+        for image in range(4):
+            write(self.path("masked", "masks", f"{image:04}.mask.png"), left_half)
+        masks = ("--mask-path", "masks")
+
+        self.densify("masked", *masks, *QUICK)
+        unmasked = depth_rows(read(self.path("masked", "depth0000.dmap")))
+        self.assertTrue(any(depth > 0 for row in unmasked for depth in row[:len(row) // 2]))
+
+        resumed = self.densify("masked", *masks, "--ignore-mask-label", "5", *QUICK)
+        self.assertNotIn("there already", resumed, "maps without masks were taken over")
+        for image in range(4):
+            rows = depth_rows(read(self.path("masked", f"depth{image:04}.dmap")))
+            middle = len(rows[0]) // 2
+            self.assertFalse(any(depth > 0 for row in rows for depth in row[:middle]))
+            self.assertTrue(any(depth > 0 for row in rows for depth in row[middle:]))
+
+        write(self.path("masked", "masks", "0002.mask.png"),
+              grey_png([bytes([7] * 256 + [5] * 256)] * 384))
+        self.densify("masked", *masks, "--ignore-mask-label", "5", *QUICK)
+        row = depth_rows(read(self.path("masked", "depth0002.dmap")))[100]
+        self.assertFalse(any(depth > 0 for depth in row[len(row) // 2:]))
+
+    def test_crops_to_the_region_of_interest(self):
+        self.import_scene("air", "region")
+        small = ("--estimate-roi", "1", "--roi-border", "0.4", *QUICK)
+        self.densify("region", "--crop-to-roi", "0", *small)
+        whole = cloud_size(read(self.path("region", "scene_dense.ply")))
+        said = self.densify("region", *small)
+        removed = int(re.search(r"Region of interest: (\d+) points outside removed", said)[1])
+        self.assertGreater(removed, 0)
+        left = cloud_size(read(self.path("region", "scene_dense.ply")))
+        self.assertGreater(left, 0)
+        self.assertEqual(left, whole - removed)
 
     def kill_when_finished(self, folder, file):
         process = subprocess.Popen(

@@ -2,12 +2,15 @@
 """What the program tests share: running programs, and judging how they fail."""
 
 import os
+import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 BIN = os.environ.get("AXIAL_BIN", "")
 
@@ -40,6 +43,30 @@ def write(path, data):
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "wb" if isinstance(data, bytes) else "w") as file:
         file.write(data)
+
+
+def grey_png(rows):
+    """The bytes of an 8-bit grey PNG; `rows` are bytes of equal length."""
+    def chunk(kind, data):
+        body = kind + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + row for row in rows))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels)
+            + chunk(b"IEND", b""))
+
+
+def depth_rows(dmap):
+    """The depths of a .dmap, row by row (docs/formats.md)."""
+    width, height = struct.unpack_from("<II", dmap, 12)
+    position = 28 + 2 + struct.unpack_from("<H", dmap, 28)[0]
+    position += 4 + 4 * struct.unpack_from("<I", dmap, position)[0] + 8 * (9 + 9 + 3)
+    depths = struct.unpack_from(f"<{width * height}f", dmap, position)
+    return [depths[y * width:(y + 1) * width] for y in range(height)]
+
+
+def cloud_size(ply):
+    return int(re.search(rb"element vertex (\d+)", ply)[1])
 
 
 class ProgramTest(unittest.TestCase):

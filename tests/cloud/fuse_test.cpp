@@ -235,16 +235,6 @@ TEST_P(FuseWithCamera, EstimatesMissingNormals) {
   }
 }
 
-TEST_P(FuseWithCamera, TestsTheReturnedPixelIfAsked) {
-  Fixture fixture = make_fixture({}, model());
-  FuseOptions options;
-  options.reprojection_threshold = 2;
-  // Exact maps return within half a pixel diagonal times the ratio of footprints.
-  EXPECT_EQ(run(fixture, options).size(), run(fixture).size());
-  options.reprojection_threshold = 0.01;
-  EXPECT_LT(run(fixture, options).size(), run(fixture).size());
-}
-
 TEST(Fuse, TreatsAPortOfAirAsNone) {
   AnalyticScene world;
   world.sphere_radius = 0.1;
