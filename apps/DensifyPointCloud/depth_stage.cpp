@@ -8,6 +8,7 @@
 #include <list>
 #include <memory>
 
+#include "base/error.h"
 #include "base/progress.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
@@ -59,6 +60,7 @@ class DepthMapRun {
   }
 
   void run() {
+    refuse_foreign_maps();
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size()) {
       spdlog::info("All {} depth maps are there already", project_.references.size());
@@ -92,6 +94,19 @@ class DepthMapRun {
       if (complete) return s;
     }
     return 0;
+  }
+
+  // A map of no known camera lies where one behind a port is to be written: another program's.
+  void refuse_foreign_maps() const {
+    for (const std::size_t image : project_.references) {
+      const fs::path file = depth_map_path(project_, options_, image);
+      std::error_code ignored;
+      if (project_.views[image].camera.port && fs::exists(file, ignored) &&
+          !fs::exists(file.string() + ".json", ignored))
+        axial::fail(
+            "{}: has no side file, so it is the depth map of a pinhole, and would be overwritten",
+            file.string());
+    }
   }
 
   void run_stage(std::size_t stage) {

@@ -54,8 +54,14 @@ int run(int argc, char** argv) {
   fs::path ply = options.output;
   ply.replace_extension(".ply");
   axial::io::write_cloud_ply(ply, cloud);
+  densify::write_housing_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   spdlog::info("{}: {} points", ply.string(), cloud.size());
+  if (options.fuse && cloud.size() == 0)
+    spdlog::warn(
+        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
+        "masks and the region of interest leave nothing",
+        options.fusion.min_views);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
   return 0;
 }

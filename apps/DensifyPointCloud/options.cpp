@@ -71,7 +71,7 @@ void declare_matching(po::options_description& add, Options& options) {
        po::value(&options.matching.sub_resolution_levels)->default_value(2),
        "coarser levels matched first")("number-views",
                                        po::value(&options.number_views)->default_value(5),
-                                       "source views per image (0: all)")(
+                                       "source views per image (0: all, 1: the best one)")(
           "iters", po::value(&options.matching.iterations)->default_value(3),
           "sweeps per resolution level")("geometric-iters",
                                          po::value(&options.geometric_iterations)->default_value(2),
@@ -100,15 +100,15 @@ void declare_fusion(po::options_description& add, Raw& raw, Options& options) {
 
 void declare_camera(po::options_description& add, Raw& raw, Options& options) {
   add.add_options()  //
-      ("refractive", po::bool_switch(&options.refractive),
+      ("refractive", po::value(&options.refractive)->default_value(false)->implicit_value(true),
        "cameras look through ports: demand a housing file")("housing", po::value(&raw.housing),
                                                             "housing file (<scene>.housing.json)")(
           "camera-model", po::value(&raw.camera_model)->default_value("auto"),
           "auto: what the housing says, pinhole: ignore it, flatport: every image has a flat port")(
           "projection", po::value(&raw.projection)->default_value("exact"),
-          "exact, or the published line-search")(
+          "in matching: exact, or the published line-search")(
           "warp", po::value(&raw.warp)->default_value("affine"),
-          "affine (exact to first order), or the published virtual homography");
+          "in matching: affine (exact to first order), or the published virtual homography");
 }
 
 void declare_not_built(po::options_description& add, const std::vector<NotBuilt>& options) {
@@ -140,7 +140,8 @@ T one_of(const std::string& name, const std::string& value,
 
 template <class T>
 void check_range(const std::string& name, T value, T low, T high) {
-  if (value < low || value > high) fail("--{} {}: must be from {} to {}", name, value, low, high);
+  if (!(value >= low && value <= high))
+    fail("--{} {}: must be from {} to {}", name, value, low, high);
 }
 
 void check_values(const Options& options, const Raw& raw) {
@@ -152,10 +153,12 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("iters", options.matching.iterations, 1, 60);
   check_range("geometric-iters", options.geometric_iterations, 0, 20);
   check_range("postprocess-dmaps", options.postprocess, 0u, 7u);
+  check_range("number-views-fuse", options.fusion.min_views, std::size_t{0}, std::size_t{255});
   check_range("fusion-mode", raw.fusion_mode, 0, 1);
   check_range("estimate-colors", options.estimate_colors, 0u, 2u);
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
+  check_range("roi-border", options.roi_border, -1e6, 1e6);
 }
 
 }  // namespace

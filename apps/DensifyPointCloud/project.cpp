@@ -34,8 +34,8 @@ void find_images(axial::Scene& scene, const Options& options) {
   }
 }
 
-void attach_housing(axial::Scene& scene, const Options& options) {
-  if (options.camera == CameraChoice::pinhole) return;
+std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Options& options) {
+  if (options.camera == CameraChoice::pinhole) return {};
   const bool demanded = options.refractive || options.camera == CameraChoice::flat_port;
   const fs::path file =
       options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
@@ -43,9 +43,10 @@ void attach_housing(axial::Scene& scene, const Options& options) {
   if (!fs::exists(file, error)) {
     if (demanded || !options.housing.empty())
       fail("{}: no such housing file; --refractive needs one (see --housing)", file.string());
-    return;
+    return {};
   }
-  axial::io::attach_ports(scene, axial::io::read_housing(file));
+  const axial::io::Housing housing = axial::io::read_housing(file);
+  axial::io::attach_ports(scene, housing);
   std::size_t wet = 0;
   for (const axial::SceneImage& image : scene.images) wet += image.camera.port ? 1 : 0;
   if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
@@ -54,6 +55,8 @@ void attach_housing(axial::Scene& scene, const Options& options) {
          wet, scene.images.size());
   spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
                scene.images.size());
+  if (wet == 0) return {};
+  return housing;
 }
 
 cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_size,
@@ -140,7 +143,6 @@ void select_views(Project& project, const Options& options) {
     project.neighbours[i] = axial::filter_neighbours(scene.images[i].neighbours, options.selection);
     project.sources[i] =
         axial::choose_source_views(project.neighbours[i], options.number_views, options.selection);
-    if (project.sources[i].size() > 32) project.sources[i].resize(32);
     if (project.sources[i].empty())
       spdlog::warn("{}: left out: no good images in view", scene.images[i].path);
     else
@@ -208,7 +210,7 @@ Project load_project(const Options& options) {
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
-  attach_housing(project.scene, options);
+  project.housing = attach_housing(project.scene, options);
   spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
                project.scene.images.size(), project.scene.points.size());
   load_views(project, options);
@@ -216,6 +218,14 @@ Project load_project(const Options& options) {
   select_views(project, options);
   project.fingerprint = fingerprint(project, options);
   return project;
+}
+
+void write_housing_beside_output(const Project& project, const Options& options) {
+  const fs::path file = axial::io::housing_beside(options.output);
+  if (project.housing) return axial::io::write_housing(file, *project.housing);
+  if (file == axial::io::housing_beside(options.input)) return;
+  std::error_code error;
+  if (fs::remove(file, error)) spdlog::info("{} removed: the scene has no ports", file.string());
 }
 
 cv::Mat3b load_color(const Project& project, std::size_t image) {

@@ -77,6 +77,7 @@ void check(const Options& options) {
     fail("--align centres needs --estimated and --cameras");
   if (!options.housing.empty() && options.cameras.empty())
     fail("--housing needs --cameras: the cameras behind its ports");
+  if (options.least_views == 0) fail("--min-views is 0: must be at least 1");
   if (options.samples == 0 || options.samples > 100'000'000)
     fail("--samples is {}: must be 1 to 100000000", options.samples);
   if (options.picture_width < 16 || options.picture_width > 16384)

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <new>
+#include <typeinfo>
 
 #include "base/error.h"
 
@@ -40,9 +41,23 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// boost reads "-1" as an unsigned number, and as a huge one.
+void refuse_negative(const po::parsed_options& parsed, const po::options_description& known) {
+  for (const po::option& option : parsed.options) {
+    const po::option_description* description = known.find_nothrow(option.string_key, false);
+    if (!description || option.value.empty() || !option.value[0].starts_with('-')) continue;
+    const auto* value = dynamic_cast<const po::typed_value_base*>(description->semantic().get());
+    if (value &&
+        (value->value_type() == typeid(unsigned) || value->value_type() == typeid(unsigned long) ||
+         value->value_type() == typeid(unsigned long long)))
+      fail("--{} {}: must not be negative", option.string_key, option.value[0]);
+  }
+}
+
 void apply(const CommonOptions& common) {
   if (common.archive_type != -1)
     fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
+  if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
   spdlog::set_level(common.verbosity <= 0   ? spdlog::level::warn
                     : common.verbosity <= 2 ? spdlog::level::info
@@ -76,7 +91,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     parser.options(command_line);
     const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
     if (has_input) parser.positional(positional);
-    po::store(parser.run(), parsed.values);
+    const po::parsed_options given_options = parser.run();
+    refuse_negative(given_options, command_line);
+    po::store(given_options, parsed.values);
 
     if (parsed.values.count("working-folder"))
       working_folder = parsed.values["working-folder"].as<std::string>();
@@ -89,7 +106,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
         parsed.common.working_folder / parsed.values["config-file"].as<std::string>();
     if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
       try {
-        po::store(po::parse_config_file(in, config), parsed.values);
+        const po::parsed_options in_file = po::parse_config_file(in, config);
+        refuse_negative(in_file, config);
+        po::store(in_file, parsed.values);
       } catch (const po::error& cfg_error) {
         fail("{}: {}", cfg.string(), one_line(cfg_error.what()));
       }

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "io/byte_reader.h"
 #include "io/byte_writer.h"
 #include "io/dmap_side_file.h"
@@ -182,6 +183,10 @@ void use_side_file(const DmapSideFile& side, const std::string& file, StoredDept
   stored.made_from = side.made_from;
 }
 
+std::string fingerprint_of(const std::string& bytes) {
+  return Fingerprint().add(bytes).hex();
+}
+
 void check_map(const DepthMap& map, const std::string& file) {
   const cv::Size size = map.depth.size();
   if (map.depth.empty()) fail("{}: the depth map is empty", file);
@@ -251,7 +256,11 @@ StoredDepthMap read_dmap(const fs::path& path) {
   StoredDepthMap stored{parse_dmap(in), {}};
   DepthMap& map = stored.map;
   const auto side = read_dmap_side_file(path);
-  if (side) use_side_file(*side, dmap_side_path(path).string(), stored);
+  if (side) {
+    if (side->content != fingerprint_of(bytes))
+      fail("{}: is not the depth map that {} describes", file, dmap_side_path(path).string());
+    use_side_file(*side, dmap_side_path(path).string(), stored);
+  }
   map.image_path = (fs::absolute(path).parent_path() / map.image_path).lexically_normal().string();
   map.depth = converted(map.depth, map.camera, file,
                         [](const DepthAlongRay& ray, double z) { return ray.lambda(z); });
@@ -278,12 +287,14 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
   write_pixels(out, z_depth);
   write_pixels(out, map.normal);
   write_pixels(out, map.confidence);
-  // A map beside the side file of another would be taken for what it is not.
-  std::error_code error;
-  fs::remove(dmap_side_path(path), error);
-  if (error) fail("{}: cannot be removed: {}", dmap_side_path(path).string(), error.message());
-  write_atomically(path, out.bytes());
-  write_dmap_side_file(path, {map.camera, map.min_depth, map.max_depth, made_from});
+  const DmapSideFile side{map.camera, map.min_depth, map.max_depth, made_from,
+                          fingerprint_of(out.bytes())};
+  // The side file takes its name before the map does: whenever this is interrupted, a map of ours
+  // has a side file, and one beside an older map does not fit it.
+  write_atomically(path, [&](const fs::path& temporary) {
+    write_atomically(temporary, out.bytes());
+    write_dmap_side_file(path, side);
+  });
 }
 
 std::optional<std::string> dmap_made_from(const fs::path& path) {
@@ -291,7 +302,7 @@ std::optional<std::string> dmap_made_from(const fs::path& path) {
   if (!fs::is_regular_file(path, ignored)) return {};
   try {
     const auto side = read_dmap_side_file(path);
-    if (side) return side->made_from;
+    if (side && side->content == fingerprint_of(read_file(path))) return side->made_from;
   } catch (const Error&) {
     // Damaged, so of no use; the map is computed again.
   }

@@ -41,8 +41,8 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   if (!fs::exists(path, ignored)) return {};
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": depth map"};
-  root.require_object(
-      {"version", "width", "height", "lens", "port", "min_depth_m", "max_depth_m", "made_from"});
+  root.require_object({"version", "width", "height", "lens", "port", "min_depth_m", "max_depth_m",
+                       "made_from", "content"});
   if (root.at("version").json != 1)
     fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
   DmapSideFile side;
@@ -54,6 +54,7 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   side.min_depth = static_cast<float>(root.number("min_depth_m"));
   side.max_depth = static_cast<float>(root.number("max_depth_m"));
   side.made_from = root.text("made_from");
+  side.content = root.text("content");
   return side;
 }
 
@@ -67,7 +68,8 @@ void write_dmap_side_file(const fs::path& dmap, const DmapSideFile& side) {
       {"port", nullptr},
       {"min_depth_m", side.min_depth},
       {"max_depth_m", side.max_depth},
-      {"made_from", side.made_from}};
+      {"made_from", side.made_from},
+      {"content", side.content}};
   if (side.camera.port) json["port"] = port_to_json(*side.camera.port);
   write_json(dmap_side_path(dmap), json);
 }

@@ -14,6 +14,7 @@ struct DmapSideFile {
   CameraModel camera;                  // at the depth map's resolution
   float min_depth = 0, max_depth = 0;  // lambda [m]
   std::string made_from;
+  std::string content;  // Fingerprint of the .dmap's bytes
 };
 
 std::filesystem::path dmap_side_path(const std::filesystem::path& dmap);

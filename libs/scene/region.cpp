@@ -78,7 +78,9 @@ std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode) 
   constexpr double kEnlarged = 1.1;
   OrientedBox region;
   region.centre = box.center();
-  region.half_extent = kEnlarged / 2 * box.sizes();
+  // Sparse points in one plane would give a box without volume.
+  constexpr double kThinnest = 0.1;
+  region.half_extent = kEnlarged / 2 * box.sizes().cwiseMax(kThinnest * box.sizes().maxCoeff());
   return region;
 }
 

@@ -220,9 +220,7 @@ ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observation
     return result;
   }
   ViewPreparation result = depths_and_points(image, index, observations, options);
-  if (!options.keep_given || image.neighbours.empty()) {
-    image.neighbours = neighbours_of(scene, index, observations, options);
-  }
+  image.neighbours = neighbours_of(scene, index, observations, options);
   if (result.init_points.size() < options.min_init_points) {
     result.problem = fmt::format("it sees only {} sparse points", result.init_points.size());
   } else if (image.neighbours.empty() || image.neighbours.size() < enough_views) {

@@ -19,7 +19,6 @@ struct ViewSelectionOptions {
   std::size_t min_init_points = 4;    // fewer: the image is unusable
   std::size_t min_views = 2;          // fewer candidates (of those possible): unusable
   double weight_outside_region = 0.7;
-  bool keep_given = false;  // images that bring neighbours keep them (a neighbours file)
 
   // filter_neighbours
   double min_area = 0.05;
@@ -35,8 +34,7 @@ struct ViewSelectionOptions {
 
 // What the sparse cloud says about one image, besides its neighbours.
 struct ViewPreparation {
-  // Indices into Scene::points of points seen here and trusted, ascending. Computed even when the
-  // neighbours were given.
+  // Indices into Scene::points of points seen here and trusted, ascending.
   std::vector<std::uint32_t> init_points;
   // Range of lambda (DepthMap's depth) to search [m]: 0.9 min to 1.1 max over init_points. 0, 0 if
   // there are none.

@@ -38,6 +38,8 @@ def source_state():
     git = lambda *arguments: subprocess.run(["git", *arguments], cwd=ROOT, check=True,
                                             capture_output=True, text=True).stdout
     changes = git("diff", "HEAD", "--", ".", ":!*.md")
+    for name in git("ls-files", "--others", "--exclude-standard").splitlines():
+        changes += name + (ROOT / name).read_text(errors="replace")
     commit = git("rev-parse", "--short=12", "HEAD").strip()
     if not changes:
         return commit
@@ -261,7 +263,7 @@ def held_out_pair(work, a, b):
     with_all, _, _ = photo_check(work, work / "fountain", a, b)
     seen = (f"{a[:4]} and {b[:4]}, {angle} degrees apart: {share:.1%} of {count:,} "
             f"(cloud of all images: {with_all:.1%})")
-    return seen, angle > WIDEST_ANGLE or share >= 0.9
+    return seen, share if angle <= WIDEST_ANGLE else None
 
 
 @point("at least 90 % of the points that two held-out images see have ZNCC above 0.6 in them")
@@ -270,7 +272,8 @@ def fountain_held_out(work):
               "--resolution-level", 2)
     pairs = (("0004.jpg", "0005.jpg"), ("0003.jpg", "0007.jpg"), ("0002.jpg", "0008.jpg"))
     results = [held_out_pair(work, a, b) for a, b in pairs]
-    return "; ".join(seen for seen, _ in results), all(good for _, good in results)
+    judged = [share for _, share in results if share is not None]
+    return "; ".join(seen for seen, _ in results), len(judged) >= 2 and min(judged) >= 0.9
 
 
 @point("11 of 11 images registered by a COLMAP run of one's own")

@@ -94,7 +94,7 @@ class EndToEnd(ProgramTest):
         for name, content in self.outputs("two").items():
             self.assertEqual(content, expected[name], f"{name} depends on the number of threads")
 
-        self.kill_when_finished("killed", "depth0001.photometric.dmap.json")
+        self.kill_when_finished("killed", "depth0001.photometric.dmap")
         self.assertNotIn("scene_dense.ply", files_below(self.path("killed")))
         resumed = self.densify("killed", "--refractive", *QUICK)
         self.assertRegex(resumed, r"Estimated depth maps: [23] maps were there already")
@@ -144,6 +144,33 @@ class EndToEnd(ProgramTest):
         left = cloud_size(read(self.path("region", "scene_dense.ply")))
         self.assertGreater(left, 0)
         self.assertEqual(left, whole - removed)
+
+    def test_maps_that_were_tampered_with_are_made_anew(self):
+        self.import_scene("water", "damaged")
+        self.densify("damaged", "--refractive", *QUICK)
+        expected = self.outputs("damaged")
+        first = self.path("damaged", "depth0000.dmap")
+        for wrong in (read(self.path("damaged", "depth0001.dmap")), read(first)[:1000], b""):
+            write(first, wrong)
+            self.assertIn("3 maps were there already", self.densify("damaged", "--refractive", *QUICK))
+            self.assertEqual(self.outputs("damaged"), expected)
+
+        os.remove(self.path("damaged", "depth0002.dmap.json"))
+        self.refuses("depth0002.dmap", "DensifyPointCloud", "-i", "scene.mvs", "-w",
+                     self.path("damaged"), "--refractive", *QUICK)
+
+    def test_the_dense_scene_keeps_its_housing(self):
+        self.import_scene("water", "again")
+        self.densify("again", "--refractive", *QUICK)
+        self.assertEqual(json.loads(read(self.path("again", "scene_dense.housing.json"))),
+                         json.loads(read(self.path("again", "scene.housing.json"))))
+        before = read(self.path("again", "scene_dense.ply"))
+        said = self.succeeds("DensifyPointCloud", "-i", "scene_dense.mvs", "-w", self.path("again"),
+                             "--refractive", *QUICK).stdout
+        self.assertIn("All 4 depth maps are there already", said)
+        self.assertEqual(read(self.path("again", "scene_dense_dense.ply")), before)
+        self.densify("again", "--camera-model", "pinhole", *QUICK)
+        self.assertNotIn("scene_dense.housing.json", files_below(self.path("again")))
 
     def kill_when_finished(self, folder, file):
         process = subprocess.Popen(

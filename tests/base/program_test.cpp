@@ -126,6 +126,9 @@ TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--resolution-level", "1", "--resolution-level", "2"}),
               HasSubstr("resolution-level"));
   EXPECT_THAT(error({"a.mvs", "b.mvs"}), HasSubstr("input-file"));
+  EXPECT_THAT(error({"a.mvs", "--max-threads", "-1"}), HasSubstr("--max-threads -1"));
+  EXPECT_THAT(error({"a.mvs", "--max-threads=-1"}), HasSubstr("--max-threads -1"));
+  EXPECT_THAT(error({"a.mvs", "--max-threads", "5000"}), HasSubstr("at most 1024"));
   EXPECT_THAT(error({"a.mvs", "--archive-type", "2"}), HasSubstr("archive-type is 2"));
 }
 

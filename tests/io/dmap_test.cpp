@@ -66,7 +66,7 @@ class DmapTest : public testing::Test {
   std::string error() {
     return error_of([&] { read_dmap(file_); });
   }
-  // The error of the .dmap with the bytes at `offset` replaced.
+  // The error of the .dmap, by itself, with the bytes at `offset` replaced.
   template <class T>
   std::string error_with(std::size_t offset, T value) {
     write_dmap(file_, depth_map(folder_, true), "x");
@@ -74,6 +74,7 @@ class DmapTest : public testing::Test {
     EXPECT_LE(offset + sizeof value, bytes.size());
     std::memcpy(bytes.data() + offset, &value, sizeof value);
     test::put(file_, bytes);
+    fs::remove(side_);
     const std::string message = error();
     EXPECT_THAT(message, HasSubstr(file_.string()));
     return message;
@@ -236,8 +237,26 @@ TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
   write_dmap(file_, depth_map(folder_, true), "def");
   EXPECT_EQ(dmap_made_from(file_), "def");
+  const std::string whole = read_file(file_);
+  for (const std::string& other :
+       {whole.substr(0, 100), whole + "x", std::string(whole.size(), '1')}) {
+    test::put(file_, other);
+    EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+  }
+  test::put(file_, whole);
+  EXPECT_EQ(dmap_made_from(file_), "def");
   fs::remove(file_);
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
+}
+
+TEST_F(DmapTest, RefusesAMapThatItsSideFileDoesNotDescribe) {
+  DepthMap map = depth_map(folder_, true);
+  write_dmap(file_, map, "x");
+  const std::string side = read_file(side_);
+  map.depth(3, 3) *= 1.01f;
+  write_dmap(file_, map, "x");
+  test::put(side_, side);
+  EXPECT_THAT(error(), HasSubstr("is not the depth map"));
 }
 
 TEST_F(DmapTest, RefusesToWriteWhatCannotBeRead) {

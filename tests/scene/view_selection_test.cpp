@@ -112,23 +112,6 @@ TEST(ScoreNeighbours, MeasuresAnglesInTheWater) {
   }
 }
 
-TEST(ScoreNeighbours, KeepsGivenNeighboursButFindsInitPoints) {
-  Scene scene = make_scene(test::dry_camera());
-  ViewScore given;
-  given.image = 3;
-  given.score = 42;
-  for (SceneImage& image : scene.images) image.neighbours = {given, given};
-  ViewSelectionOptions options;
-  options.keep_given = true;
-  const auto views = score_neighbours(scene, options);
-  ASSERT_EQ(scene.images[0].neighbours.size(), 2u);
-  EXPECT_EQ(scene.images[0].neighbours[0].score, 42);
-  EXPECT_EQ(views[0].init_points.size(), scene.points.size());
-  EXPECT_TRUE(views[0].usable());
-  EXPECT_GT(views[0].min_depth, 0.6f);
-  EXPECT_LT(views[0].max_depth, 1.7f);
-}
-
 TEST(ScoreNeighbours, CountsRepeatedViewsOnce) {
   Scene once = make_scene(test::dry_camera()), twice = once;
   for (SparsePoint& point : twice.points) point.views.insert(point.views.begin(), {0, 0});
