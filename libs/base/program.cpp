@@ -40,6 +40,14 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// Without an input file boost parses positional arguments and drops them: a forgotten "--preset"
+// would quietly run with the default.
+void refuse_positional(const po::parsed_options& parsed) {
+  for (const po::option& option : parsed.options)
+    if (option.string_key.empty())
+      fail("command line: '{}' belongs to no option", option.value.front());
+}
+
 void apply(const CommonOptions& common) {
   if (common.archive_type != -1)
     fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
@@ -76,7 +84,9 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     parser.options(command_line);
     const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
     if (has_input) parser.positional(positional);
-    po::store(parser.run(), parsed.values);
+    const po::parsed_options arguments = parser.run();
+    refuse_positional(arguments);
+    po::store(arguments, parsed.values);
 
     if (parsed.values.count("working-folder"))
       working_folder = parsed.values["working-folder"].as<std::string>();

@@ -196,6 +196,7 @@ class OtherPrograms(ProgramTest):
         self.refuses("no-such-preset", "SimulateUnderwater", "--preset", "no-such-preset", "-o",
                      self.path("out"))
         self.refuses("'--no-such-option'", "SimulateUnderwater", "--no-such-option", "1")
+        self.refuses("'closeup'", "SimulateUnderwater", "closeup", "-o", self.path("out"))
 
     def test_evaluation(self):
         write(self.path("garbage.ply"), b"ply\nformat binary\n\xff\xff")
