@@ -81,6 +81,16 @@ class InterfaceColmap(ProgramTest):
         self.refuses_import("0001.png")
         self.refuses_import("no-such-folder", "--image-folder", "no-such-folder")
 
+    def test_images_that_lie_about(self):
+        # Of another size: an import that takes them fails.
+        write(self.path("images", "0000.png"), tiny_scene.picture((0, 0, 0), 48, 48))
+        here = ("-w", self.folder)
+        result = self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                               self.path("scene.mvs"), *here)
+        self.assertIn(f"Images in {self.path('colmap', 'images')}", result.stdout)
+        os.remove(self.path("scene.mvs"))
+        self.refuses_import(self.path("images", "0000.png"), "--image-folder", "images", *here)
+
     def test_wrong_housings(self):
         housing = self.path("housing.json")
         port = '{"type": "flat", "distance_m": %s, "thickness_m": 0.01, "normal": [0, 0, 1], ' \
