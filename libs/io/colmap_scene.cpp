@@ -119,10 +119,12 @@ void import_points(const ColmapModel& model, Scene& scene) {
   }
 }
 
-// True if `key` is `name`, or its last components.
-bool matches(const std::string& name, const std::string& key) {
-  return name == key || (name.size() > key.size() && name.ends_with(key) &&
-                         name[name.size() - key.size() - 1] == '/');
+// The name that `image`, imported as `path`, goes by in the scene's housing.
+std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
+  const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
+  fs::path name = fs::path(image.name).lexically_normal();
+  if (undistorted) name.replace_extension(path.extension());
+  return name.generic_string();
 }
 
 }  // namespace
@@ -168,36 +170,34 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
 }
 
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
-                         const ColmapImport& import, std::vector<std::string>* unused) {
+                         const ColmapImport& import) {
   Housing resolved;
   resolved.ports = housing.ports;
   resolved.default_port = housing.default_port;
-  std::set<std::string> used;
+  std::vector<std::string> names, ports;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const ColmapImage& image = model.images[i];
-    std::string key;  // the longest entry that matches: the most specific
-    for (const auto& [name, port] : housing.images) {
-      if (!matches(image.name, name)) continue;
-      used.insert("images." + name);
-      if (name.size() > key.size()) key = name;
-    }
-    const std::string camera_key = "cameras." + std::to_string(image.camera);
-    if (housing.cameras.contains(image.camera)) used.insert(camera_key);
-    const std::string& port =
-        key.empty() ? housing.port_of(image.name, image.camera) : housing.images.at(key);
-    if (port == housing.default_port) continue;
-    const fs::path path = scene.images[i].path;
-    const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
-    resolved.images[undistorted ? fs::path(image.name).replace_extension(path.extension()).string()
-                                : image.name] = port;
+    names.push_back(scene_name(image, scene.images[i].path, import));
+    ports.push_back(housing.port_of(image.name, image.camera));
+    if (ports[i] != housing.default_port) resolved.images[names[i]] = ports[i];
   }
-  if (!unused) return resolved;
-  for (const auto& [name, port] : housing.images)
-    if (!used.contains("images." + name)) unused->push_back("images." + name);
-  for (const auto& [id, port] : housing.cameras)
-    if (!used.contains("cameras." + std::to_string(id)))
-      unused->push_back("cameras." + std::to_string(id));
   return resolved;
+}
+
+std::vector<std::string> unused_entries(const Housing& housing, const ColmapModel& model) {
+  std::set<std::string> names;
+  std::set<std::uint32_t> cameras;
+  for (const ColmapImage& image : model.images) {
+    cameras.insert(image.camera);
+    const auto entry = housing.entry_of(image.name);
+    if (entry != housing.images.end()) names.insert(entry->first);
+  }
+  std::vector<std::string> unused;
+  for (const auto& [name, port] : housing.images)
+    if (!names.contains(name)) unused.push_back("images." + name);
+  for (const auto& [id, port] : housing.cameras)
+    if (!cameras.contains(id)) unused.push_back("cameras." + std::to_string(id));
+  return unused;
 }
 
 }  // namespace axial::io

@@ -147,13 +147,13 @@ TEST_F(ColmapScene, HousingsAreResolvedToImages) {
   housing.cameras = {{9, "other"}, {77, "main"}};
   housing.images = {{"b.png", "none"}, {"absent.png", "other"}};
   const Scene scene = import_colmap_scene(model_, import_);
-  std::vector<std::string> unused;
-  const Housing resolved = housing_by_image(housing, model_, scene, import_, &unused);
+  const Housing resolved = housing_by_image(housing, model_, scene, import_);
   EXPECT_EQ(resolved.default_port, "main");
   EXPECT_TRUE(resolved.cameras.empty());
   EXPECT_EQ(resolved.images,
             (std::map<std::string, std::string>{{"left/b.png", "none"}, {"c.jpg", "other"}}));
-  EXPECT_THAT(unused, ::testing::ElementsAre("images.absent.png", "cameras.77"));
+  EXPECT_THAT(unused_entries(housing, model_),
+              ::testing::ElementsAre("images.absent.png", "cameras.77"));
 }
 
 }  // namespace
