@@ -127,6 +127,20 @@ std::string scene_name(const ColmapImage& image, const fs::path& path, const Col
   return name.generic_string();
 }
 
+// Names are told apart by the ends of paths: what is written must be what is read.
+void check_ports(const Housing& resolved, const Scene& scene,
+                 const std::vector<std::string>& ports) {
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const std::string path = fs::path(scene.images[i].path).generic_string();
+    const auto entry = resolved.entry_of(path);
+    const std::string& read =
+        entry == resolved.images.end() ? resolved.default_port : entry->second;
+    if (read != ports[i])
+      fail("{}: its port is '{}', but by the end of its path it would get '{}': rename a folder",
+           path, ports[i], read);
+  }
+}
+
 }  // namespace
 
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
@@ -181,6 +195,11 @@ Housing housing_by_image(const Housing& housing, const ColmapModel& model, const
     ports.push_back(housing.port_of(image.name, image.camera));
     if (ports[i] != housing.default_port) resolved.images[names[i]] = ports[i];
   }
+  // Without an entry of its own an image would take that of a shorter name.
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (ports[i] == housing.default_port && resolved.entry_of(names[i]) != resolved.images.end())
+      resolved.images[names[i]] = ports[i];
+  check_ports(resolved, scene, ports);
   return resolved;
 }
 

@@ -156,5 +156,47 @@ TEST_F(ColmapScene, HousingsAreResolvedToImages) {
               ::testing::ElementsAre("images.absent.png", "cameras.77"));
 }
 
+// Both a housing for names and what comes out for paths: "0000.png" is a tail of the others' names.
+TEST_F(ColmapScene, ShortNamesOfOthersDoNotTakeTheDefaultAway) {
+  fs::create_directories(folder_ / "images" / "wet");
+  model_ = {};
+  model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}}};
+  add_image(1, 5, "0000.png");
+  add_image(2, 5, "wet/0000.png");
+  add_image(3, 5, "wet/0002.png");
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.default_port = "main";
+  housing.images = {{"wet/0000.png", "main"}, {"0000.png", "none"}};
+  Scene scene = import_colmap_scene(model_, import_);
+  const Housing resolved = housing_by_image(housing, model_, scene, import_);
+  attach_ports(scene, resolved);
+  EXPECT_EQ(scene.images[0].port_name, "");
+  EXPECT_EQ(scene.images[1].port_name, "main");
+  EXPECT_EQ(scene.images[2].port_name, "main");
+  EXPECT_FALSE(resolved.images.contains("wet/0002.png")) << "no entry that says nothing";
+}
+
+TEST_F(ColmapScene, ImagesThatNamesCannotTellApartAreRefused) {
+  import_.image_folder = folder_ / "images" / "wet";
+  fs::create_directories(import_.image_folder / "wet");
+  model_ = {};
+  model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}}};
+  add_image(1, 5, "wet/0000.png");
+  add_image(2, 5, "wet/wet/0000.png");
+  model_.images[0].name = "0000.png";
+  model_.images[1].name = "wet/0000.png";
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.images = {{"wet/0000.png", "main"}};
+  const Scene scene = import_colmap_scene(model_, import_);
+  try {
+    housing_by_image(housing, model_, scene, import_);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& caught) {
+    EXPECT_THAT(caught.what(), HasSubstr("wet/0000.png: its port is 'none', but"));
+  }
+}
+
 }  // namespace
 }  // namespace axial::io
