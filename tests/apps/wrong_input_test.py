@@ -5,7 +5,7 @@ import os
 import random
 
 import tiny_scene
-from programs import ProgramTest, files_below, main, read, run, write
+from programs import ProgramTest, files_below, grey_png, main, read, run, write
 
 DENSIFY = ("DensifyPointCloud", "--max-threads", "1")
 
@@ -185,6 +185,17 @@ class Densify(ProgramTest):
     def test_image_of_another_shape(self):
         write(self.images[1], tiny_scene.picture((0, 0, 0), 72, 72))
         self.refuses_scene("0001.png")
+
+    def test_mask_of_another_shape(self):
+        for name in tiny_scene.names():
+            write(self.path("images", name.replace(".png", ".mask.png")),
+                  grey_png([bytes([1] * 48)] * 36))
+        mask = self.path("images", "0001.mask.png")
+        write(mask, grey_png([bytes([1] * 72)] * 72))
+        self.refuses_scene(mask + ": is 72x72, but its image is 96x72", "--ignore-mask-label", "0")
+        write(mask, grey_png([bytes([1] * 24)] * 18))  # of the same shape, smaller: fits
+        self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
+                      "0", "--iters", "1", "--geometric-iters", "0", "--ignore-mask-label", "0")
 
     def test_unwritable_folders(self):
         write(self.path("a_file"), "")
