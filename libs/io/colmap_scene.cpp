@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
+#include "scene/resolution.h"
 
 namespace axial::io {
 
@@ -67,6 +68,14 @@ void check_size(const fs::path& path, const CameraModel& camera) {
          camera.width, camera.height);
 }
 
+// The mask of an image that is to be undistorted, which has `camera`'s size.
+void check_mask(const fs::path& image, const CameraModel& camera) {
+  const fs::path mask = mask_beside(image);
+  std::error_code error;
+  if (fs::exists(mask, error))
+    check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+}
+
 // Names come from a file: none may lead out of the folder that is written to, or back to the
 // photographs.
 void check_undistorted_names(const ColmapModel& model, const ColmapImport& import) {
@@ -82,7 +91,18 @@ void check_undistorted_names(const ColmapModel& model, const ColmapImport& impor
   }
 }
 
-// Writes the undistorted image and returns its path.
+// The mask beside `source`, if there is one, goes beside `target`. Labels are copied, never mixed.
+void undistort_mask(const fs::path& source, const fs::path& target, const cv::Mat2f& map) {
+  const fs::path mask = mask_beside(source);
+  std::error_code error;
+  if (!fs::exists(mask, error)) return;
+  const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
+  cv::Mat1w straight;
+  cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
+  write_png(mask_beside(target), straight);
+}
+
+// Writes the undistorted image, and its mask, and returns the image's path.
 fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
                    const fs::path& folder) {
   const cv::Mat3b distorted = read_color_image(source);
@@ -100,6 +120,7 @@ fs::path undistort(const fs::path& source, const std::string& name, const Import
     target.replace_extension(".png");
     write_png(target, straight);
   }
+  undistort_mask(source, target, camera.map);
   return target;
 }
 
@@ -163,8 +184,11 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   }
 
   // Everything is checked before the first file is written.
-  parallel_for(scene.images.size(),
-               [&](std::size_t i) { check_size(scene.images[i].path, scene.images[i].camera); });
+  parallel_for(scene.images.size(), [&](std::size_t i) {
+    const SceneImage& image = scene.images[i];
+    check_size(image.path, image.camera);
+    if (!cameras.at(model.images[i].camera).map.empty()) check_mask(image.path, image.camera);
+  });
   const bool all_straight = std::all_of(
       cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
   if (!all_straight) check_undistorted_names(model, import);

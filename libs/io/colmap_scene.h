@@ -21,7 +21,8 @@ struct ColmapImport {
 
 // The scene of `model`, images in the model's order, at least two. Every image file must exist and
 // have its camera's size. Cameras that are no pinholes are replaced by one (pinhole_inside) and
-// their images resampled into `undistorted_folder`: JPEGs stay JPEGs, everything else becomes PNG.
+// their images resampled into `undistorted_folder`, with the masks beside them: JPEGs stay JPEGs,
+// everything else becomes PNG.
 // Image ids are COLMAP's less one, or COLMAP's own if they start at 0. Views of sparse points are
 // sorted by image and have no confidence. Error that names file, field and value.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,

@@ -91,6 +91,12 @@ class InterfaceColmap(ProgramTest):
         os.remove(self.path("scene.mvs"))
         self.refuses_import(self.path("images", "0000.png"), "--image-folder", "images", *here)
 
+    def test_masks_that_do_not_fit(self):
+        camera = "SIMPLE_RADIAL 96 72 90.0 48.0 36.0 -0.05"
+        write(self.path("colmap", "sparse", "cameras.txt"), f"1 {camera}\n")
+        write(self.path("colmap", "images", "0001.mask.png"), grey_png([bytes(72)] * 72))
+        self.refuses_import("0001.mask.png: is 72x72, but its image is 96x72")
+
     def test_wrong_housings(self):
         housing = self.path("housing.json")
         port = '{"type": "flat", "distance_m": %s, "thickness_m": 0.01, "normal": [0, 0, 1], ' \

@@ -198,5 +198,42 @@ TEST_F(ColmapScene, ImagesThatNamesCannotTellApartAreRefused) {
   }
 }
 
+TEST_F(ColmapScene, MasksAreUndistortedWithTheirImages) {
+  // Labels that name their own column, so that every pixel of the result tells where it is from.
+  cv::Mat1w mask(kHeight, kWidth);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) mask(y, x) = static_cast<std::uint16_t>(1000 + x);
+  write_png(folder_ / "images" / "c.mask.png", mask);
+  write_png(folder_ / "images" / "a.mask.png", mask);
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_FALSE(fs::exists(import_.undistorted_folder / "a.mask.png")) << "a.png stays as it is";
+  const cv::Mat1w straight = read_label_image(import_.undistorted_folder / "c.mask.png");
+  ASSERT_EQ(straight.size(), cv::Size(kWidth, kHeight));
+  const auto& lens = scene.images[2].camera.lens;
+  double worst = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Eigen::Vector2d p =
+          image_direction(model_.cameras[1], (x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy);
+      worst = std::max(worst, std::abs(straight(y, x) - 1000 - p.x()));
+    }
+  EXPECT_LE(worst, 0.5 + 1e-4) << "the nearest pixel's label, never a mixture";
+}
+
+TEST_F(ColmapScene, MasksMayBeSmallerThanTheirImages) {
+  write_png(folder_ / "images" / "c.mask.png", cv::Mat1b(kHeight / 2, kWidth / 2, 7));
+  import_colmap_scene(model_, import_);
+  const cv::Mat1w straight = read_label_image(import_.undistorted_folder / "c.mask.png");
+  EXPECT_EQ(straight.size(), cv::Size(kWidth, kHeight));
+  EXPECT_EQ(cv::countNonZero(straight != 7), 0);
+}
+
+TEST_F(ColmapScene, MasksOfAnotherShapeAreRefused) {
+  const fs::path mask = folder_ / "images" / "c.mask.png";
+  write_png(mask, cv::Mat1b(kHeight, kHeight, 7));
+  EXPECT_EQ(error(), mask.string() + ": is 120x120, but its image is 160x120");
+  EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
+}
+
 }  // namespace
 }  // namespace axial::io
