@@ -3,7 +3,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
@@ -61,19 +60,14 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
 
 cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_size,
                          const Options& options) {
-  const double recorded = static_cast<double>(image.camera.width) / image.camera.height;
-  const double found = static_cast<double>(file_size.width) / file_size.height;
-  // One pixel of rounding on the shorter side, at the smaller of the two resolutions.
-  const int side =
-      std::min({file_size.width, file_size.height, image.camera.width, image.camera.height});
-  if (std::abs(recorded / found - 1) > 1.5 / side)
+  if (!axial::same_shape(file_size, {image.camera.width, image.camera.height}))
     fail("{}: is {}x{}, but its camera is {}x{}", image.path, file_size.width, file_size.height,
          image.camera.width, image.camera.height);
   return axial::working_size(file_size.width, file_size.height, options.resolution);
 }
 
 fs::path mask_path(const axial::SceneImage& image, const Options& options) {
-  const fs::path name = fs::path(image.path).stem().string() + ".mask.png";
+  const fs::path name = axial::io::mask_beside(image.path).filename();
   if (!options.mask_folder.empty()) {
     if (!image.mask_path.empty())
       fail("--mask-path {}: image {} names a mask of its own, {}", options.mask_folder.string(),
@@ -83,11 +77,11 @@ fs::path mask_path(const axial::SceneImage& image, const Options& options) {
     if (!fs::exists(path, error)) fail("{}: no such mask for image {}", path.string(), image.path);
     return path;
   }
-  return image.mask_path.empty() ? fs::path(image.path).parent_path() / name
-                                 : fs::path(image.mask_path);
+  return image.mask_path.empty() ? axial::io::mask_beside(image.path) : fs::path(image.mask_path);
 }
 
-cv::Mat1b load_mask(const axial::SceneImage& image, const cv::Size& size, const Options& options) {
+cv::Mat1b load_mask(const axial::SceneImage& image, const cv::Size& file_size, const cv::Size& size,
+                    const Options& options) {
   const fs::path path = mask_path(image, options);
   if (options.ignore_mask_label < 0) return {};
   std::error_code error;
@@ -95,9 +89,10 @@ cv::Mat1b load_mask(const axial::SceneImage& image, const cv::Size& size, const 
     spdlog::warn("{}: no mask", image.path);
     return {};
   }
-  const cv::Mat1w labels = axial::resized_labels(axial::io::read_label_image(path), size);
+  const cv::Mat1w labels = axial::io::read_label_image(path);
+  axial::io::check_mask_shape(path, labels.size(), file_size);
   cv::Mat1b mask;
-  cv::compare(labels, options.ignore_mask_label, mask, cv::CMP_NE);
+  cv::compare(axial::resized_labels(labels, size), options.ignore_mask_label, mask, cv::CMP_NE);
   return mask;
 }
 
@@ -115,7 +110,7 @@ void load_views(Project& project, const Options& options) {
     view.camera = image.camera.resized(size.width, size.height);
     view.pose = image.pose;
     cv::cvtColor(axial::resized_image(color, size), view.grey, cv::COLOR_BGR2GRAY);
-    project.masks[i] = load_mask(image, size, options);
+    project.masks[i] = load_mask(image, color.size(), size, options);
   });
 }
 

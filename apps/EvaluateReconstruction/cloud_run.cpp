@@ -12,6 +12,7 @@
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
+#include "io/colmap_scene.h"
 #include "io/image.h"
 #include "io/ply.h"
 #include "runs.h"
@@ -63,7 +64,11 @@ std::vector<evaluate::View> read_views(const Options& options) {
   const fs::path folder = io::find_colmap_model(options.cameras);
   const io::ColmapModel model = io::read_colmap_model(folder);
   std::optional<io::Housing> housing;
-  if (!options.housing.empty()) housing = io::read_housing(options.housing);
+  if (!options.housing.empty()) {
+    housing = io::read_housing(options.housing);
+    for (const std::string& entry : io::unused_entries(*housing, model))
+      spdlog::warn("{}: no image goes by {}", options.housing.string(), entry);
+  }
   return naming(folder,
                 [&] { return evaluate::views_of_model(model, housing ? &*housing : nullptr); });
 }

@@ -51,10 +51,9 @@ int run(int argc, char** argv) {
     if (fs::exists(housing_file, error))
       spdlog::warn("{}: is left as it is, and goes with this scene", housing_file.string());
   } else {
-    std::vector<std::string> unused;
-    const io::Housing by_image = io::housing_by_image(housing, model, scene, import, &unused);
-    for (const std::string& entry : unused)
-      spdlog::warn("{}: {}: not in the model", options.housing_file.string(), entry);
+    const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
+    for (const std::string& entry : io::unused_entries(housing, model))
+      spdlog::warn("{}: no image goes by {}", options.housing_file.string(), entry);
     io::attach_ports(scene, by_image);
     io::write_housing(housing_file, by_image);
     spdlog::info("{}: {} of {} images behind a port", housing_file.string(),

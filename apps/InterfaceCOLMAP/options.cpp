@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <utility>
+
 #include "base/error.h"
 
 namespace fs = std::filesystem;
@@ -9,11 +11,13 @@ using axial::fail;
 
 namespace {
 
-// Relative to the working folder, as in OpenMVS; if that does not exist, to the COLMAP folder.
-fs::path find_image_folder(const axial::CommonOptions& common, const fs::path& colmap_folder,
+// A folder that was asked for counts from the working folder, as in OpenMVS. The default belongs to
+// the COLMAP folder: whatever images/ the program is started beside must not win over the model's.
+fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& colmap_folder,
                            const std::string& name) {
-  const fs::path candidates[] = {axial::in_working_folder(common, name),
-                                 (colmap_folder / name).lexically_normal()};
+  fs::path candidates[] = {axial::in_working_folder(parsed.common, name),
+                           (colmap_folder / name).lexically_normal()};
+  if (!axial::given(parsed.values, "image-folder")) std::swap(candidates[0], candidates[1]);
   std::error_code error;
   for (const fs::path& candidate : candidates)
     if (fs::is_directory(candidate, error)) return candidate;
@@ -33,8 +37,8 @@ Options parse_command_line(int argc, const char* const* argv) {
        "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR")                //
       ("output-file,o", po::value(&output), "scene to write (default: DIR/scene.mvs)")  //
       ("image-folder", po::value(&image_folder)->default_value("images/"),
-       "folder of the images, in the working folder or else in DIR; images must have the size of "
-       "their cameras")  //
+       "folder of the images, in the working folder or else in DIR (the default: in DIR first); "
+       "images must have the size of their cameras")  //
       ("housing", po::value(&housing),
        "housing file: ports the cameras look through; written as <scene>.housing.json")        //
       ("pointcloud-file,p", po::value(&point_cloud), "only to export a scene: not built yet")  //
@@ -60,6 +64,6 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.scene_file = output.empty() ? options.colmap_folder / "scene.mvs"
                                       : axial::in_working_folder(common, output);
   options.housing_file = axial::in_working_folder(common, housing);
-  options.image_folder = find_image_folder(common, options.colmap_folder, image_folder);
+  options.image_folder = find_image_folder(options.parsed, options.colmap_folder, image_folder);
   return options;
 }

@@ -54,6 +54,21 @@ void refuse_negative(const po::parsed_options& parsed, const po::options_descrip
   }
 }
 
+// Without an input file boost parses positional arguments and drops them: a forgotten "--preset"
+// would quietly run with the default. With one it names the input file for a stray value elsewhere.
+void refuse_stray_arguments(const po::parsed_options& parsed) {
+  bool has_input = false;
+  for (const po::option& option : parsed.options) {
+    if (option.string_key.empty())
+      fail("command line: '{}' belongs to no option", option.value.front());
+    if (option.string_key != "input-file") continue;
+    if (has_input && option.position_key >= 0)
+      fail("command line: '{}' belongs to no option, and the input-file is given already",
+           option.value.front());
+    has_input = true;
+  }
+}
+
 void apply(const CommonOptions& common) {
   if (common.archive_type != -1)
     fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
@@ -91,9 +106,10 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     parser.options(command_line);
     const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
     if (has_input) parser.positional(positional);
-    const po::parsed_options given_options = parser.run();
-    refuse_negative(given_options, command_line);
-    po::store(given_options, parsed.values);
+    const po::parsed_options arguments = parser.run();
+    refuse_stray_arguments(arguments);
+    refuse_negative(arguments, command_line);
+    po::store(arguments, parsed.values);
 
     if (parsed.values.count("working-folder"))
       working_folder = parsed.values["working-folder"].as<std::string>();

@@ -30,7 +30,8 @@ struct ProgramOptions {
 };
 
 // Parses the command line the way OpenMVS's programs do: long names may be abbreviated, booleans
-// take a value (0/1, true/false, yes/no, on/off), positional arguments are `--input-file`. The cfg
+// take a value (0/1, true/false, yes/no, on/off), positional arguments are `--input-file`, and
+// refused by a program that has none. The cfg
 // file (default `<name>.cfg` in the working folder) gives values for options absent from the
 // command line. Prints the help and returns false if there is nothing to run: exit with 0 after
 // `-h`, and with 1 when `--input-file` is declared by the program but absent (OpenMVS exits with 1

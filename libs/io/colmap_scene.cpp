@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
+#include "scene/resolution.h"
 
 namespace axial::io {
 
@@ -67,6 +68,14 @@ void check_size(const fs::path& path, const CameraModel& camera) {
          camera.width, camera.height);
 }
 
+// The mask of an image that is to be undistorted, which has `camera`'s size.
+void check_mask(const fs::path& image, const CameraModel& camera) {
+  const fs::path mask = mask_beside(image);
+  std::error_code error;
+  if (fs::exists(mask, error))
+    check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+}
+
 // Names come from a file: none may lead out of the folder that is written to, or back to the
 // photographs.
 void check_undistorted_names(const ColmapModel& model, const ColmapImport& import) {
@@ -82,7 +91,18 @@ void check_undistorted_names(const ColmapModel& model, const ColmapImport& impor
   }
 }
 
-// Writes the undistorted image and returns its path.
+// The mask beside `source`, if there is one, goes beside `target`. Labels are copied, never mixed.
+void undistort_mask(const fs::path& source, const fs::path& target, const cv::Mat2f& map) {
+  const fs::path mask = mask_beside(source);
+  std::error_code error;
+  if (!fs::exists(mask, error)) return;
+  const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
+  cv::Mat1w straight;
+  cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
+  write_png(mask_beside(target), straight);
+}
+
+// Writes the undistorted image, and its mask, and returns the image's path.
 fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
                    const fs::path& folder) {
   const cv::Mat3b distorted = read_color_image(source);
@@ -100,6 +120,7 @@ fs::path undistort(const fs::path& source, const std::string& name, const Import
     target.replace_extension(".png");
     write_png(target, straight);
   }
+  undistort_mask(source, target, camera.map);
   return target;
 }
 
@@ -119,10 +140,26 @@ void import_points(const ColmapModel& model, Scene& scene) {
   }
 }
 
-// True if `key` is `name`, or its last components.
-bool matches(const std::string& name, const std::string& key) {
-  return name == key || (name.size() > key.size() && name.ends_with(key) &&
-                         name[name.size() - key.size() - 1] == '/');
+// The name that `image`, imported as `path`, goes by in the scene's housing.
+std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
+  const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
+  fs::path name = fs::path(image.name).lexically_normal();
+  if (undistorted) name.replace_extension(path.extension());
+  return name.generic_string();
+}
+
+// Names are told apart by the ends of paths: what is written must be what is read.
+void check_ports(const Housing& resolved, const Scene& scene,
+                 const std::vector<std::string>& ports) {
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const std::string path = fs::path(scene.images[i].path).generic_string();
+    const auto entry = resolved.entry_of(path);
+    const std::string& read =
+        entry == resolved.images.end() ? resolved.default_port : entry->second;
+    if (read != ports[i])
+      fail("{}: its port is '{}', but by the end of its path it would get '{}': rename a folder",
+           path, ports[i], read);
+  }
 }
 
 }  // namespace
@@ -147,8 +184,11 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   }
 
   // Everything is checked before the first file is written.
-  parallel_for(scene.images.size(),
-               [&](std::size_t i) { check_size(scene.images[i].path, scene.images[i].camera); });
+  parallel_for(scene.images.size(), [&](std::size_t i) {
+    const SceneImage& image = scene.images[i];
+    check_size(image.path, image.camera);
+    if (!cameras.at(model.images[i].camera).map.empty()) check_mask(image.path, image.camera);
+  });
   const bool all_straight = std::all_of(
       cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
   if (!all_straight) check_undistorted_names(model, import);
@@ -168,36 +208,39 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
 }
 
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
-                         const ColmapImport& import, std::vector<std::string>* unused) {
+                         const ColmapImport& import) {
   Housing resolved;
   resolved.ports = housing.ports;
   resolved.default_port = housing.default_port;
-  std::set<std::string> used;
+  std::vector<std::string> names, ports;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const ColmapImage& image = model.images[i];
-    std::string key;  // the longest entry that matches: the most specific
-    for (const auto& [name, port] : housing.images) {
-      if (!matches(image.name, name)) continue;
-      used.insert("images." + name);
-      if (name.size() > key.size()) key = name;
-    }
-    const std::string camera_key = "cameras." + std::to_string(image.camera);
-    if (housing.cameras.contains(image.camera)) used.insert(camera_key);
-    const std::string& port =
-        key.empty() ? housing.port_of(image.name, image.camera) : housing.images.at(key);
-    if (port == housing.default_port) continue;
-    const fs::path path = scene.images[i].path;
-    const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
-    resolved.images[undistorted ? fs::path(image.name).replace_extension(path.extension()).string()
-                                : image.name] = port;
+    names.push_back(scene_name(image, scene.images[i].path, import));
+    ports.push_back(housing.port_of(image.name, image.camera));
+    if (ports[i] != housing.default_port) resolved.images[names[i]] = ports[i];
   }
-  if (!unused) return resolved;
-  for (const auto& [name, port] : housing.images)
-    if (!used.contains("images." + name)) unused->push_back("images." + name);
-  for (const auto& [id, port] : housing.cameras)
-    if (!used.contains("cameras." + std::to_string(id)))
-      unused->push_back("cameras." + std::to_string(id));
+  // Without an entry of its own an image would take that of a shorter name.
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (ports[i] == housing.default_port && resolved.entry_of(names[i]) != resolved.images.end())
+      resolved.images[names[i]] = ports[i];
+  check_ports(resolved, scene, ports);
   return resolved;
+}
+
+std::vector<std::string> unused_entries(const Housing& housing, const ColmapModel& model) {
+  std::set<std::string> names;
+  std::set<std::uint32_t> cameras;
+  for (const ColmapImage& image : model.images) {
+    cameras.insert(image.camera);
+    const auto entry = housing.entry_of(image.name);
+    if (entry != housing.images.end()) names.insert(entry->first);
+  }
+  std::vector<std::string> unused;
+  for (const auto& [name, port] : housing.images)
+    if (!names.contains(name)) unused.push_back("images." + name);
+  for (const auto& [id, port] : housing.cameras)
+    if (!cameras.contains(id)) unused.push_back("cameras." + std::to_string(id));
+  return unused;
 }
 
 }  // namespace axial::io

@@ -21,17 +21,21 @@ struct ColmapImport {
 
 // The scene of `model`, images in the model's order, at least two. Every image file must exist and
 // have its camera's size. Cameras that are no pinholes are replaced by one (pinhole_inside) and
-// their images resampled into `undistorted_folder`: JPEGs stay JPEGs, everything else becomes PNG.
+// their images resampled into `undistorted_folder`, with the masks beside them: JPEGs stay JPEGs,
+// everything else becomes PNG.
 // Image ids are COLMAP's less one, or COLMAP's own if they start at 0. Views of sparse points are
 // sorted by image and have no confidence. Error that names file, field and value.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& progress = {});
 
-// `housing` with one entry an image whose port is not the default, and none by camera id: what
-// attach_ports and programs that no longer know COLMAP's ids need. `scene` is the one imported
-// from `model`. Entries for images or cameras that are not in the model are dropped and come back
-// in `unused`.
+// `housing` with an entry for every image that would not get its port by the default, and none by
+// camera id: what attach_ports and programs that no longer know COLMAP's ids need. `scene` is the
+// one imported from `model`. Error if an image's path ends in the name of another one with another
+// port.
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
-                         const ColmapImport& import, std::vector<std::string>* unused = nullptr);
+                         const ColmapImport& import);
+
+// The entries that no image of the model goes by, as "images.a.jpg" and "cameras.2".
+std::vector<std::string> unused_entries(const Housing& housing, const ColmapModel& model);
 
 }  // namespace axial::io

@@ -50,20 +50,6 @@ void read_images(const JsonPlace& place, Housing& housing) {
   }
 }
 
-// The longest tail of the path, in whole components, that `images` has an entry for.
-std::map<std::string, std::string>::const_iterator find_entry(const Housing& housing,
-                                                              const fs::path& image) {
-  const auto whole = housing.images.find(image.generic_string());
-  if (whole != housing.images.end()) return whole;
-  const std::string path = image.generic_string();
-  for (std::size_t slash = path.find('/'); slash != std::string::npos;
-       slash = path.find('/', slash + 1)) {
-    const auto found = housing.images.find(path.substr(slash + 1));
-    if (found != housing.images.end()) return found;
-  }
-  return housing.images.end();
-}
-
 void attach(SceneImage& image, const std::string& name, const Housing& housing) {
   image.camera.port.reset();
   image.port_name.clear();
@@ -76,8 +62,17 @@ void attach(SceneImage& image, const std::string& name, const Housing& housing) 
 
 }  // namespace
 
+std::map<std::string, std::string>::const_iterator Housing::entry_of(
+    const std::string& image_name) const {
+  auto entry = images.find(image_name);
+  for (std::size_t slash = image_name.find('/');
+       entry == images.end() && slash != std::string::npos; slash = image_name.find('/', slash + 1))
+    entry = images.find(image_name.substr(slash + 1));
+  return entry;
+}
+
 const std::string& Housing::port_of(const std::string& image_name, std::uint32_t camera_id) const {
-  if (const auto image = images.find(image_name); image != images.end()) return image->second;
+  if (const auto entry = entry_of(image_name); entry != images.end()) return entry->second;
   if (const auto camera = cameras.find(camera_id); camera != cameras.end()) return camera->second;
   return default_port;
 }
@@ -126,7 +121,7 @@ fs::path housing_beside(const fs::path& scene_path) {
 void attach_ports(Scene& scene, const Housing& housing) {
   std::set<std::string> used;
   for (SceneImage& image : scene.images) {
-    const auto entry = find_entry(housing, image.path);
+    const auto entry = housing.entry_of(fs::path(image.path).generic_string());
     if (entry != housing.images.end()) {
       used.insert(entry->first);
       attach(image, entry->second, housing);
@@ -140,7 +135,7 @@ void attach_ports(Scene& scene, const Housing& housing) {
     }
   }
   for (const auto& [name, unused] : housing.images)
-    if (!used.contains(name)) spdlog::warn("housing: image '{}' is not in the scene", name);
+    if (!used.contains(name)) spdlog::warn("housing: no image goes by images.{}", name);
 }
 
 }  // namespace axial::io

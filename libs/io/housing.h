@@ -18,6 +18,10 @@ struct Housing {
   std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name
   std::map<std::string, std::string> images;     // image name -> port name
 
+  // The entry of `images` for an image, by its name or any path that ends in it: the longest one
+  // that matches the end in whole components. `images.end()` if there is none.
+  std::map<std::string, std::string>::const_iterator entry_of(const std::string& image_name) const;
+
   // The port name for an image: its own entry, else its camera's, else the default.
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
 };
@@ -33,9 +37,8 @@ void write_housing(const std::filesystem::path& path, const Housing& housing);
 // "<scene without extension>.housing.json".
 std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
 
-// Attaches ports to the scene's images: entries of `images` match the last components of the image
-// path, or its file name; `cameras` must be resolved already (InterfaceCOLMAP writes per-image
-// entries where cameras differ).
+// Attaches ports to the scene's images by their paths. `cameras` must be resolved already
+// (InterfaceCOLMAP writes entries by image where cameras differ).
 void attach_ports(Scene& scene, const Housing& housing);
 
 }  // namespace axial::io

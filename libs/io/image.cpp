@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "scene/resolution.h"
 
 namespace axial::io {
 namespace {
@@ -149,6 +150,16 @@ cv::Mat1w read_label_image(const std::filesystem::path& path) {
   cv::Mat1w labels;
   image.convertTo(labels, CV_16U);
   return labels;
+}
+
+std::filesystem::path mask_beside(const std::filesystem::path& image) {
+  return image.parent_path() / (image.stem().string() + ".mask.png");
+}
+
+void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image) {
+  if (!same_shape(size, image))
+    fail("{}: is {}x{}, but its image is {}x{}", mask.string(), size.width, size.height,
+         image.width, image.height);
 }
 
 cv::Mat1f read_float_tiff(const std::filesystem::path& path) {

@@ -16,6 +16,12 @@ cv::Size read_image_size(const std::filesystem::path& path);
 // A label image of one channel, 8 or 16 bit, as 16 bit.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
+// "<image without extension>.mask.png": where an image's labels lie unless said otherwise.
+std::filesystem::path mask_beside(const std::filesystem::path& image);
+
+// Error if a mask of `size` is no resized version of its image.
+void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image);
+
 // Float TIFFs (ground truth), exact: one channel or three, the file's channels in our order.
 cv::Mat1f read_float_tiff(const std::filesystem::path& path);
 cv::Mat3f read_float3_tiff(const std::filesystem::path& path);

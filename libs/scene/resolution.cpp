@@ -36,6 +36,13 @@ cv::Size working_size(int width, int height, const ResolutionOptions& options) {
   return {scaled(width), scaled(height)};
 }
 
+bool same_shape(cv::Size a, cv::Size b) {
+  const int shortest = std::min({a.width, a.height, b.width, b.height});
+  if (shortest < 1) return false;
+  const double ratio = static_cast<double>(a.width) / a.height * b.height / b.width;
+  return std::abs(ratio - 1) <= 1.5 / shortest;
+}
+
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size) {
   require_not_empty(image, size);
   if (image.size() == size) return image;

@@ -18,6 +18,10 @@ struct ResolutionOptions {
 // rounded, at least 1. Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
+// True if one is the other resized, aspect kept and sides rounded: one pixel of rounding on the
+// shorter side, at the smaller of the two resolutions.
+bool same_shape(cv::Size a, cv::Size b);
+
 // `image` at `size`: area filter for shrinking, cubic for enlarging; a shared copy if it has that
 // size already. CameraModel::resized is the matching camera. Error for empty images or sizes.
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);

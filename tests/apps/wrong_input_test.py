@@ -5,7 +5,7 @@ import os
 import random
 
 import tiny_scene
-from programs import ProgramTest, files_below, main, read, run, write
+from programs import ProgramTest, files_below, grey_png, main, read, run, write
 
 DENSIFY = ("DensifyPointCloud", "--max-threads", "1")
 
@@ -80,6 +80,23 @@ class InterfaceColmap(ProgramTest):
         write(path, b"")
         self.refuses_import("0001.png")
         self.refuses_import("no-such-folder", "--image-folder", "no-such-folder")
+
+    def test_images_that_lie_about(self):
+        # Of another size: an import that takes them fails.
+        for image in ("0000.png", "0001.png", "0002.png"):
+            write(self.path("images", image), tiny_scene.picture((0, 0, 0), 48, 48))
+        here = ("-w", self.folder)
+        result = self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                               self.path("scene.mvs"), *here)
+        self.assertIn(f"Images in {self.path('colmap', 'images')}", result.stdout)
+        os.remove(self.path("scene.mvs"))
+        self.refuses_import(self.path("images", "000"), "--image-folder", "images", *here)
+
+    def test_masks_that_do_not_fit(self):
+        camera = "SIMPLE_RADIAL 96 72 90.0 48.0 36.0 -0.05"
+        write(self.path("colmap", "sparse", "cameras.txt"), f"1 {camera}\n")
+        write(self.path("colmap", "images", "0001.mask.png"), grey_png([bytes(72)] * 72))
+        self.refuses_import("0001.mask.png: is 72x72, but its image is 96x72")
 
     def test_wrong_housings(self):
         housing = self.path("housing.json")
@@ -176,6 +193,17 @@ class Densify(ProgramTest):
         write(self.images[1], tiny_scene.picture((0, 0, 0), 72, 72))
         self.refuses_scene("0001.png")
 
+    def test_mask_of_another_shape(self):
+        for name in tiny_scene.names():
+            write(self.path("images", name.replace(".png", ".mask.png")),
+                  grey_png([bytes([1] * 48)] * 36))
+        mask = self.path("images", "0001.mask.png")
+        write(mask, grey_png([bytes([1] * 72)] * 72))
+        self.refuses_scene(mask + ": is 72x72, but its image is 96x72", "--ignore-mask-label", "0")
+        write(mask, grey_png([bytes([1] * 24)] * 18))  # of the same shape, smaller: fits
+        self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
+                      "0", "--iters", "1", "--geometric-iters", "0", "--ignore-mask-label", "0")
+
     def test_unwritable_folders(self):
         write(self.path("a_file"), "")
         for output in ("/proc/scene_dense.mvs", self.path("a_file", "scene_dense.mvs")):
@@ -196,6 +224,7 @@ class OtherPrograms(ProgramTest):
         self.refuses("no-such-preset", "SimulateUnderwater", "--preset", "no-such-preset", "-o",
                      self.path("out"))
         self.refuses("'--no-such-option'", "SimulateUnderwater", "--no-such-option", "1")
+        self.refuses("'closeup'", "SimulateUnderwater", "closeup", "-o", self.path("out"))
 
     def test_evaluation(self):
         write(self.path("garbage.ply"), b"ply\nformat binary\n\xff\xff")

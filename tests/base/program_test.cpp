@@ -34,8 +34,8 @@ class ProgramTest : public testing::Test {
     ProgramOptions program;
     program.name = "TestProgram";
     program.description = "tests";
-    program.visible.add_options()("input-file,i", po::value(&input_), "input")(
-        "crop-to-roi", po::value(&crop_)->default_value(true), "crop")(
+    if (takes_input_) program.visible.add_options()("input-file,i", po::value(&input_), "input");
+    program.visible.add_options()("crop-to-roi", po::value(&crop_)->default_value(true), "crop")(
         "resolution-level", po::value(&level_)->default_value(1), "level")(
         "resolution-limit", po::value(&limit_)->default_value(640), "limit");
     program.hidden.add_options()("secret", po::value(&secret_)->default_value(0), "hidden");
@@ -71,7 +71,7 @@ class ProgramTest : public testing::Test {
 
   fs::path folder_;
   std::string input_, out_, err_;
-  bool crop_ = false;
+  bool takes_input_ = true, crop_ = false;
   int level_ = 0, limit_ = 0, secret_ = 0;
 };
 
@@ -125,11 +125,19 @@ TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--resolution-level", "high"}), HasSubstr("high"));
   EXPECT_THAT(error({"a.mvs", "--resolution-level", "1", "--resolution-level", "2"}),
               HasSubstr("resolution-level"));
-  EXPECT_THAT(error({"a.mvs", "b.mvs"}), HasSubstr("input-file"));
+  EXPECT_THAT(error({"a.mvs", "b.mvs"}), HasSubstr("'b.mvs' belongs to no option"));
+  EXPECT_THAT(error({"-i", "a.mvs", "1"}), HasSubstr("'1' belongs to no option"));
   EXPECT_THAT(error({"a.mvs", "--max-threads", "-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads=-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads", "5000"}), HasSubstr("at most 1024"));
   EXPECT_THAT(error({"a.mvs", "--archive-type", "2"}), HasSubstr("archive-type is 2"));
+}
+
+TEST_F(ProgramTest, RefusesStrayArgumentsWhereThereIsNoInputFile) {
+  takes_input_ = false;
+  EXPECT_TRUE(parse({"--resolution-level", "3"}).run);
+  EXPECT_EQ(error({"--resolution-level", "3", "closeup"}),
+            "command line: 'closeup' belongs to no option");
 }
 
 TEST_F(ProgramTest, LetsTheCommandLineWinOverTheFileAndTheFileOverDefaults) {

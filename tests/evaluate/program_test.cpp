@@ -13,6 +13,7 @@
 #include "evaluate/shapes.h"
 #include "io/colmap.h"
 #include "io/dmap.h"
+#include "io/housing.h"
 #include "io/image.h"
 #include "io/ply.h"
 #include "support/program_run.h"
@@ -90,6 +91,22 @@ TEST_F(Programs, EvaluateACloud) {
   EXPECT_EQ(errors.size(), 20000u);
   EXPECT_EQ(errors.colors.size(), 20000u);
   EXPECT_EQ(io::read_image_size(folder_ / "errors.png").width, 1024);
+}
+
+TEST_F(Programs, WarnOfHousingEntriesWithoutAnImage) {
+  write_scene();
+  io::Housing housing;
+  housing.ports["main"].distance = 0.02;
+  housing.cameras = {{1, "main"}, {9, "main"}};
+  housing.images = {{"0001.jpg", "none"}, {"0001.png", "none"}};
+  io::write_housing(folder_ / "housing.json", housing);
+  const Outcome outcome = run("EvaluateReconstruction",
+                              "-i cloud.ply -m truth.ply --cameras true --samples 5000 --housing "
+                              "housing.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image goes by images.0001.png"));
+  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image goes by cameras.9"));
+  EXPECT_THAT(outcome.output, testing::Not(HasSubstr("0001.jpg")));
 }
 
 TEST_F(Programs, EvaluateTheSameBytesForAnyNumberOfThreads) {

@@ -124,6 +124,15 @@ TEST(ViewsOfModel, TakesLensPoseAndPort) {
   EXPECT_EQ(wet[0].pose.centre, Eigen::Vector3d(1, 2, 3));
 }
 
+TEST(ViewsOfModel, FindsPortsByTheEndOfTheName) {
+  auto model = small_model("PINHOLE", {500, 510, 320, 240});
+  model.images[0].name = "dive2/left/a.jpg";
+  io::Housing housing;
+  housing.ports["main"] = port();
+  housing.images = {{"a.jpg", "none"}, {"left/a.jpg", "main"}, {"t/a.jpg", "none"}};
+  EXPECT_TRUE(views_of_model(model, &housing)[0].camera.port.has_value());
+}
+
 TEST(ViewsOfModel, RefusesDistortedLensesAndEmptyModels) {
   EXPECT_THROW(views_of_model(small_model("OPENCV", {500, 500, 320, 240, 0.1, 0, 0, 0}), nullptr),
                Error);

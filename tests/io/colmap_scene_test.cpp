@@ -147,13 +147,92 @@ TEST_F(ColmapScene, HousingsAreResolvedToImages) {
   housing.cameras = {{9, "other"}, {77, "main"}};
   housing.images = {{"b.png", "none"}, {"absent.png", "other"}};
   const Scene scene = import_colmap_scene(model_, import_);
-  std::vector<std::string> unused;
-  const Housing resolved = housing_by_image(housing, model_, scene, import_, &unused);
+  const Housing resolved = housing_by_image(housing, model_, scene, import_);
   EXPECT_EQ(resolved.default_port, "main");
   EXPECT_TRUE(resolved.cameras.empty());
   EXPECT_EQ(resolved.images,
             (std::map<std::string, std::string>{{"left/b.png", "none"}, {"c.jpg", "other"}}));
-  EXPECT_THAT(unused, ::testing::ElementsAre("images.absent.png", "cameras.77"));
+  EXPECT_THAT(unused_entries(housing, model_),
+              ::testing::ElementsAre("images.absent.png", "cameras.77"));
+}
+
+// Both a housing for names and what comes out for paths: "0000.png" is a tail of the others' names.
+TEST_F(ColmapScene, ShortNamesOfOthersDoNotTakeTheDefaultAway) {
+  fs::create_directories(folder_ / "images" / "wet");
+  model_ = {};
+  model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}}};
+  add_image(1, 5, "0000.png");
+  add_image(2, 5, "wet/0000.png");
+  add_image(3, 5, "wet/0002.png");
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.default_port = "main";
+  housing.images = {{"wet/0000.png", "main"}, {"0000.png", "none"}};
+  Scene scene = import_colmap_scene(model_, import_);
+  const Housing resolved = housing_by_image(housing, model_, scene, import_);
+  attach_ports(scene, resolved);
+  EXPECT_EQ(scene.images[0].port_name, "");
+  EXPECT_EQ(scene.images[1].port_name, "main");
+  EXPECT_EQ(scene.images[2].port_name, "main");
+  EXPECT_FALSE(resolved.images.contains("wet/0002.png")) << "no entry that says nothing";
+}
+
+TEST_F(ColmapScene, ImagesThatNamesCannotTellApartAreRefused) {
+  import_.image_folder = folder_ / "images" / "wet";
+  fs::create_directories(import_.image_folder / "wet");
+  model_ = {};
+  model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}}};
+  add_image(1, 5, "wet/0000.png");
+  add_image(2, 5, "wet/wet/0000.png");
+  model_.images[0].name = "0000.png";
+  model_.images[1].name = "wet/0000.png";
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.images = {{"wet/0000.png", "main"}};
+  const Scene scene = import_colmap_scene(model_, import_);
+  try {
+    housing_by_image(housing, model_, scene, import_);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& caught) {
+    EXPECT_THAT(caught.what(), HasSubstr("wet/0000.png: its port is 'none', but"));
+  }
+}
+
+TEST_F(ColmapScene, MasksAreUndistortedWithTheirImages) {
+  // Labels that name their own column, so that every pixel of the result tells where it is from.
+  cv::Mat1w mask(kHeight, kWidth);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) mask(y, x) = static_cast<std::uint16_t>(1000 + x);
+  write_png(folder_ / "images" / "c.mask.png", mask);
+  write_png(folder_ / "images" / "a.mask.png", mask);
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_FALSE(fs::exists(import_.undistorted_folder / "a.mask.png")) << "a.png stays as it is";
+  const cv::Mat1w straight = read_label_image(import_.undistorted_folder / "c.mask.png");
+  ASSERT_EQ(straight.size(), cv::Size(kWidth, kHeight));
+  const auto& lens = scene.images[2].camera.lens;
+  double worst = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Eigen::Vector2d p =
+          image_direction(model_.cameras[1], (x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy);
+      worst = std::max(worst, std::abs(straight(y, x) - 1000 - p.x()));
+    }
+  EXPECT_LE(worst, 0.5 + 1e-4) << "the nearest pixel's label, never a mixture";
+}
+
+TEST_F(ColmapScene, MasksMayBeSmallerThanTheirImages) {
+  write_png(folder_ / "images" / "c.mask.png", cv::Mat1b(kHeight / 2, kWidth / 2, 7));
+  import_colmap_scene(model_, import_);
+  const cv::Mat1w straight = read_label_image(import_.undistorted_folder / "c.mask.png");
+  EXPECT_EQ(straight.size(), cv::Size(kWidth, kHeight));
+  EXPECT_EQ(cv::countNonZero(straight != 7), 0);
+}
+
+TEST_F(ColmapScene, MasksOfAnotherShapeAreRefused) {
+  const fs::path mask = folder_ / "images" / "c.mask.png";
+  write_png(mask, cv::Mat1b(kHeight, kHeight, 7));
+  EXPECT_EQ(error(), mask.string() + ": is 120x120, but its image is 160x120");
+  EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
 }
 
 }  // namespace

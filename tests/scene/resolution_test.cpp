@@ -21,6 +21,16 @@ TEST(WorkingSize, HalvesDownToTheMinimumAndCaps) {
   EXPECT_THROW(working_size(5, 5, {1, 1, 0}), Error);
 }
 
+TEST(SameShape, AllowsForRoundedSides) {
+  EXPECT_TRUE(same_shape({2832, 2128}, {1416, 1064}));
+  EXPECT_TRUE(same_shape({2560, 1924}, {2832, 2128}));  // 1923.6
+  EXPECT_TRUE(same_shape({10, 7}, {1000, 667}));        // 6.67
+  EXPECT_FALSE(same_shape({96, 72}, {72, 96}));
+  EXPECT_FALSE(same_shape({96, 72}, {72, 72}));
+  EXPECT_FALSE(same_shape({1920, 1080}, {1920, 1088}));
+  EXPECT_FALSE(same_shape({0, 0}, {96, 72}));
+}
+
 TEST(ResizedImage, AveragesAreas) {
   cv::Mat3b image(2, 4, cv::Vec3b(0, 0, 0));
   image(0, 0) = image(1, 1) = {200, 100, 40};
