@@ -51,7 +51,7 @@ struct AffineWarp {
   Vector2<T> from;    // p in the reference image
   Vector2<T> to;      // its exact image in the source image
   Matrix2<T> linear;  // A
-  bool visible;       // false: the source camera does not see the plane's point; do not use
+  Mask<T> visible;    // false: the source camera does not see the plane's point; do not use
 
   Vector2<T> operator()(const Vector2<T>& q) const { return to + linear * (q - from); }
 };

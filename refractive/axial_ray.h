@@ -8,12 +8,17 @@
 //     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with derivatives by the pixel
 //     Projection<T> project(X)                      exact forward projection
 //     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
+//     Vector3<T>    exit_point(pixel)               where the pixel's light enters the scene medium
+//
+// and, to be matched in SIMD lanes, each_field(visit): all its numbers in a fixed order.
 //
 // Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres at
 // integers.
 #pragma once
 
 #include <Eigen/Core>
+
+#include "refractive/scalar.h"
 
 namespace axial::refractive {
 
@@ -53,7 +58,7 @@ struct AxialRayJacobian {
 template <class T>
 struct Projection {
   Vector2<T> pixel;
-  bool visible;
+  Mask<T> visible;
 };
 
 }  // namespace axial::refractive

@@ -40,6 +40,7 @@ template <class T>
 struct Medium {
   T b, c, inv_mu;
 
+  Medium() = default;
   explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)), inv_mu(T(1) / mu) {}
 
   T q(const T& s) const {
@@ -54,6 +55,7 @@ struct FlatPortOptics {
   T distance, thickness;
   Medium<T> glass, water;
 
+  FlatPortOptics() = default;
   explicit FlatPortOptics(const FlatPort<T>& port)
       : distance(port.distance),
         thickness(port.thickness),

@@ -69,6 +69,26 @@ class FlatPortCamera {
         highest_v_(T(height - 1) - lowest_),
         field_(optics_, largest_incidence_tangent(lens, port, width, height, T(-lowest_))) {}
 
+  FlatPortCamera() = default;  // means nothing before each_field() has filled it
+
+  // Calls visit(field) with every number the camera consists of, in a fixed order: how cameras are
+  // dealt to SIMD lanes. One of them is an int, the number of projection steps: lanes that work
+  // together take the largest.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
+    visit(inv_fx_), visit(inv_fy_);
+    visit(port_.normal.x()), visit(port_.normal.y()), visit(port_.normal.z());
+    visit(port_.distance), visit(port_.thickness);
+    visit(port_.n_air), visit(port_.n_glass), visit(port_.n_water);
+    visit(optics_.distance), visit(optics_.thickness);
+    for (Medium<T>* medium : {&optics_.glass, &optics_.water})
+      visit(medium->b), visit(medium->c), visit(medium->inv_mu);
+    visit(lowest_), visit(highest_u_), visit(highest_v_);
+    visit(field_.offset), visit(field_.slope), visit(field_.inv_largest_tangent);
+    visit(field_.halley_steps);
+  }
+
   const PinholeLens<T>& lens() const { return lens_; }
   const FlatPort<T>& port() const { return port_; }
   const FlatPortOptics<T>& optics() const { return optics_; }
@@ -117,11 +137,11 @@ class FlatPortCamera {
     const Vector3<T> bearing((pixel.x() - lens_.cx) * inv_fx_, (pixel.y() - lens_.cy) * inv_fy_,
                              T(1));
     const T along = bearing.dot(port_.normal);
-    const T inv = T(1) / (along < T(1e-3) ? T(1e-3) : along);
+    const T inv = T(1) / select(along < T(1e-3), T(1e-3), along);
     return {(bearing - along * port_.normal) * inv, inv};
   }
 
-  bool inside_widened_image(const Vector2<T>& pixel) const {
+  Mask<T> inside_widened_image(const Vector2<T>& pixel) const {
     return pixel.x() >= lowest_ && pixel.x() <= highest_u_ && pixel.y() >= lowest_ &&
            pixel.y() <= highest_v_;
   }
@@ -175,20 +195,19 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
   T z_water = height - optics_.outer();
   const T rho2 = across.squaredNorm();
   // The root has no derivative at zero; nothing below needs one there.
-  const bool on_axis = rho2 <= T(1e-30);
-  T rho = on_axis ? T(0) : T(sqrt(on_axis ? T(1) : rho2));
-  const bool in_field = field_.contains(rho, z_water);
-  if (!in_field) {  // a harmless point on the axis keeps everything below finite
-    across = Vector3<T>(T(0), T(0), T(0));
-    z_water = T(1);
-    rho = T(0);
-  }
+  const Mask<T> on_axis = rho2 <= T(1e-30);
+  T rho = select(on_axis, T(0), T(sqrt(select(on_axis, T(1), rho2))));
+  const Mask<T> in_field = field_.contains(rho, z_water);
+  // Outside, a harmless point on the axis keeps everything below finite.
+  for (int k = 0; k < 3; ++k) across(k) = select(in_field, across(k), T(0));
+  z_water = select(in_field, z_water, T(1));
+  rho = select(in_field, rho, T(0));
   const T t = solve_tangent(optics_, field_, rho, z_water);
   const FlatPortSlopes<T> at(optics_, t, z_water);
   const T m = T(1) / at.secant;
   const Vector3<T> bearing = n + m * across;
-  const bool in_front = bearing.z() > T(1e-3);
-  const T inv_z = T(1) / (in_front ? bearing.z() : T(1));
+  const Mask<T> in_front = bearing.z() > T(1e-3);
+  const T inv_z = T(1) / select(in_front, bearing.z(), T(1));
   const T x = bearing.x() * inv_z;
   const T y = bearing.y() * inv_z;
   const Vector2<T> pixel(lens_.fx * x + lens_.cx, lens_.fy * y + lens_.cy);
@@ -197,7 +216,8 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
     // d(bearing)/dX = m (I - n n^T) + (m_r - m) e e^T - (t/q_w) m_r e n^T, each row of the lens's
     // Jacobian times that.
     const T m_r = T(1) / at.tangent;
-    const Vector3<T> e = across * (rho > T(0) ? T(T(1) / rho) : T(0));
+    const Mask<T> off_axis = rho > T(0);
+    const Vector3<T> e = across * select(off_axis, T(T(1) / select(off_axis, rho, T(1))), T(0));
     const T slope = t * at.inv_qw * m_r;
     for (int row = 0; row < 2; ++row) {
       const T f = (row == 0 ? lens_.fx : lens_.fy) * inv_z;

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 
 #include "refractive/flat_port.h"
 
@@ -23,6 +22,7 @@ struct FlatPortField {
   T offset, slope, inv_largest_tangent;
   int halley_steps;  // for single precision: errors below 1e-4 px of a 1024 px wide image
 
+  FlatPortField() = default;
   FlatPortField(const FlatPortOptics<T>& optics, const T& tangent)
       : inv_largest_tangent(T(1) / tangent),
         halley_steps(tangent < T(1.35) ? 1 : (tangent < T(7) ? 2 : 4)) {
@@ -35,7 +35,7 @@ struct FlatPortField {
 
   // False for NaN. The bounds on the height (a nanometre, a million kilometres) keep the squares
   // and cubes of single precision within its range.
-  bool contains(const T& rho, const T& z_water) const {
+  Mask<T> contains(const T& rho, const T& z_water) const {
     return z_water > T(1e-9) && z_water < T(1e9) && rho <= radius(z_water);
   }
 };
@@ -90,7 +90,7 @@ template <class T>
 T solve_tangent(const FlatPortOptics<T>& optics, const FlatPortField<T>& field, const T& rho,
                 const T& z_water) {
   T t = initial_tangent(optics, field, rho, z_water);
-  if constexpr (std::is_same_v<T, float>) {
+  if constexpr (kFixedSteps<T>) {
     for (int step = 0; step < field.halley_steps; ++step) t = halley_step(optics, t, rho, z_water);
     return t;
   } else {

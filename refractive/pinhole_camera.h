@@ -46,12 +46,22 @@ class PinholeCamera {
  public:
   using Scalar = T;
 
+  PinholeCamera() = default;  // means nothing before each_field() has filled it
   explicit PinholeCamera(const PinholeLens<T>& lens) : lens_(lens) {}
+
+  // Calls visit(field) with every number the camera consists of, in a fixed order: how cameras are
+  // dealt to SIMD lanes.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
+  }
 
   const PinholeLens<T>& lens() const { return lens_; }
 
   AxialRay<T> ray(const Vector2<T>& pixel) const {
-    return {Vector3<T>::Zero(), lens_.bearing(pixel).normalized()};
+    using std::sqrt;
+    const Vector3<T> bearing = lens_.bearing(pixel);
+    return {Vector3<T>::Zero(), bearing * (T(1) / sqrt(bearing.squaredNorm()))};
   }
 
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
@@ -75,9 +85,10 @@ class PinholeCamera {
     using std::abs;
     // False for NaN; the bounds keep pixel and Jacobian within single precision.
     const T widest = T(1e6) * X.z();
-    const bool visible =
+    const Mask<T> visible =
         X.z() > T(1e-20) && X.z() < T(1e20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
-    const Vector3<T> safe = visible ? X : Vector3<T>(T(0), T(0), T(1));
+    const Vector3<T> safe(select(visible, X.x(), T(0)), select(visible, X.y(), T(0)),
+                          select(visible, X.z(), T(1)));
     if (jacobian) *jacobian = lens_.pixel_jacobian(safe);
     return {lens_.pixel(safe), visible};
   }

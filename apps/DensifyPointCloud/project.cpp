@@ -178,7 +178,7 @@ void add_pixels(axial::Fingerprint& print, const cv::Mat1b& image) {
 // Everything the depth maps depend on; not what only fusion uses, nor the number of threads.
 std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
-  print.add("AxialMVS depth maps 1");
+  print.add("AxialMVS depth maps 2");  // the number: of the matching method
   add_options(print, options);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     const axial::depth::MatchImage& view = project.views[i];

@@ -45,7 +45,6 @@ float inconsistency(const Camera& reference, const Eigen::Vector2f& pixel,
                     const Eigen::Vector3f& in_source, const Eigen::Vector2f& seen_at,
                     const Camera& source, const RelativePose& from_reference,
                     const cv::Mat1f& source_depth, float limit) {
-  constexpr float kSameSurface = 0.03f;
   const auto ray = source.ray(seen_at);
   const float expected = (in_source - ray.origin).norm();
   const float found = depth_near(source_depth, seen_at, expected, kSameSurface);

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "depth/smoothness.h"
+
 namespace axial::depth {
 
 // How a patch is carried from the reference view into a source view.
@@ -28,17 +30,15 @@ struct PatchMatchOptions {
   float min_texture =
       4e-4f;  // weighted sum of squared deviations below which a patch is textureless
 
-  float smoothness_depth_sigma = 0.02f;  // relative distance of the neighbour to the plane
-  float smoothness_depth_bonus = 0.07f;
-  float smoothness_normal_sigma = radians(13);
-  float smoothness_normal_bonus = 0.0672f;
+  SmoothnessOptions smoothness;
 
   float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
 
-  int refinement_trials = 4;
+  int refinement_trials = 8;             // at most 8, scored together
+  float refinement_shrink = 0.65f;       // of the ranges, from trial to trial
+  int restart_trials = 3;                // random planes of a hopeless pixel
   float refinement_pixels = 1.5f;        // depth trial: largest motion in a source view
   float refinement_angle = radians(16);  // normal trial
-  int refinement_views = 2;              // best views in which trials are scored
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
   float keep_cost_before_geometric = 1.2f;  // hypotheses at or above are cleared

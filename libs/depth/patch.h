@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matching window: 9x9 pixels, every second one, 25 texels around a reference pixel.
+// Gathers the matching window around a reference pixel.
 #pragma once
 
 #include <array>
@@ -7,13 +7,9 @@
 #include <opencv2/core.hpp>
 
 #include "depth/options.h"
+#include "depth/reference_patch.h"
 
 namespace axial::depth {
-
-inline constexpr int kPatchRadius = 4;
-inline constexpr int kPatchStep = 2;
-inline constexpr int kTexels = 25;
-inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the rest has weight zero
 
 // Texel offsets from the window's centre, row by row. Padding repeats the centre.
 struct TexelOffsets {
@@ -33,15 +29,6 @@ constexpr TexelOffsets make_texel_offsets() {
 }
 
 inline constexpr TexelOffsets kTexelOffsets = make_texel_offsets();
-
-// The reference window gathered once per pixel and reused for every hypothesis and source view.
-struct ReferencePatch {
-  alignas(32) std::array<float, kPaddedTexels> weight{};     // bilateral, sums to 1
-  alignas(32) std::array<float, kPaddedTexels> deviation{};  // weight * (intensity - mean)
-  float mean = 0;      // weighted mean of the intensities, 0 to 255: keeps the source's sums small
-  float variance = 0;  // sum of weight * (intensity - mean)^2, weights summing to 1
-  float texture = 0;   // the same with weights of at most 1: what OpenMVS's threshold means
-};
 
 // Weights by intensity difference (8 bit) and texel, tabulated for one pair of sigmas.
 class PatchSampler {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "depth/lane_matcher.h"
 #include "depth/matcher.h"
 #include "depth/sparse_init.h"
 #include "depth/sweep.h"
@@ -67,12 +68,19 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
                      const std::vector<Camera>& cameras, std::span<const DepthMap* const> maps,
                      const PatchMatchOptions& options, SweepInput sweep, int sweeps,
                      PlaneMap& planes) {
-  const Matcher<Camera, Warp> matcher(level.images[0], cameras[0],
-                                      make_sources(input, level, cameras, maps), options);
-  for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
-    Sweep<Camera, Warp>(matcher, planes, options, sweep).run();
-    sweep.first = false;
-  }
+  const auto sources = make_sources(input, level, cameras, maps);
+  const auto run_all = [&](const auto& matcher) {
+    for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
+      Sweep(matcher, planes, options, sweep).run();
+      sweep.first = false;
+    }
+  };
+  constexpr bool kInLanes = std::is_same_v<Warp, AffineWarp> &&
+                            !std::is_same_v<Camera, refractive::LineSearchCamera<float>>;
+  if constexpr (kInLanes)
+    run_all(LaneMatcher<Camera>(level.images[0], cameras[0], sources, options));
+  else
+    run_all(Matcher<Camera, Warp>(level.images[0], cameras[0], sources, options));
 }
 
 // Runs `sweeps` sweeps of one level with the camera type and the warp chosen once.

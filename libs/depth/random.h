@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -18,7 +19,6 @@ class KeyedRandom {
       : key_(scramble(scramble(scramble(image) ^ pixel) ^ sweep)) {}
 
   float unit() { return unit_float(scramble(key_ + ++count_)); }  // [0, 1)
-  float symmetric() { return 2.0f * unit() - 1.0f; }              // [-1, 1)
 
   // A normal facing the camera, uniform over the directions at most 80 degrees off the ray.
   Eigen::Vector3f facing_normal(const Eigen::Vector3f& ray_direction) {
@@ -26,10 +26,14 @@ class KeyedRandom {
     return tilted(-ray_direction, cosine, unit());
   }
 
-  // `normal` turned by up to `angle` radians in a random direction.
-  Eigen::Vector3f turned(const Eigen::Vector3f& normal, float angle) {
-    const float tilt = angle * std::sqrt(unit());
-    return tilted(normal, std::cos(tilt), unit());
+  // Three numbers in [-1, 1) of 21 bits each.
+  std::array<float, 3> symmetric_triple() {
+    const std::uint64_t bits = scramble(key_ + ++count_);
+    const auto part = [bits](int shift) {
+      return static_cast<float>(static_cast<std::int32_t>((bits >> shift & 0x1FFFFF)) - (1 << 20)) *
+             (1.0f / (1 << 20));
+    };
+    return {part(43), part(22), part(1)};
   }
 
  private:

@@ -16,6 +16,12 @@
 namespace axial::depth {
 
 inline constexpr int kStripHeight = 32;
+inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
+
+// Mean of the two smallest costs; the second only counts below kOutsideCost.
+inline float aggregate(float smallest, float second) {
+  return second < kOutsideCost ? 0.5f * (smallest + second) : smallest;
+}
 
 struct SweepInput {
   std::uint32_t image_id = 0;
@@ -30,12 +36,14 @@ struct SweepInput {
   bool first = false;               // fill pixels without a hypothesis at random
 };
 
-template <class Camera, class Warp>
+template <class Matcher>
 class Sweep {
  public:
-  Sweep(const Matcher<Camera, Warp>& matcher, PlaneMap& map, const PatchMatchOptions& options,
+  Sweep(const Matcher& matcher, PlaneMap& map, const PatchMatchOptions& options,
         const SweepInput& input)
-      : matcher_(matcher), map_(map), options_(options), input_(input) {}
+      : matcher_(matcher), map_(map), options_(options), input_(input) {
+    for (std::size_t i = 0; i < matcher.views(); ++i) all_views_[i] = static_cast<std::uint8_t>(i);
+  }
 
   void run() {
     const int strips = (map_.height + kStripHeight - 1) / kStripHeight;
@@ -76,8 +84,10 @@ class Sweep {
   }
 
   struct Neighbourhood {
-    std::array<const PlanePixel*, 4> pixels{};
+    std::array<SurfacePoint, 4> points{};
     std::size_t count = 0;
+
+    std::span<const SurfacePoint> all() const { return {points.data(), count}; }
   };
 
   Neighbourhood neighbourhood(int strip, int x, int y) const {
@@ -85,34 +95,16 @@ class Sweep {
     const auto add = [&](int nx, int ny) {
       if (nx < 0 || ny < 0 || nx >= map_.width || ny >= map_.height) return;
       const PlanePixel& pixel = neighbour(strip, nx, ny);
-      if (pixel.plane.depth > 0) around.pixels[around.count++] = &pixel;
+      if (!(pixel.plane.depth > 0)) return;
+      const Eigen::Vector3f& p = pixel.point;
+      const Eigen::Vector3f& n = pixel.plane.normal;
+      around.points[around.count++] = {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}};
     };
     add(x - 1, y);
     add(x, y - 1);
     add(x + 1, y);
     add(x, y + 1);
     return around;
-  }
-
-  // Multiplicative bonus for agreeing with the neighbours: eq. (6) with d_v = n . (X_n - X).
-  float smoothness(const Neighbourhood& around, const PlaneHypothesis& plane,
-                   const Eigen::Vector3f& point) const {
-    float factor = 1;
-    const float inverse_range2 = 1.0f / point.squaredNorm();
-    const float depth_scale =
-        -0.5f / (options_.smoothness_depth_sigma * options_.smoothness_depth_sigma);
-    const float normal_scale =
-        -0.5f / (options_.smoothness_normal_sigma * options_.smoothness_normal_sigma);
-    for (std::size_t i = 0; i < around.count; ++i) {
-      const PlanePixel& other = *around.pixels[i];
-      const float distance = plane.normal.dot(other.point - point);
-      const float versine = 1.0f - std::min(1.0f, plane.normal.dot(other.plane.normal));
-      const float angle2 = versine * (2.0f + versine / 3.0f);  // angle^2 up to the 6th order
-      factor *= 1.0f - options_.smoothness_depth_bonus *
-                           std::exp(depth_scale * distance * distance * inverse_range2);
-      factor *= 1.0f - options_.smoothness_normal_bonus * std::exp(normal_scale * angle2);
-    }
-    return factor;
   }
 
   bool in_range(float depth) const {
@@ -127,20 +119,33 @@ class Sweep {
 
   void clear(PlanePixel& pixel) const { pixel = PlanePixel(); }
 
+  // A hypothesis with its cost and the views that see it best.
+  struct Best {
+    PlaneHypothesis plane;
+    float cost = kMaxCost;
+    std::array<std::uint8_t, 2> views{};  // best first
+    float motion = 0;                     // in the best view [px/m]
+  };
+
+  // What every hypothesis of one pixel is judged by.
+  struct Visit {
+    const ReferencePixel& pixel;
+    const Neighbourhood& around;
+  };
+
   void visit(int strip, int x, int y, int step) {
     PlanePixel& current = map_.at(x, y);
     if (!window_inside(x, y, map_.width, map_.height) || (input_.mask && !(*input_.mask)(y, x)))
       return clear(current);
-    ReferencePixel pixel = matcher_.prepare(x, y);
+    ReferencePixel pixel = matcher_.pixels().prepare(x, y);
     float prior = input_.prior ? (*input_.prior)(y, x) : 0.0f;
     if (pixel.patch.texture < options_.min_texture) {
       if (input_.textureless_prior) prior = (*input_.textureless_prior)(y, x);
       if (!(prior > 0)) return clear(current);
     }
-    matcher_.set_prior(pixel, prior);
+    matcher_.pixels().set_prior(pixel, prior);
 
-    const std::uint64_t index = map_.index(x, y);
-    KeyedRandom random(input_.image_id, index, input_.sweep);
+    KeyedRandom random(input_.image_id, map_.index(x, y), input_.sweep);
     if (!(current.plane.depth > 0) || !in_range(current.plane.depth)) {
       if (!input_.first) return clear(current);
       current.plane = random_plane(pixel, random);
@@ -149,85 +154,134 @@ class Sweep {
       current.plane.normal = random.facing_normal(pixel.ray.direction);
 
     const Neighbourhood around = neighbourhood(strip, x, y);
-    Best best{current.plane, 0, {}};
-    best.cost = matcher_.score_all(pixel, best.plane, best.views) *
-                smoothness(around, best.plane, pixel.ray.at(best.plane.depth));
+    const Visit at{pixel, around};
+    Candidates candidates;
+    candidates.add(current.plane);
     if (x + step >= 0 && x + step < map_.width)
-      propagate(pixel, neighbour(strip, x + step, y), around, best);
+      propagate(pixel, neighbour(strip, x + step, y), candidates);
     if (y + step >= 0 && y + step < map_.height)
-      propagate(pixel, neighbour(strip, x, y + step), around, best);
-    refine(pixel, around, random, best);
+      propagate(pixel, neighbour(strip, x, y + step), candidates);
+    Best best;
+    keep_best(at, candidates, best);
+    refine(at, random, best);
     current = {best.plane, pixel.ray.at(best.plane.depth), best.cost};
   }
 
-  struct Best {
-    PlaneHypothesis plane;
-    float cost;
-    ViewCosts views;
+  struct Candidates {
+    std::array<PlaneHypothesis, kMaxCandidates> planes;
+    std::size_t count = 0;
+
+    void add(const PlaneHypothesis& plane) { planes[count++] = plane; }
+    std::span<const PlaneHypothesis> all() const { return {planes.data(), count}; }
   };
 
-  // Eq. (8): where this pixel's ray meets the neighbour's plane.
-  void propagate(const ReferencePixel& pixel, const PlanePixel& from, const Neighbourhood& around,
-                 Best& best) const {
+  // Eq. (8): where this pixel's ray meets the neighbour's plane. Nothing if that is no news.
+  void propagate(const ReferencePixel& pixel, const PlanePixel& from,
+                 Candidates& candidates) const {
     if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return;
     const float along = from.plane.normal.dot(pixel.ray.direction);
     if (!(along < -0.05f)) return;
     const float depth = from.plane.normal.dot(from.point - pixel.ray.origin) / along;
     if (!in_range(depth)) return;
     const PlaneHypothesis plane{depth, from.plane.normal};
-    const bool same = std::abs(depth - best.plane.depth) < 1e-5f * depth &&
-                      plane.normal.dot(best.plane.normal) > 0.99999f;
-    if (same) return;
-    ViewCosts views;
-    const float cost =
-        matcher_.score_all(pixel, plane, views) * smoothness(around, plane, pixel.ray.at(depth));
-    if (cost < best.cost) best = {plane, cost, views};
+    for (const PlaneHypothesis& other : candidates.all())
+      if (std::abs(depth - other.depth) < 1e-5f * depth &&
+          plane.normal.dot(other.normal) > 0.99999f)
+        return;
+    candidates.add(plane);
   }
 
-  void refine(const ReferencePixel& pixel, const Neighbourhood& around, KeyedRandom& random,
-              Best& best) const {
+  // Scores the candidates in all views and keeps the best, if it is better than `best`.
+  void keep_best(const Visit& at, const Candidates& candidates, Best& best) const {
+    const std::size_t views = matcher_.views();
+    std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
+    matcher_.score(at.pixel, candidates.all(), {all_views_.data(), views}, scores);
+    std::array<float, kMaxCandidates> factors;
+    matcher_.smoothness(at.pixel, candidates.all(), at.around.all(), factors);
+    for (std::size_t p = 0; p < candidates.count; ++p) {
+      const ViewScore* of = scores.data() + p * views;
+      std::size_t first = 0, second = views;
+      for (std::size_t k = 1; k < views; ++k) {
+        if (of[k].cost < of[first].cost) {
+          second = first;
+          first = k;
+        } else if (second == views || of[k].cost < of[second].cost) {
+          second = k;
+        }
+      }
+      const PlaneHypothesis& plane = candidates.planes[p];
+      float cost = second < views ? aggregate(of[first].cost, of[second].cost) : of[first].cost;
+      cost *= factors[p];
+      if (p > 0 && !(cost < best.cost)) continue;
+      if (second == views) second = first;
+      best = {plane, cost, {all_views_[first], all_views_[second]}, of[first].motion};
+    }
+  }
+
+  // Trials around the best plane, all scored at once in its two best views.
+  void refine(const Visit& at, KeyedRandom& random, Best& best) const {
     float scale = 1;
     if (best.cost <= options_.good_cost)
       scale = 0.25f;
     else if (best.cost <= options_.fair_cost)
       scale = 0.5f;
-    else if (best.cost >= options_.bad_cost && !restart(pixel, random, best))
+    else if (best.cost >= options_.bad_cost && !restart(at, random, best))
       return;
-    const float motion = matcher_.pixels_per_metre(pixel, best.plane.depth, best.views.order[0]);
-    const float depth_range =
-        motion > 0 ? std::min(options_.refinement_pixels / motion, 0.05f * best.plane.depth)
-                   : 0.003f * best.plane.depth;
+    const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
+                                                         0.05f * best.plane.depth)
+                                              : 0.003f * best.plane.depth;
+    const Eigen::Vector3f u = best.plane.normal.unitOrthogonal();
+    const Eigen::Vector3f v = best.plane.normal.cross(u);
+    Candidates trials;
     for (int trial = 0; trial < options_.refinement_trials; ++trial) {
-      PlaneHypothesis plane;
-      plane.depth = best.plane.depth + random.symmetric() * depth_range * scale;
-      plane.normal = random.turned(best.plane.normal, options_.refinement_angle * scale);
-      if (!in_range(plane.depth) || !(plane.normal.dot(pixel.ray.direction) < -0.05f)) continue;
-      const float cost = matcher_.score_best(pixel, plane, best.views,
-                                             static_cast<std::size_t>(options_.refinement_views)) *
-                         smoothness(around, plane, pixel.ray.at(plane.depth));
+      const std::array<float, 3> step = random.symmetric_triple();
+      const float turn = options_.refinement_angle * scale;
+      const PlaneHypothesis plane{
+          best.plane.depth + step[0] * depth_range * scale,
+          (best.plane.normal + (step[1] * turn) * u + (step[2] * turn) * v).normalized()};
+      scale *= options_.refinement_shrink;
+      if (in_range(plane.depth) && plane.normal.dot(at.pixel.ray.direction) < -0.05f)
+        trials.add(plane);
+    }
+    if (trials.count > 0) keep_best_trial(at, trials, best);
+  }
+
+  void keep_best_trial(const Visit& at, const Candidates& trials, Best& best) const {
+    const std::size_t views = best.views[0] == best.views[1] ? 1 : 2;
+    std::array<ViewScore, 2 * kMaxCandidates> scores;
+    matcher_.score(at.pixel, trials.all(), {best.views.data(), views}, scores);
+    std::array<float, kMaxCandidates> factors;
+    matcher_.smoothness(at.pixel, trials.all(), at.around.all(), factors);
+    for (std::size_t p = 0; p < trials.count; ++p) {
+      const PlaneHypothesis& plane = trials.planes[p];
+      const ViewScore* of = scores.data() + p * views;
+      float cost = views == 1 ? of[0].cost
+                              : aggregate(std::min(of[0].cost, of[1].cost),
+                                          std::max(of[0].cost, of[1].cost));
+      cost *= factors[p];
       if (cost < best.cost) {
         best.plane = plane;
         best.cost = cost;
-        scale *= 0.5f;
       }
     }
   }
 
   // A hopeless pixel tries random planes, without the neighbours' say.
-  bool restart(const ReferencePixel& pixel, KeyedRandom& random, Best& best) const {
-    for (int trial = 0; trial < options_.refinement_trials; ++trial) {
-      const PlaneHypothesis plane = random_plane(pixel, random);
-      ViewCosts views;
-      const float cost = matcher_.score_all(pixel, plane, views);
-      if (cost < best.cost) best = {plane, cost, views};
-    }
+  bool restart(const Visit& at, KeyedRandom& random, Best& best) const {
+    Candidates candidates;
+    for (int trial = 0; trial < options_.restart_trials; ++trial)
+      candidates.add(random_plane(at.pixel, random));
+    Best other = best;
+    keep_best({at.pixel, Neighbourhood()}, candidates, other);
+    if (other.cost < best.cost) best = other;
     return best.cost < options_.bad_cost;
   }
 
-  const Matcher<Camera, Warp>& matcher_;
+  const Matcher& matcher_;
   PlaneMap& map_;
   const PatchMatchOptions& options_;
   SweepInput input_;
+  std::array<std::uint8_t, kMaxSources> all_views_{};
   std::vector<PlanePixel> edges_;  // rows above and below each inner strip edge, before the sweep
 };
 

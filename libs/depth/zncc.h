@@ -35,10 +35,6 @@ struct TexelPositions {
   alignas(32) std::array<float, kPaddedTexels> y;
 };
 
-// What ZNCC returns if a texel leaves the image (a border of one pixel kept) or is not a number, or
-// if the source patch is flat. Below every possible correlation.
-inline constexpr float kNoCorrelation = -2.0f;
-
 // Correlation in [-1, 1] or kNoCorrelation. All implementations add in the same order without fused
 // multiplications and so give the same bytes.
 using ZnccFunction = float (*)(const ReferencePatch&, const QuadImage&, const TexelPositions&);

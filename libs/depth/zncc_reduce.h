@@ -21,11 +21,9 @@ inline float reduce(const std::array<float, 8>& v) {
 }
 
 inline float correlation(const ZnccSums& sums, float reference_variance) {
-  // A source patch flatter than half a grey level tells nothing.
-  constexpr float kFlat = 0.25f;
   const float mean = reduce(sums.mean);
   const float variance = reduce(sums.square) - mean * mean;
-  if (!(variance > kFlat) || !(reference_variance > 0)) return kNoCorrelation;
+  if (!(variance > kFlatVariance) || !(reference_variance > 0)) return kNoCorrelation;
   const float value = reduce(sums.cross) / std::sqrt(reference_variance * variance);
   return value > 1.0f ? 1.0f : value < -1.0f ? -1.0f : value;
 }

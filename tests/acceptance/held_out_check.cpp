@@ -112,12 +112,14 @@ int run(char** argv) {
     const Eigen::Vector3f normal = (a.pose.rotation.cast<float>() * cloud.normals[i]).normalized();
     const Eigen::Vector3f from_a = (point - a.pose.centre.cast<float>()).normalized();
     const Eigen::Vector3f from_b = (point - b.pose.centre.cast<float>()).normalized();
-    const depth::ReferencePixel pixel = matcher.prepare(in_a.x, in_a.y);
+    const depth::ReferencePixel pixel = matcher.pixels().prepare(in_a.x, in_a.y);
     const float along = normal.dot(pixel.ray.direction);
     if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b) < -0.2f)) continue;
     const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
-    const float cost = matcher.view_cost(
-        pixel, plane, depth::patch_derivative(pixel.ray, pixel.jacobian, plane), 0);
+    const float cost =
+        matcher
+            .score_view(pixel, plane, depth::patch_derivative(pixel.ray, pixel.jacobian, plane), 0)
+            .cost;
     angles.push_back(std::acos(std::clamp(from_a.dot(from_b), -1.0f, 1.0f)) * 180.0f /
                      std::numbers::pi_v<float>);
     if (cost < 0.4f) ++agree;

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/lane_matcher.h"
+
+#include <limits>
+#include <type_traits>
+
+#include "base/error.h"
+#include "refractive/flat_port_camera.h"
+
+namespace axial::depth {
+namespace {
+
+using lanes::kLanes;
+using refractive::FlatPortCamera;
+using refractive::PinholeCamera;
+
+template <class Camera>
+lanes::CameraFields fields_of(Camera camera) {
+  lanes::CameraFields fields;
+  std::size_t k = 0;
+  camera.each_field([&](auto field) {
+    if constexpr (std::is_same_v<decltype(field), int>)
+      fields.steps = field;
+    else
+      fields.value.at(k++) = field;
+  });
+  return fields;
+}
+
+template <class Camera>
+void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
+              bool with_depths) {
+  const lanes::CameraFields fields = fields_of(source.camera);
+  for (std::size_t k = 0; k < fields.value.size(); ++k) tables.camera[k][view] = fields.value[k];
+  tables.steps = std::max(tables.steps, fields.steps);
+  for (std::size_t k = 0; k < 9; ++k)
+    tables.rotation[k][view] =
+        source.from_reference.rotation(static_cast<int>(k / 3), static_cast<int>(k % 3));
+  for (std::size_t k = 0; k < 3; ++k)
+    tables.translation[k][view] = source.from_reference.translation(static_cast<int>(k));
+
+  const QuadImage& image = *source.image;
+  const auto pixels =
+      static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
+  if (tables.words.size() + pixels > std::numeric_limits<std::int32_t>::max())
+    fail("the source images of one view have more than 2^31 pixels together");
+  tables.image_begin[view] = static_cast<std::int32_t>(tables.words.size());
+  tables.width[view] = static_cast<float>(image.width());
+  tables.height[view] = static_cast<float>(image.height());
+  tables.words.insert(tables.words.end(), image.words(), image.words() + pixels);
+  if (!with_depths) return;
+  tables.has_depth[view] = source.depth ? 1.0f : 0.0f;
+  tables.depths.resize(tables.words.size(), 0.0f);
+  if (source.depth)
+    std::copy(source.depth->begin(), source.depth->end(),
+              tables.depths.end() - static_cast<std::ptrdiff_t>(pixels));
+}
+
+template <class Camera>
+std::unique_ptr<lanes::SceneTables> make_tables(const Camera& reference,
+                                                std::span<const SourceView<Camera>> sources,
+                                                const PatchMatchOptions& options) {
+  auto tables = std::make_unique<lanes::SceneTables>();
+  tables->kind = std::is_same_v<Camera, PinholeCamera<float>> ? lanes::CameraKind::pinhole
+                                                              : lanes::CameraKind::flat_port;
+  tables->reference = fields_of(reference);
+  tables->geometric_weight = options.geometric_weight;
+  tables->geometric_limit = options.geometric_limit;
+  const bool with_depths = std::any_of(sources.begin(), sources.end(),
+                                       [](const auto& source) { return source.depth != nullptr; });
+  for (std::size_t view = 0; view < sources.size(); ++view)
+    add_view(*tables, sources[view], view, with_depths);
+  return tables;
+}
+
+std::array<float, 3> floats(const Eigen::Vector3f& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+lanes::LanePixel lane_pixel(const ReferencePixel& pixel) {
+  const auto& jacobian = pixel.jacobian;
+  return {floats(pixel.ray.origin),
+          floats(pixel.ray.direction),
+          floats(jacobian.origin.col(0)),
+          floats(jacobian.origin.col(1)),
+          floats(jacobian.direction.col(0)),
+          floats(jacobian.direction.col(1)),
+          {static_cast<float>(pixel.x), static_cast<float>(pixel.y)},
+          pixel.prior_depth,
+          pixel.prior_weight,
+          &pixel.patch};
+}
+
+void set_plane(lanes::LanePlanes& planes, std::size_t k, const PlaneHypothesis& plane) {
+  planes.depth[k] = plane.depth;
+  planes.nx[k] = plane.normal.x();
+  planes.ny[k] = plane.normal.y();
+  planes.nz[k] = plane.normal.z();
+}
+
+// One batch of pairs under construction, and where their scores go.
+struct Batch {
+  lanes::LanePlanes planes;
+  lanes::LanePairs pairs;
+  std::array<std::size_t, kLanes> target;
+  std::size_t plane_count = 0;
+  std::size_t pair_count = 0;
+
+  void run(const lanes::Scorer& scorer, const lanes::LanePixel& pixel,
+           std::span<ViewScore> scores) {
+    for (std::size_t k = pair_count; k < kLanes; ++k) {
+      pairs.plane[k] = pairs.plane[0];
+      pairs.view[k] = pairs.view[0];
+    }
+    lanes::LaneScores result;
+    scorer.score(pixel, planes, pairs, result);
+    for (std::size_t k = 0; k < pair_count; ++k)
+      scores[target[k]] = {result.cost[k], result.motion[k]};
+    plane_count = pair_count = 0;
+  }
+};
+
+}  // namespace
+
+template <class Camera>
+LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
+                                 std::span<const SourceView<Camera>> sources,
+                                 const PatchMatchOptions& options, lanes::InstructionSet set)
+    : pixels_(image, camera, options), smoothness_(options.smoothness), views_(sources.size()) {
+  for (std::size_t first = 0; first < sources.size(); first += kLanes) {
+    Group group;
+    group.tables = make_tables(
+        camera, sources.subspan(first, std::min(kLanes, sources.size() - first)), options);
+    group.scorer = lanes::make_scorer(*group.tables, set);
+    groups_.push_back(std::move(group));
+  }
+}
+
+template <class Camera>
+void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
+                                std::span<const PlaneHypothesis> planes,
+                                std::span<const std::uint8_t> views,
+                                std::span<ViewScore> scores) const {
+  const lanes::LanePixel lane = lane_pixel(pixel);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Batch batch;
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      bool placed = false;
+      for (std::size_t k = 0; k < views.size(); ++k) {
+        if (views[k] / kLanes != g) continue;
+        if (batch.pair_count == kLanes) {
+          batch.run(*groups_[g].scorer, lane, scores);
+          placed = false;
+        }
+        if (!placed) set_plane(batch.planes, batch.plane_count++, planes[p]);
+        placed = true;
+        batch.pairs.plane[batch.pair_count] = static_cast<std::int32_t>(batch.plane_count - 1);
+        batch.pairs.view[batch.pair_count] = static_cast<std::int32_t>(views[k] % kLanes);
+        batch.target[batch.pair_count++] = p * views.size() + k;
+      }
+    }
+    if (batch.pair_count > 0) batch.run(*groups_[g].scorer, lane, scores);
+  }
+}
+
+template <class Camera>
+void LaneMatcher<Camera>::smoothness(const ReferencePixel& pixel,
+                                     std::span<const PlaneHypothesis> planes,
+                                     std::span<const SurfacePoint> neighbours,
+                                     std::span<float> factors) const {
+  lanes::LanePlanes lane_planes;
+  for (std::size_t k = 0; k < kLanes; ++k)
+    set_plane(lane_planes, k, planes[k < planes.size() ? k : 0]);
+  lanes::LaneFloats result;
+  groups_[0].scorer->smoothness(lane_pixel(pixel), lane_planes, neighbours, smoothness_, result);
+  std::copy_n(result.begin(), planes.size(), factors.begin());
+}
+
+template class LaneMatcher<PinholeCamera<float>>;
+template class LaneMatcher<FlatPortCamera<float>>;
+
+}  // namespace axial::depth

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scorer for one instruction set. To be included by its translation unit alone.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "depth/lanes/lane_zncc.h"
+#include "depth/lanes/pack.h"
+#include "depth/lanes/scorer.h"
+#include "depth/reference_patch.h"
+#include "refractive/affine_warp.h"
+#include "refractive/flat_port_camera.h"
+
+namespace axial::depth::lanes {
+
+template <template <class> class Camera, class Abi>
+class LaneScorer final : public Scorer {
+  using T = Pack<Abi>;
+  using Vector = refractive::Vector3<T>;
+  using Mask = PackMask<Abi>;
+
+  // A source view in every lane.
+  struct Views {
+    Camera<T> camera;
+    refractive::Matrix3<T> rotation;
+    Vector translation;
+    LaneImages<Abi> image;
+  };
+
+  struct Planes {
+    T depth;
+    Vector normal;
+  };
+
+ public:
+  explicit LaneScorer(const SceneTables& tables) : tables_(tables) {
+    std::size_t k = 0;
+    reference_.each_field([&](auto& field) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
+        field = tables.reference.steps;
+      else
+        field = T(tables.reference.value[k++]);
+    });
+  }
+
+  // Flattened: sixteen lanes fit registers only where no call lies between.
+  [[gnu::flatten]] void score(const LanePixel& pixel, const LanePlanes& lane_planes,
+                              const LanePairs& pairs, LaneScores& scores) const override {
+    const Planes planes = deal_planes(lane_planes, pairs);
+    const Views views = deal_views(pairs);
+    const refractive::AxialRay<T> ray{vector(pixel.origin), vector(pixel.direction)};
+    const Vector point = views.rotation * ray.at(planes.depth) + views.translation;
+
+    refractive::Matrix23<T> jacobian;
+    const refractive::Projection<T> image = views.camera.project(point, &jacobian);
+    const refractive::Matrix2<T> warp = refractive::warp_derivative(
+        jacobian, views.rotation,
+        refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal));
+
+    const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, image, warp);
+    T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
+    if (!tables_.depths.empty()) cost += inconsistency(pixel, pairs, views, point, image);
+    if (pixel.prior_weight > 0) {
+      const T off = abs(planes.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
+      cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
+    }
+    min(cost, T(kMaxCost)).store(scores.cost.data());
+    const refractive::Vector2<T> motion = jacobian * (views.rotation * ray.direction);
+    select(image.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data());
+  }
+
+  [[gnu::flatten]] void smoothness(const LanePixel& pixel, const LanePlanes& lane_planes,
+                                   std::span<const SurfacePoint> neighbours,
+                                   const SmoothnessOptions& options,
+                                   LaneFloats& factors) const override {
+    const Vector normal(T::load(lane_planes.nx.data()), T::load(lane_planes.ny.data()),
+                        T::load(lane_planes.nz.data()));
+    const Vector point =
+        vector(pixel.origin) + T::load(lane_planes.depth.data()) * vector(pixel.direction);
+    depth::smoothness<T>(point, normal, neighbours, options).store(factors.data());
+  }
+
+ private:
+  static Vector vector(const std::array<float, 3>& v) { return {T(v[0]), T(v[1]), T(v[2])}; }
+
+  static refractive::AxialRayJacobian<T> ray_jacobian(const LanePixel& pixel) {
+    refractive::AxialRayJacobian<T> jacobian;
+    jacobian.origin.col(0) = vector(pixel.origin_u);
+    jacobian.origin.col(1) = vector(pixel.origin_v);
+    jacobian.direction.col(0) = vector(pixel.direction_u);
+    jacobian.direction.col(1) = vector(pixel.direction_v);
+    return jacobian;
+  }
+
+  static Planes deal_planes(const LanePlanes& planes, const LanePairs& pairs) {
+    const Lookup<Abi> of{pairs.plane};
+    return {of(planes.depth.data()),
+            {of(planes.nx.data()), of(planes.ny.data()), of(planes.nz.data())}};
+  }
+
+  Views deal_views(const LanePairs& pairs) const {
+    const Lookup<Abi> of{pairs.view};
+    Views views;
+    std::size_t k = 0;
+    views.camera.each_field([&](auto& field) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
+        field = tables_.steps;
+      else
+        field = of(tables_.camera[k++].data());
+    });
+    for (int i = 0; i < 9; ++i)
+      views.rotation(i / 3, i % 3) = of(tables_.rotation[static_cast<std::size_t>(i)].data());
+    for (int i = 0; i < 3; ++i)
+      views.translation(i) = of(tables_.translation[static_cast<std::size_t>(i)].data());
+    views.image.width = of(tables_.width.data());
+    views.image.height = of(tables_.height.data());
+    for (std::size_t i = 0; i < kLanes; ++i)
+      views.image.begin[i] = tables_.image_begin[static_cast<std::size_t>(pairs.view[i])];
+    return views;
+  }
+
+  // The term of geometric_check.h, times its weight.
+  T inconsistency(const LanePixel& pixel, const LanePairs& pairs, const Views& views,
+                  const Vector& point, const refractive::Projection<T>& image) const {
+    const T limit(tables_.geometric_limit);
+    const refractive::AxialRay<T> ray = views.camera.ray(image.pixel);
+    const Vector along = point - ray.origin;
+    const T expected = sqrt(along.dot(along));
+    const T found = lane_depth_near(tables_.depths.data(), views.image, image, expected);
+    const Vector back = views.rotation.transpose() * (ray.at(found) - views.translation);
+    const refractive::Projection<T> backward = reference_.project(back);
+    const T du = backward.pixel.x() - T(pixel.at[0]);
+    const T dv = backward.pixel.y() - T(pixel.at[1]);
+    const T error = sqrt(du * du + dv * dv);
+    const T term = min(sqrt(error * (error + T(2))), limit);
+    const T has = Lookup<Abi>{pairs.view}(tables_.has_depth.data());
+    return T(tables_.geometric_weight) * has *
+           select(found > T(0) && backward.visible, term, limit);
+  }
+
+  const SceneTables& tables_;
+  Camera<T> reference_;
+};
+
+template <class Abi>
+std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
+  if (tables.kind == CameraKind::pinhole)
+    return std::make_unique<LaneScorer<refractive::PinholeCamera, Abi>>(tables);
+  return std::make_unique<LaneScorer<refractive::FlatPortCamera, Abi>>(tables);
+}
+
+}  // namespace axial::depth::lanes

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/lanes/scorer.h"
+
+namespace axial::depth::lanes {
+
+std::vector<InstructionSet> available_instruction_sets() {
+  std::vector<InstructionSet> sets{InstructionSet::scalar, InstructionSet::baseline};
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2")) sets.push_back(InstructionSet::avx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    sets.push_back(InstructionSet::avx512);
+#endif
+  return sets;
+}
+
+InstructionSet fastest_instruction_set() {
+  return available_instruction_sets().back();
+}
+
+std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet set) {
+  switch (set) {
+    case InstructionSet::scalar:
+      return detail::make_scalar_scorer(tables);
+    case InstructionSet::baseline:
+      return detail::make_baseline_scorer(tables);
+    case InstructionSet::avx2:
+      return detail::make_avx2_scorer(tables);
+    case InstructionSet::avx512:
+      return detail::make_avx512_scorer(tables);
+  }
+  return nullptr;
+}
+
+}  // namespace axial::depth::lanes

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scores pairs of a plane hypothesis and a source view, sixteen at a time, one to a SIMD lane: the
+// exact projection and its Jacobian, the affine warp, ZNCC and geometric consistency all run in
+// lanes. Every lane computes what plain floats would, in the same order, without fused operations:
+// the same bytes on every instruction set.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "depth/lanes/request.h"
+#include "depth/smoothness.h"
+
+namespace axial::depth::lanes {
+
+enum class CameraKind { pinhole, flat_port };
+
+inline constexpr std::size_t kMaxCameraFields = 32;
+
+// The numbers of a camera as its each_field() visits them.
+struct CameraFields {
+  std::array<float, kMaxCameraFields> value{};
+  int steps = 0;  // the one int among them
+};
+
+// Everything about the reference camera and up to kLanes source views. Tables have one entry per
+// view; those beyond the last view repeat it.
+struct SceneTables {
+  CameraKind kind = CameraKind::pinhole;
+  CameraFields reference;
+  std::array<LaneFloats, kMaxCameraFields> camera{};
+  int steps = 0;  // largest of the source cameras'
+  // x_source = rotation * x_reference + translation; row-major.
+  std::array<LaneFloats, 9> rotation{};
+  std::array<LaneFloats, 3> translation{};
+  // Quad words (zncc.h) of all source images in one run, and where each begins.
+  std::vector<std::uint32_t> words;
+  std::array<std::int32_t, kLanes> image_begin{};
+  LaneFloats width{};
+  LaneFloats height{};
+  // The source views' depth maps, as `words`; empty: photometric only. has_depth is 0 or 1.
+  std::vector<float> depths;
+  LaneFloats has_depth{};
+  float geometric_weight = 0;
+  float geometric_limit = 0;
+};
+
+// Precondition of all: indices of views are below the number of views in the tables.
+class Scorer {
+ public:
+  virtual ~Scorer() = default;
+  // Fills `scores` for every pair.
+  virtual void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
+                     LaneScores& scores) const = 0;
+  // The smoothness factor (smoothness.h) of the first kLanes planes.
+  virtual void smoothness(const LanePixel& pixel, const LanePlanes& planes,
+                          std::span<const SurfacePoint> neighbours,
+                          const SmoothnessOptions& options, LaneFloats& factors) const = 0;
+};
+
+enum class InstructionSet { scalar, baseline, avx2, avx512 };
+
+// What this processor can run; `scalar` is the reference that the others are tested against.
+std::vector<InstructionSet> available_instruction_sets();
+InstructionSet fastest_instruction_set();
+
+// `tables` must outlive the scorer. Precondition: `set` is available.
+std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet set);
+
+namespace detail {  // one translation unit each
+std::unique_ptr<Scorer> make_scalar_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_baseline_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_avx2_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_avx512_scorer(const SceneTables& tables);
+}  // namespace detail
+
+}  // namespace axial::depth::lanes

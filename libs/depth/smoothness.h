@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The smoothness factor of a hypothesis: eq. (6) with d_v = n . (X_n - X), for floats and for
+// packs.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "refractive/axial_ray.h"
+
+namespace axial::depth {
+
+struct SmoothnessOptions {
+  float depth_sigma = 0.02f;  // relative distance of the neighbour to the plane
+  float depth_bonus = 0.07f;
+  float normal_sigma = 13 * 3.14159265f / 180;  // [rad]
+  float normal_bonus = 0.0672f;
+};
+
+// The surface at a neighbouring pixel: a point and its unit normal, reference camera's frame.
+struct SurfacePoint {
+  std::array<float, 3> point, normal;
+};
+
+// exp(-x) for x >= 0 as (1 - x/16)^16, zero beyond 16: at most 0.017 off.
+template <class T>
+T fading(const T& x) {
+  using refractive::select;
+  T y = T(1) - x * T(0.0625f);
+  y = select(y > T(0), y, T(0));
+  y *= y;
+  y *= y;
+  y *= y;
+  return y * y;
+}
+
+// Multiplicative bonus, below 1, for agreeing with the neighbours.
+template <class T>
+T smoothness(const refractive::Vector3<T>& point, const refractive::Vector3<T>& normal,
+             std::span<const SurfacePoint> neighbours, const SmoothnessOptions& options) {
+  using refractive::select;
+  const T depth_scale(0.5f / (options.depth_sigma * options.depth_sigma));
+  const T angle_scale(0.5f / (options.normal_sigma * options.normal_sigma));
+  const T distance_scale = depth_scale / point.squaredNorm();
+  T factor(1);
+  for (const SurfacePoint& other : neighbours) {
+    const auto& p = other.point;
+    const auto& n = other.normal;
+    const T distance = normal.x() * (T(p[0]) - point.x()) + normal.y() * (T(p[1]) - point.y()) +
+                       normal.z() * (T(p[2]) - point.z());
+    const T cosine = normal.x() * T(n[0]) + normal.y() * T(n[1]) + normal.z() * T(n[2]);
+    const T versine = T(1) - select(cosine < T(1), cosine, T(1));
+    const T angle2 = versine * (T(2) + versine * T(1.0f / 3.0f));  // angle^2 up to the 6th order
+    factor *= T(1) - T(options.depth_bonus) * fading<T>(distance_scale * distance * distance);
+    factor *= T(1) - T(options.normal_bonus) * fading<T>(angle_scale * angle2);
+  }
+  return factor;
+}
+
+}  // namespace axial::depth

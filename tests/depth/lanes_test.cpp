@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scoring in SIMD lanes: every instruction set gives the bytes of the scalar one, and all of them
+// what the matcher that takes one pair at a time gives.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "depth/lane_matcher.h"
+#include "depth/matcher.h"
+#include "refractive/flat_port_camera.h"
+
+namespace axial::depth {
+namespace {
+
+using refractive::FlatPortCamera;
+using refractive::PinholeCamera;
+using refractive::PinholeLens;
+
+constexpr int kWidth = 96, kHeight = 72;
+constexpr std::size_t kViews = 21;  // more than one group
+
+template <class Camera>
+Camera make_camera_of(float focal, int index);
+
+template <>
+PinholeCamera<float> make_camera_of(float focal, int) {
+  return PinholeCamera<float>(PinholeLens<float>{focal, focal, 47.5f, 35.5f});
+}
+
+// Ports differ from view to view, and so do their numbers of projection steps.
+template <>
+FlatPortCamera<float> make_camera_of(float focal, int index) {
+  refractive::FlatPort<float> port;
+  port.normal = Eigen::Vector3f(0.02f * static_cast<float>(index % 3), 0.03f, 1).normalized();
+  port.distance = 0.01f + 0.002f * static_cast<float>(index);
+  port.thickness = 0.015f;
+  port.n_glass = 1.5f;
+  port.n_water = 1.333f;
+  if (index == 4) focal *= 0.3f;
+  return {PinholeLens<float>{focal, focal, 47.5f, 35.5f}, port, kWidth, kHeight};
+}
+
+cv::Mat1b smooth_image(unsigned seed) {
+  std::mt19937 random(seed);
+  cv::Mat1b coarse(kHeight / 4, kWidth / 4), image;
+  for (std::uint8_t& value : coarse) value = static_cast<std::uint8_t>(random() % 256);
+  cv::resize(coarse, image, {kWidth, kHeight}, 0, 0, cv::INTER_CUBIC);
+  return image;
+}
+
+template <class Camera>
+struct Setup {
+  cv::Mat1b image = smooth_image(1);
+  std::vector<QuadImage> quads;
+  std::vector<cv::Mat1f> depths;
+  std::vector<SourceView<Camera>> sources;
+  PatchMatchOptions options;
+  Camera reference = make_camera_of<Camera>(90, 1);
+
+  explicit Setup(bool geometric) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (unsigned i = 0; i < kViews; ++i) {
+      quads.emplace_back(smooth_image(1 + i % 3));
+      cv::Mat1f depth(kHeight, kWidth);
+      for (float& value : depth) value = 2.0f + 0.03f * unit(random);
+      depths.push_back(depth);
+    }
+    for (int i = 0; i < static_cast<int>(kViews); ++i) {
+      RelativePose pose;
+      pose.rotation =
+          Eigen::AngleAxisf(0.05f * unit(random), Eigen::Vector3f::UnitY()).toRotationMatrix();
+      pose.translation = 0.2f * Eigen::Vector3f(unit(random), unit(random), unit(random));
+      const auto k = static_cast<std::size_t>(i);
+      sources.push_back({make_camera_of<Camera>(85.0f + static_cast<float>(i), i), pose, &quads[k],
+                         geometric && i % 4 != 0 ? &depths[k] : nullptr});
+    }
+  }
+};
+
+struct Question {
+  int x, y;
+  float prior;
+  std::vector<PlaneHypothesis> planes;
+  std::vector<std::uint8_t> views;
+};
+
+// Pixels, planes and views at random; some planes leave the images or lie behind cameras.
+std::vector<Question> questions() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  std::vector<Question> all;
+  for (int i = 0; i < 150; ++i) {
+    Question question{4 + static_cast<int>(random() % (kWidth - 8)),
+                      4 + static_cast<int>(random() % (kHeight - 8)),
+                      i % 3 ? 0.0f : 2.1f,
+                      {},
+                      {}};
+    for (unsigned p = 0; p <= random() % 8; ++p)
+      question.planes.push_back(
+          {i % 10 ? 2.0f + 0.2f * unit(random) : 0.05f + std::abs(unit(random)),
+           Eigen::Vector3f(0.5f * unit(random), 0.5f * unit(random), -1).normalized()});
+    for (unsigned v = 0; v < kViews; ++v)
+      if (random() % 3) question.views.push_back(static_cast<std::uint8_t>(v));
+    all.push_back(question);
+  }
+  return all;
+}
+
+template <class Matcher>
+std::vector<ViewScore> answers(const Matcher& matcher) {
+  std::vector<ViewScore> all;
+  for (const Question& question : questions()) {
+    ReferencePixel pixel = matcher.pixels().prepare(question.x, question.y);
+    matcher.pixels().set_prior(pixel, question.prior);
+    std::vector<ViewScore> scores(question.planes.size() * question.views.size());
+    matcher.score(pixel, question.planes, question.views, scores);
+    all.insert(all.end(), scores.begin(), scores.end());
+  }
+  return all;
+}
+
+template <class Matcher>
+std::vector<float> smoothness_answers(const Matcher& matcher) {
+  std::vector<float> all;
+  for (const Question& question : questions()) {
+    const ReferencePixel pixel = matcher.pixels().prepare(question.x, question.y);
+    const auto surface = [&](std::size_t k) {
+      const PlaneHypothesis& plane = question.planes[k % question.planes.size()];
+      const Eigen::Vector3f p = pixel.ray.at(plane.depth * 1.005f);
+      return SurfacePoint{{p.x(), p.y(), p.z()},
+                          {plane.normal.x(), plane.normal.y(), plane.normal.z()}};
+    };
+    const std::array<SurfacePoint, 3> around{surface(0), surface(1), surface(2)};
+    std::vector<float> factors(question.planes.size());
+    matcher.smoothness(pixel, question.planes, around, factors);
+    all.insert(all.end(), factors.begin(), factors.end());
+  }
+  return all;
+}
+
+template <class Camera>
+class Lanes : public testing::Test {};
+using Cameras = testing::Types<PinholeCamera<float>, FlatPortCamera<float>>;
+TYPED_TEST_SUITE(Lanes, Cameras);
+
+TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {
+  for (const bool geometric : {false, true}) {
+    const Setup<TypeParam> setup(geometric);
+    const auto matcher = [&](lanes::InstructionSet set) {
+      return LaneMatcher<TypeParam>(setup.image, setup.reference, setup.sources, setup.options,
+                                    set);
+    };
+    const auto expected = answers(matcher(lanes::InstructionSet::scalar));
+    const auto smooth = smoothness_answers(matcher(lanes::InstructionSet::scalar));
+    for (const lanes::InstructionSet set : lanes::available_instruction_sets()) {
+      const auto found = answers(matcher(set));
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(found[i].cost),
+                  std::bit_cast<std::uint32_t>(expected[i].cost))
+            << static_cast<int>(set) << ": " << found[i].cost << " " << expected[i].cost;
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(found[i].motion),
+                  std::bit_cast<std::uint32_t>(expected[i].motion));
+      }
+      EXPECT_EQ(smoothness_answers(matcher(set)), smooth);
+    }
+  }
+}
+
+TYPED_TEST(Lanes, AgreeWithOnePairAtATime) {
+  for (const bool geometric : {false, true}) {
+    const Setup<TypeParam> setup(geometric);
+    const Matcher<TypeParam, AffineWarp> single(setup.image, setup.reference, setup.sources,
+                                                setup.options);
+    const LaneMatcher<TypeParam> lanes(setup.image, setup.reference, setup.sources, setup.options);
+    const auto expected = answers(single);
+    const auto found = answers(lanes);
+    ASSERT_EQ(found.size(), expected.size());
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      // Sums of 25 products in another order differ by some 1e-6 of the variance; a flat patch has
+      // little of it. The number of projection steps is that of the view that needs most.
+      ASSERT_NEAR(found[i].cost, expected[i].cost, 1e-3);
+      ASSERT_NEAR(found[i].motion, expected[i].motion, 1e-4f * expected[i].motion + 1e-5f);
+      seen += expected[i].cost < kOutsideCost - 0.01f ? 1 : 0;
+    }
+    EXPECT_GT(seen, found.size() / 4);       // most of what is asked is inside
+    EXPECT_LT(seen, found.size() * 9 / 10);  // and some is not
+    const auto smooth = smoothness_answers(single), smooth_lanes = smoothness_answers(lanes);
+    EXPECT_LT(*std::min_element(smooth.begin(), smooth.end()), 0.9f);
+    for (std::size_t i = 0; i < smooth.size(); ++i) {
+      ASSERT_NEAR(smooth[i], smooth_lanes[i], 1e-5f);
+      ASSERT_LE(smooth[i], 1.0f);
+    }
+  }
+}
+
+TEST(Fading, IsCloseToTheExponential) {
+  for (float x = 0; x < 40; x += 0.01f) {
+    EXPECT_NEAR(fading<float>(x), std::exp(-x), 0.018f);
+    EXPECT_LE(fading<float>(x + 0.01f), fading<float>(x));
+  }
+  EXPECT_EQ(fading<float>(0), 1);
+  EXPECT_EQ(fading<float>(16), 0);
+}
+
+}  // namespace
+}  // namespace axial::depth

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Code compiled for one instruction set must not share a name with other code: the linker keeps one
+copy, and a processor without that set would meet its instructions. Arguments: nm, the object files
+of the library; those in lanes/scorer_avx*.cpp are compared with all others."""
+
+import subprocess
+import sys
+
+
+def shared_names(nm, path):
+    """Names that the linker merges with those of other files: weak and unique ones."""
+    lines = subprocess.run([nm, "--defined-only", path], check=True, capture_output=True,
+                           text=True).stdout.splitlines()
+    fields = [line.split() for line in lines]
+    return {f[-1] for f in fields if len(f) == 3 and f[1] in "WwVvu"}
+
+
+def has_code(name):
+    """Type information, tables and references to handlers hold no instructions."""
+    return not name.startswith(("_ZTI", "_ZTS", "_ZTV", "DW.ref."))
+
+
+def main():
+    nm, objects = sys.argv[1], sys.argv[2:]
+    special = [path for path in objects if "scorer_avx" in path]
+    assert len(special) == 2, f"expected two files for instruction sets, got {special}"
+    failed = False
+    for path in special:
+        own = {name for name in shared_names(nm, path) if has_code(name)}
+        assert own, f"{path}: no names at all"
+        for other in objects:
+            if other == path:
+                continue
+            for name in sorted(own & shared_names(nm, other)):
+                print(f"{path} and {other} share {name}")
+                failed = True
+    sys.exit(1 if failed else 0)
+
+
+main()
