@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The slow acceptance points: run by tests/acceptance.sh, which says how."""
 
+import hashlib
 import json
 import os
 import pathlib
@@ -34,17 +35,16 @@ class Skipped(Exception):
 # What is measured.
 
 def source_state():
-    """Names this source: the commit, and a hash of what differs from it."""
+    """The commit, for people, and a hash of all files but texts, which names what was measured."""
     git = lambda *arguments: subprocess.run(["git", *arguments], cwd=ROOT, check=True,
                                             capture_output=True, text=True).stdout
-    changes = git("diff", "HEAD", "--", ".", ":!*.md")
-    for name in git("ls-files", "--others", "--exclude-standard").splitlines():
-        changes += name + (ROOT / name).read_text(errors="replace")
-    commit = git("rev-parse", "--short=12", "HEAD").strip()
-    if not changes:
-        return commit
-    hashed = subprocess.run(["sha1sum"], input=changes, capture_output=True, text=True).stdout
-    return f"{commit}-{hashed[:8]}"
+    names = git("ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate")
+    state = hashlib.sha1()
+    for name in sorted(names.splitlines()):
+        if name.endswith(".md") or not (ROOT / name).is_file():
+            continue
+        state.update(name.encode() + b"\0" + (ROOT / name).read_bytes())
+    return git("rev-parse", "--short=12", "HEAD").strip(), state.hexdigest()[:12]
 
 
 def measured(log, *command):
@@ -379,14 +379,14 @@ def main():
         for name, (_, wanted) in POINTS.items():
             print(f"{name:24} {wanted}")
         return
-    state = source_state()
+    commit, state = source_state()
     rows = ["| point | wanted | seen | verdict | minutes |", "|---|---|---|---|---|"]
     failed = False
     for name in names:
         result = run_point(name, state)
         failed |= result["verdict"] == "FAIL"
         rows.append("| {point} | {wanted} | {seen} | {verdict} | {minutes} |".format(**result))
-    table = f"Source: {state}\n\n" + "\n".join(rows) + "\n"
+    table = f"Commit: {commit}, source: {state}\n\n" + "\n".join(rows) + "\n"
     BASE.mkdir(parents=True, exist_ok=True)
     (BASE / "table.md").write_text(table)
     print("\n" + table)
