@@ -11,6 +11,14 @@
 #include "refractive/affine_warp.h"
 #include "refractive/flat_port_camera.h"
 
+// Sixteen lanes fit registers only where no call lies between. Under the sanitizers that would be
+// one enormous function, which takes minutes to compile.
+#ifdef __SANITIZE_ADDRESS__
+#define AXIAL_FLATTEN
+#else
+#define AXIAL_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace axial::depth::lanes {
 
 template <template <class> class Camera, class Abi>
@@ -43,9 +51,8 @@ class LaneScorer final : public Scorer {
     });
   }
 
-  // Flattened: sixteen lanes fit registers only where no call lies between.
-  [[gnu::flatten]] void score(const LanePixel& pixel, const LanePlanes& lane_planes,
-                              const LanePairs& pairs, LaneScores& scores) const override {
+  AXIAL_FLATTEN void score(const LanePixel& pixel, const LanePlanes& lane_planes,
+                           const LanePairs& pairs, LaneScores& scores) const override {
     const Planes planes = deal_planes(lane_planes, pairs);
     const Views views = deal_views(pairs);
     const refractive::AxialRay<T> ray{vector(pixel.origin), vector(pixel.direction)};
@@ -69,10 +76,10 @@ class LaneScorer final : public Scorer {
     select(image.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data());
   }
 
-  [[gnu::flatten]] void smoothness(const LanePixel& pixel, const LanePlanes& lane_planes,
-                                   std::span<const SurfacePoint> neighbours,
-                                   const SmoothnessOptions& options,
-                                   LaneFloats& factors) const override {
+  AXIAL_FLATTEN void smoothness(const LanePixel& pixel, const LanePlanes& lane_planes,
+                                std::span<const SurfacePoint> neighbours,
+                                const SmoothnessOptions& options,
+                                LaneFloats& factors) const override {
     const Vector normal(T::load(lane_planes.nx.data()), T::load(lane_planes.ny.data()),
                         T::load(lane_planes.nz.data()));
     const Vector point =

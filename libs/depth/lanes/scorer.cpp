@@ -5,7 +5,7 @@ namespace axial::depth::lanes {
 
 std::vector<InstructionSet> available_instruction_sets() {
   std::vector<InstructionSet> sets{InstructionSet::scalar, InstructionSet::baseline};
-#ifdef __x86_64__
+#ifdef AXIAL_WIDE_LANES
   if (__builtin_cpu_supports("avx2")) sets.push_back(InstructionSet::avx2);
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
@@ -24,12 +24,15 @@ std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet se
       return detail::make_scalar_scorer(tables);
     case InstructionSet::baseline:
       return detail::make_baseline_scorer(tables);
+#ifdef AXIAL_WIDE_LANES
     case InstructionSet::avx2:
       return detail::make_avx2_scorer(tables);
     case InstructionSet::avx512:
       return detail::make_avx512_scorer(tables);
+#endif
+    default:
+      return nullptr;
   }
-  return nullptr;
 }
 
 }  // namespace axial::depth::lanes

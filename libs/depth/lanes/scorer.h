@@ -26,7 +26,7 @@ struct CameraFields {
 };
 
 // Everything about the reference camera and up to kLanes source views. Tables have one entry per
-// view; those beyond the last view repeat it.
+// view; those beyond the last view are never asked for.
 struct SceneTables {
   CameraKind kind = CameraKind::pinhole;
   CameraFields reference;
