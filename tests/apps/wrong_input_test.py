@@ -218,6 +218,12 @@ class Densify(ProgramTest):
     def test_full_disk(self):
         self.refuses_scene("dmap", file_size_limit=5000)
 
+    def test_numbers_out_of_range(self):
+        for border in ("nan", "inf", "-inf"):
+            self.refuses_scene("--roi-border", "--roi-border", border)
+        self.refuses_scene("--number-views-fuse -1", "--number-views-fuse", "-1")
+        self.refuses_scene("no such housing file", "--refractive", "1")
+
 
 class OtherPrograms(ProgramTest):
     def test_simulator(self):
