@@ -47,6 +47,15 @@ TEST(EstimateRegion, BoxesWhatTheCamerasSurround) {
   EXPECT_FALSE(estimate_region(scene, RegionMode::off));
 }
 
+TEST(EstimateRegion, KeepsAVolumeAroundPointsInOnePlane) {
+  Scene scene = ring(3);
+  for (const float s : {-0.5f, 0.5f}) add_point(scene, {s, 2 * s, 0});
+  const auto region = estimate_region(scene, RegionMode::on);
+  ASSERT_TRUE(region);
+  // 1.1 times half the extents 1, 2 and, for none at all, a tenth of the largest.
+  EXPECT_LT((region->half_extent - Eigen::Vector3d(0.55, 1.1, 0.11)).norm(), 1e-6);
+}
+
 TEST(EstimateRegion, LeavesASurveyUnbounded) {
   Scene scene = test::scene_of(test::dry_camera(), test::circle_of_poses(6));
   add_point(scene, {0, 0, 1});
