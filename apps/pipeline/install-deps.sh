@@ -10,7 +10,7 @@ packages=(
   libeigen3-dev libopencv-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libboost-dev libboost-program-options-dev
   # to test
-  libgtest-dev libgmock-dev librapidcheck-dev libceres-dev
+  libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
   # to run the pipeline
   colmap python3
 )

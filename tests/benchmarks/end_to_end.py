@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whole programs: what DensifyPointCloud costs and gives, beside COLMAP's feature extraction on the
+same images. Runs alternate, so that the machine's moods strike all alike; medians are printed.
+
+    end_to_end.py [--runs N] [--json FILE] SCENE [OPTION OF DensifyPointCloud...]
+
+SCENE: fountain, scene-v6       against SIFT, on real photographs
+       closeup, reef            in air and refractive, against SIFT and the truth
+       threads                  matching stage of fountain, one thread and two, in pairs
+       memory                   peak memory against the number of images
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import shutil
+import statistics
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import runs  # noqa: E402
+
+WORK = runs.ROOT / "build" / "benchmarks"
+FOUNTAIN = ("--resolution-level", "2")
+SCENE_V6 = ("--resolution-level", "0")
+
+
+def alternated(programs, times):
+    """Every program `times` times, in turn: {name: [result, ...]}."""
+    results = {name: [] for name in programs}
+    for number in range(times):
+        for name, program in programs.items():
+            results[name].append(program())
+            print(f"  {number + 1}/{times} {name}: {results[name][-1]['cpu']:.2f} CPU-s",
+                  file=sys.stderr, flush=True)
+    return results
+
+
+def medians(results):
+    return {key: statistics.median(result[key] for result in results) for key in results[0]}
+
+
+# Programs.
+
+def sift(work, images, *options):
+    """COLMAP's feature extraction on the CPU, into a new database."""
+    database = work / "sift" / "database.db"
+
+    def run():
+        database.parent.mkdir(parents=True, exist_ok=True)
+        database.unlink(missing_ok=True)
+        return runs.measured(work / "sift.log", "colmap", "feature_extractor", "--database_path",
+                             database, "--image_path", images, "--ImageReader.single_camera", 1,
+                             *options, "--SiftExtraction.use_gpu", 0)
+    return run
+
+
+PINHOLE = ("--ImageReader.camera_model", "PINHOLE")
+
+
+def fountain_scene(work):
+    folder = work / "fountain"
+    runs.import_scene(folder, runs.shared("fountain-P11", "sparse"),
+                      runs.shared("fountain-P11", "images"))
+    return folder
+
+
+def fountain(work, options=()):
+    folder = fountain_scene(work)
+    return {"DensifyPointCloud": lambda: runs.densify(folder, *FOUNTAIN, *options),
+            "SIFT": sift(work, runs.shared("fountain-P11", "images"), *PINHOLE)}
+
+
+def scene_v6(work, options=()):
+    source, folder = runs.shared("openmvs-files"), work / "scene-v6"
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source / "scene_v6.mvs", folder / "scene.mvs")
+    if not (folder / "images").exists():
+        (folder / "images").symlink_to(source / "images")
+    return {"DensifyPointCloud": lambda: runs.densify(folder, *SCENE_V6, *options),
+            "SIFT": sift(work, source / "images")}
+
+
+def with_truth(work, name, options=()):
+    """In air and refractive, on true poses; quality is the same in every run, and measured once."""
+    truth, programs = runs.synthetic(name, work), {}
+    for medium in ("air", "water"):
+        folder = work / f"{name}-{medium}"
+        runs.import_scene(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium))
+        programs[medium] = evaluated_once(folder, truth, medium, options)
+    return programs | {"SIFT": sift(work, truth.data / "air", *PINHOLE)}
+
+
+def evaluated_once(folder, truth, medium, options):
+    quality = {}
+
+    def run():
+        refractive = ["--refractive"] if medium == "water" else []
+        cost = runs.densify(folder, *refractive, *options)
+        quality.update(quality or runs.evaluate(folder, truth, medium))
+        return cost | {"f": quality["f"], "mean": quality["mean"]}
+    return run
+
+
+# Reports.
+
+HEADINGS = ("program", "CPU-s", "of SIFT", "Mpx/CPU-s", "peak MiB", "points", "F", "mean mm")
+
+
+def row(name, result, sift_cpu):
+    def cell(key, form, scale=1.0):
+        return format(result[key] * scale, form) if key in result else ""
+    speed = f"{result['megapixels'] / result['cpu']:.4f}" if "megapixels" in result else ""
+    return (name, cell("cpu", ".2f"), f"{result['cpu'] / sift_cpu:.3f}", speed,
+            cell("memory", ".0f", 2**-20), cell("points", ",.0f"), cell("f", ".4f"),
+            cell("mean", ".4f", 1e3))
+
+
+def markdown(headings, rows):
+    line = lambda cells: "| " + " | ".join(str(cell) for cell in cells) + " |"
+    return "\n".join([line(headings), "|" + "---|" * len(headings), *map(line, rows)])
+
+
+def compared(programs, times):
+    """Medians of all programs, as they go into the table."""
+    return {name: medians(results) for name, results in alternated(programs, times).items()}
+
+
+def print_table(result):
+    print(markdown(HEADINGS, [row(name, r, result["SIFT"]["cpu"]) for name, r in result.items()]))
+
+
+# Threads.
+
+MATCHING = re.compile(r"(?:Estimated depth maps|Geometric-consistency pass \d+) "
+                      r"\d+/\d+ \(100%, ([\d.]+)s\)")
+
+
+def matching_seconds(log):
+    """Wall time of the matching stage, as the program's own log gives it."""
+    times = [float(seconds) for seconds in MATCHING.findall(log.read_text())]
+    if not times:
+        raise RuntimeError(f"{log}: does not say how long matching took")
+    return sum(times)
+
+
+def threads(work, times, options=()):
+    """One thread and two in alternated pairs, depth maps only; the median of the pairs' ratios."""
+    folder = fountain_scene(work)
+
+    def on(count):
+        def run():
+            cost = runs.densify(folder, *FOUNTAIN, "--fusion-mode", 1, "--postprocess-dmaps", 0,
+                                "--max-threads", count, *options)
+            return cost | {"matching": matching_seconds(folder / "densify.log")}
+        return run
+    results = alternated({"1": on(1), "2": on(2)}, times)
+    pairs = list(zip(results["1"], results["2"]))
+    return {"speedup": statistics.median(a["matching"] / b["matching"] for a, b in pairs),
+            "cpu": statistics.median(b["cpu"] / a["cpu"] for a, b in pairs),
+            "seconds": [(a["matching"], b["matching"]) for a, b in pairs]}
+
+
+# Memory.
+
+def memory(work, counts=(6, 12, 24, 48), options=()):
+    """Peak memory of runs on more and more images of the same size, 640 x 480."""
+    rows = []
+    for count in counts:
+        truth = runs.simulated(f"reef-{count}-views", work, "--preset", "reef", "--views", count,
+                               "--width", 640, "--height", 480, "--medium", "air", "--samples", 1)
+        folder = work / f"memory-{count}"
+        runs.import_scene(folder, truth.data / "sparse", truth.data / "air")
+        cost = runs.densify(folder, *options)
+        rows.append({"images": count} | cost)
+        print(f"  {count} images: {cost['memory'] / 2**20:.0f} MiB", file=sys.stderr, flush=True)
+    return rows
+
+
+def run_scene(scene, times, options):
+    work = WORK / "end-to-end"
+    if scene == "threads":
+        result = threads(work, times, options)
+        print(f"two threads: {result['speedup']:.3f} times faster (median of {times} pairs), "
+              f"{result['cpu']:.3f} times the CPU time; pairs [s]: {result['seconds']}")
+        return result
+    if scene == "memory":
+        result = memory(work, options=options)
+        print(markdown(("images", "Mpx", "peak MiB", "points"),
+                       [(r["images"], f"{r['megapixels']:.2f}", f"{r['memory'] / 2**20:.0f}",
+                         f"{r['points']:,}") for r in result]))
+        return result
+    if scene in ("closeup", "reef"):
+        programs = with_truth(work, scene, options)
+    else:
+        programs = {"fountain": fountain, "scene-v6": scene_v6}[scene](work, options)
+    result = compared(programs, times)
+    print_table(result)
+    return result
+
+
+def main():
+    scenes = ("fountain", "scene-v6", "closeup", "reef", "threads", "memory")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", choices=scenes)
+    parser.add_argument("--runs", type=int, help="of each program (5; threads: 7 pairs)")
+    parser.add_argument("--json", type=pathlib.Path, help="all medians")
+    arguments, options = parser.parse_known_args()
+    times = arguments.runs or (7 if arguments.scene == "threads" else 5)
+    try:
+        result = run_scene(arguments.scene, times, options)
+    except (runs.Skipped, RuntimeError) as error:
+        sys.exit(str(error))
+    if arguments.json:
+        arguments.json.write_text(json.dumps(result, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benchmarks/machine_limits.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+
+#include "depth/lanes/scorer.h"
+
+namespace axial::benchmarks {
+
+double clock_ghz() {
+  constexpr int kRounds = 20000, kAdditions = 10;
+  double best = 0;
+  for (int run = 0; run < 25; ++run) {
+    std::uint64_t sum = 1;
+    const std::uint64_t term = 3;
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < kRounds; ++i)
+      // Register to register: additions of constants can vanish before they are executed.
+      asm volatile(
+          "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
+          "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
+          : "+r"(sum)
+          : "r"(term));
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - begin;
+    best = std::max(best, kRounds * kAdditions / spent.count());
+  }
+  return best;
+}
+
+MachineLimits machine_limits(depth::lanes::InstructionSet set) {
+  using depth::lanes::InstructionSet;
+  switch (set) {
+    case InstructionSet::scalar:
+      return detail::scalar_limits();
+    case InstructionSet::baseline:
+      return detail::baseline_limits();
+    case InstructionSet::avx2:
+      return detail::avx2_limits();
+    case InstructionSet::avx512:
+      return detail::avx512_limits();
+  }
+  return {};
+}
+
+}  // namespace axial::benchmarks

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What this machine can do at most, measured: the roofs that the scorer is held against.
+#pragma once
+
+namespace axial::depth::lanes {
+enum class InstructionSet;  // lanes/scorer.h
+}
+
+namespace axial::benchmarks {
+
+// Cycles per nanosecond at this moment, from a chain of additions, one cycle each.
+double clock_ghz();
+
+// Of one core, with one instruction set, data in the first-level cache.
+struct MachineLimits {
+  double gathered_words_per_ns = 0;    // 32-bit words loaded from anywhere
+  double float_operations_per_ns = 0;  // multiplications and additions, not fused
+};
+
+MachineLimits machine_limits(depth::lanes::InstructionSet set);
+
+namespace detail {  // one translation unit for each set of registers
+MachineLimits scalar_limits();
+MachineLimits baseline_limits();
+MachineLimits avx2_limits();
+MachineLimits avx512_limits();
+}  // namespace detail
+
+}  // namespace axial::benchmarks

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sweeps and whole depth maps, pinhole and flat port in turn within every iteration, so that the
+// machine's moods strike both: the ratio is what --refractive costs. One thread.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
+#include "benchmarks/benchmarks.h"
+#include "benchmarks/cpu_time.h"
+#include "benchmarks/survey.h"
+#include "depth/sweep.h"
+
+namespace axial::benchmarks {
+namespace {
+
+struct Cost {
+  double seconds = 0;
+  double scores = 0;  // of one hypothesis in one view
+
+  Cost& operator+=(const Cost& b) {
+    seconds += b.seconds;
+    scores += b.scores;
+    return *this;
+  }
+};
+
+// A matcher that counts what it is asked, for Sweep.
+template <class Matcher>
+class Counting {
+ public:
+  explicit Counting(const Matcher& matcher) : matcher_(matcher) {}
+
+  std::size_t views() const { return matcher_.views(); }
+  const auto& pixels() const { return matcher_.pixels(); }
+  double scores() const { return static_cast<double>(scores_); }
+
+  void score(const depth::ReferencePixel& pixel, std::span<const depth::PlaneHypothesis> planes,
+             std::span<const std::uint8_t> views, std::span<depth::ViewScore> scores) const {
+    scores_ += planes.size() * views.size();
+    matcher_.score(pixel, planes, views, scores);
+  }
+  void smoothness(const depth::ReferencePixel& pixel,
+                  std::span<const depth::PlaneHypothesis> planes,
+                  std::span<const depth::SurfacePoint> neighbours, std::span<float> factors) const {
+    matcher_.smoothness(pixel, planes, neighbours, factors);
+  }
+
+ private:
+  const Matcher& matcher_;
+  mutable std::size_t scores_ = 0;  // one thread
+};
+
+// What the coarser level leaves: planes off by about one of its pixels.
+depth::PlaneMap coarse_start(const Survey& scene) {
+  std::mt19937 random(5);
+  depth::PlaneMap map(scene.truth.width, scene.truth.height);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      depth::PlanePixel& pixel = map.at(x, y);
+      pixel.plane = near_truth(scene, x, y, 0.01f, 0.3f, random);
+      pixel.point =
+          scene.truth.at(x, y).point * (pixel.plane.depth / scene.truth.at(x, y).plane.depth);
+      pixel.cost = 0.5f;
+    }
+  return map;
+}
+
+depth::SweepInput sweep_input(int number) {
+  depth::SweepInput input;
+  input.sweep = static_cast<std::uint32_t>(number);
+  input.min_depth = 0.5f;
+  input.max_depth = 4.0f;
+  input.first = number == 0;
+  return input;
+}
+
+// One camera's sweeps at full resolution. Those before `first` run unmeasured.
+template <class Camera>
+class SweepRun {
+ public:
+  SweepRun(bool behind_port, bool geometric, int first)
+      : bench_(survey(behind_port), geometric, depth::lanes::fastest_instruction_set()),
+        matcher_(bench_.matcher()),
+        start_(coarse_start(survey(behind_port))) {
+    for (int i = 0; i < first; ++i) depth::Sweep(matcher_, start_, options_, sweep_input(i)).run();
+  }
+
+  void restart() { map_ = start_; }
+
+  Cost sweep(int number) {
+    const Cost before{process_cpu_seconds(), matcher_.scores()};
+    depth::Sweep(matcher_, map_, options_, sweep_input(number)).run();
+    benchmark::DoNotOptimize(map_.pixels.data());
+    return {process_cpu_seconds() - before.seconds, matcher_.scores() - before.scores};
+  }
+
+ private:
+  const depth::PatchMatchOptions options_;
+  const Bench<Camera> bench_;
+  const Counting<depth::LaneMatcher<Camera>> matcher_;
+  depth::PlaneMap start_, map_;
+};
+
+double pixels() {
+  return static_cast<double>(survey(false).truth.pixels.size());
+}
+
+void report_ratio(benchmark::State& state, const Cost& pinhole, const Cost& flat_port) {
+  state.counters["pinhole_ns"] = pinhole.seconds * 1e9 / pinhole.scores;
+  state.counters["flat_port_ns"] = flat_port.seconds * 1e9 / flat_port.scores;
+  state.counters["ratio"] =
+      (flat_port.seconds / flat_port.scores) / (pinhole.seconds / pinhole.scores);
+}
+
+// Nanoseconds per hypothesis and view, all of a sweep's work included.
+void sweep_pair(benchmark::State& state, bool geometric, int first, int last) {
+  const ThreadLimit one(1);
+  SweepRun<refractive::PinholeCamera<float>> dry(false, geometric, first);
+  SweepRun<refractive::FlatPortCamera<float>> wet(true, geometric, first);
+  Cost pinhole, flat_port;
+  for (auto _ : state) {
+    dry.restart(), wet.restart();
+    for (int i = first; i <= last; ++i) {
+      pinhole += dry.sweep(i);
+      flat_port += wet.sweep(i);
+    }
+  }
+  report_ratio(state, pinhole, flat_port);
+  const double visits = pixels() * (last - first + 1) * static_cast<double>(state.iterations());
+  state.counters["pinhole_scores_per_pixel"] = pinhole.scores / visits;
+  state.counters["flat_port_scores_per_pixel"] = flat_port.scores / visits;
+}
+
+// Time and quality side by side: a faster matcher that is worse is none.
+struct Quality {
+  double median_error = 0;  // relative
+  double complete = 0;      // share of the pixels
+};
+
+Quality quality(const DepthMap& map, const depth::PlaneMap& truth) {
+  std::vector<double> errors;
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x)
+      if (map.depth(y, x) > 0)
+        errors.push_back(std::abs(map.depth(y, x) / truth.at(x, y).plane.depth - 1));
+  if (errors.empty()) return {1, 0};
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  return {*middle, static_cast<double>(errors.size()) / static_cast<double>(truth.pixels.size())};
+}
+
+// One view's share of the matching stage at the program's defaults.
+DepthMap matched(const Survey& scene) {
+  constexpr int kGeometricPasses = 2;
+  const depth::PatchMatchOptions options;
+  DepthMap map = depth::estimate_depth_map(scene.input(), options);
+  for (int pass = 0; pass < kGeometricPasses; ++pass)
+    map = depth::refine_depth_map(scene.input(), map, scene.source_maps, pass,
+                                  pass + 1 == kGeometricPasses, options);
+  return map;
+}
+
+Cost match(bool behind_port, Quality& result) {
+  const Survey& scene = survey(behind_port);
+  const double begin = process_cpu_seconds();
+  const DepthMap map = matched(scene);
+  const double end = process_cpu_seconds();
+  result = quality(map, scene.truth);
+  return {end - begin, pixels() * kSourceViews};
+}
+
+// CPU time of whole depth maps; nanoseconds are per pixel and view.
+void depth_map_pair(benchmark::State& state) {
+  const ThreadLimit one(1);
+  survey(false), survey(true);
+  Cost pinhole, flat_port;
+  Quality in_air, in_water;
+  for (auto _ : state) {
+    pinhole += match(false, in_air);
+    flat_port += match(true, in_water);
+  }
+  report_ratio(state, pinhole, flat_port);
+  const double megapixels = 1e-6 * pixels() * static_cast<double>(state.iterations());
+  state.counters["pinhole_s_per_Mpx"] = pinhole.seconds / megapixels;
+  state.counters["flat_port_s_per_Mpx"] = flat_port.seconds / megapixels;
+  state.counters["pinhole_error_ppm"] = 1e6 * in_air.median_error;
+  state.counters["flat_port_error_ppm"] = 1e6 * in_water.median_error;
+  state.counters["pinhole_complete"] = in_air.complete;
+  state.counters["flat_port_complete"] = in_water.complete;
+}
+
+void add_sweep(const char* name, bool geometric, int first, int last) {
+  benchmark::RegisterBenchmark(name, [=](benchmark::State& state) {
+    sweep_pair(state, geometric, first, last);
+  })->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+
+void add_matching_benchmarks() {
+  add_sweep("sweep/photometric/first", false, 0, 0);
+  add_sweep("sweep/photometric/later", false, 1, 2);
+  add_sweep("sweep/geometric", true, 3, 3);
+  benchmark::RegisterBenchmark("depth_map", depth_map_pair)->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace axial::benchmarks

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every option of matching buys: the F-score against CPU time, one option changed at a time.
+
+    quality_curve.py [--scene closeup|reef|small] [--medium air|water] [--only OPTION...] -o DIR
+
+Writes DIR/table.json, DIR/table.md and DIR/curve.svg; a setting that this very program has run there
+before is not run again. True poses. `small` is the closeup's kind at 480 x 360, six views, to try
+things out.
+"""
+
+import argparse
+import hashlib
+import json
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from benchmarks import svg_chart  # noqa: E402
+from benchmarks.end_to_end import markdown  # noqa: E402
+from support import runs  # noqa: E402
+
+# Option: its default and the other values. Images of the synthetic scenes are not halved at the
+# default of --min-resolution, so their default level is 0.
+OPTIONS = {
+    "iters": (3, (1, 2, 4)),
+    "sub-resolution-levels": (2, (0, 1, 3)),
+    "geometric-iters": (2, (0, 1, 3)),
+    "number-views": (5, (2, 3, 4, 8)),
+    "resolution-level": (0, (1,)),
+}
+
+
+def scene(name, base):
+    if name != "small":
+        return runs.synthetic(name, base)
+    return runs.simulated("small", base, "--preset", "closeup", "--views", 6, "--width", 480,
+                          "--height", 360, "--samples", 2, tolerance=0.004)
+
+
+def arguments_of(option, value):
+    allow = ["--min-resolution", 16] if option == "resolution-level" else []
+    return [f"--{option}", value, *allow]
+
+
+def measured(work, truth, medium, name, arguments):
+    """One setting's cost and quality; kept if there."""
+    program = hashlib.sha1((runs.BIN / "DensifyPointCloud").read_bytes()).hexdigest()[:12]
+    folder = work / program / f"{truth.name}-{medium}-{name}"
+    kept = folder / "result.json"
+    if kept.exists():
+        return json.loads(kept.read_text())
+    runs.import_scene(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium))
+    refractive = ["--refractive"] if medium == "water" else []
+    cost = runs.densify(folder, *refractive, *arguments)
+    quality = runs.evaluate(folder, truth, medium)
+    result = {"setting": name, **cost, **quality}
+    kept.write_text(json.dumps(result))
+    print(f"  {name}: {result['cpu']:.1f} CPU-s, F {result['f']:.4f}", file=sys.stderr, flush=True)
+    return result
+
+
+def all_settings(work, truth, medium, options):
+    """{option: {value: result}}, and the result of the defaults."""
+    default = measured(work, truth, medium, "default", [])
+    curves = {}
+    for option in options:
+        initial, others = OPTIONS[option]
+        curves[option] = {value: default if value == initial else
+                          measured(work, truth, medium, f"{option}-{value}",
+                                   arguments_of(option, value))
+                          for value in sorted((initial, *others))}
+    return curves, default
+
+
+def table(curves, default):
+    head = ("setting", "CPU-s", "of the default", "F", "mean mm", "median mm", "points", "peak MiB")
+    def row(name, r):
+        return (name, f"{r['cpu']:.1f}", f"{r['cpu'] / default['cpu']:.2f}", f"{r['f']:.4f}",
+                f"{r['mean'] * 1e3:.4f}", f"{r['median'] * 1e3:.4f}", f"{r['points']:,}",
+                f"{r['memory'] / 2**20:.0f}")
+    rows = [row("default", default)]
+    rows += [row(f"--{option} {value}", result) for option, curve in curves.items()
+             for value, result in curve.items() if result is not default]
+    return markdown(head, rows) + "\n"
+
+
+def figure(curves, default, title):
+    point = lambda value, r: svg_chart.Point(r["cpu"], r["f"], str(value))
+    groups = {f"--{option}": [point(value, r) for value, r in curve.items()]
+              for option, curve in curves.items()}
+    return svg_chart.chart(groups, svg_chart.Point(default["cpu"], default["f"], ""), title,
+                           "CPU time [s]", "F-score")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", choices=("closeup", "reef", "small"), default="closeup")
+    parser.add_argument("--medium", choices=("air", "water"), default="water")
+    parser.add_argument("--only", nargs="+", choices=OPTIONS, default=list(OPTIONS))
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    output = arguments.output.resolve()
+    truth = scene(arguments.scene, output)
+    curves, default = all_settings(output, truth, arguments.medium, arguments.only)
+    (output / "table.json").write_text(json.dumps(curves, indent=1))
+    (output / "table.md").write_text(table(curves, default))
+    title = f"{arguments.scene}, {arguments.medium}: one option changed at a time"
+    (output / "curve.svg").write_text(figure(curves, default, title))
+    print(table(curves, default))
+
+
+if __name__ == "__main__":
+    main()

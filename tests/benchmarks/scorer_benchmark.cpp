@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The innermost work: what one plane hypothesis costs in one source view, for every camera and
+// instruction set, and how far that is from what the machine can do.
+#include <benchmark/benchmark.h>
+
+#include "benchmarks/benchmarks.h"
+#include "benchmarks/cpu_time.h"
+#include "benchmarks/machine_limits.h"
+#include "benchmarks/survey.h"
+
+namespace axial::benchmarks {
+namespace {
+
+using depth::lanes::InstructionSet;
+
+// Multiplications and additions that lane_zncc.h does for one sample of one lane: 2 for the
+// position, 2 for its fractions, 9 for the bilinear value, 1 for the mean, 6 for the three sums.
+// Conversions and integers are left out, so the roof is a little too high.
+constexpr double kOperationsPerSample = 20;
+constexpr double kSamplesPerScore = depth::kTexels;
+
+// A sweep asks for few hypotheses in all views, then for many trials in the two best views.
+constexpr std::size_t kCandidates = 3, kTrials = 8, kTrialViews = 2;
+constexpr std::size_t kScoresPerPixel = kCandidates * kSourceViews + kTrials * kTrialViews;
+constexpr int kChunk = 32;  // pixels between two looks at the clock
+
+struct Question {
+  depth::ReferencePixel pixel;
+  std::array<depth::PlaneHypothesis, kCandidates> candidates;
+  std::array<depth::PlaneHypothesis, kTrials> trials;
+  std::array<std::uint8_t, kTrialViews> best;
+};
+
+template <class Camera>
+Question question(const Survey& survey, const depth::LaneMatcher<Camera>& matcher, int x, int y,
+                  std::mt19937& random) {
+  Question asked;
+  asked.pixel = matcher.pixels().prepare(x, y);
+  for (auto& plane : asked.candidates) plane = near_truth(survey, x, y, 0.004f, 0.2f, random);
+  for (auto& plane : asked.trials) plane = near_truth(survey, x, y, 0.002f, 0.1f, random);
+  asked.best[0] = static_cast<std::uint8_t>(random() % kSourceViews);
+  asked.best[1] = static_cast<std::uint8_t>((asked.best[0] + 1u) % kSourceViews);
+  return asked;
+}
+
+template <class Camera>
+void answer(const depth::LaneMatcher<Camera>& matcher, const Question& asked) {
+  static constexpr std::array<std::uint8_t, kSourceViews> kAllViews{0, 1, 2, 3, 4};
+  std::array<depth::ViewScore, kCandidates * kSourceViews> all;
+  std::array<depth::ViewScore, kTrials * kTrialViews> best;
+  matcher.score(asked.pixel, asked.candidates, kAllViews, all);
+  matcher.score(asked.pixel, asked.trials, asked.best, best);
+  benchmark::DoNotOptimize(all);
+  benchmark::DoNotOptimize(best);
+}
+
+// Walks the image in reading order, a chunk of a row in every iteration, all of it seen by all
+// sources.
+class Walk {
+ public:
+  explicit Walk(const Survey& survey)
+      : right_(survey.truth.width - 64 - kChunk), bottom_(survey.truth.height - 64) {}
+
+  int x = 64, y = 64;
+
+  void step() {
+    x += kChunk;
+    if (x < right_) return;
+    x = 64;
+    if (++y >= bottom_) y = 64;
+  }
+
+ private:
+  int right_, bottom_;
+};
+
+template <class Camera>
+void score(benchmark::State& state, bool behind_port, InstructionSet set, bool geometric) {
+  const Survey& scene = survey(behind_port);
+  const Bench<Camera> bench(scene, geometric, set);
+  std::mt19937 random(1);
+  Walk walk(scene);
+  std::vector<Question> questions(kChunk);
+  double seconds = 0;
+  for (auto _ : state) {
+    for (int i = 0; i < kChunk; ++i)
+      questions[static_cast<std::size_t>(i)] =
+          question(scene, bench.matcher(), walk.x + i, walk.y, random);
+    walk.step();
+    const double begin = thread_cpu_seconds();
+    for (const Question& asked : questions) answer(bench.matcher(), asked);
+    const double spent = thread_cpu_seconds() - begin;
+    state.SetIterationTime(spent);
+    seconds += spent;
+  }
+  const double scores = static_cast<double>(state.iterations() * kChunk * kScoresPerPixel);
+  const double samples_per_ns = kSamplesPerScore * scores / (seconds * 1e9);
+  const MachineLimits limits = machine_limits(set);
+  const double ghz = clock_ghz();
+  state.counters["ns_per_score"] = seconds * 1e9 / scores;
+  state.counters["samples_per_cycle"] = samples_per_ns / ghz;
+  state.counters["gather_roof"] = limits.gathered_words_per_ns / ghz;
+  state.counters["float_roof"] = limits.float_operations_per_ns / kOperationsPerSample / ghz;
+  state.counters["of_roof"] =
+      samples_per_ns /
+      std::min(limits.gathered_words_per_ns, limits.float_operations_per_ns / kOperationsPerSample);
+}
+
+const char* name_of(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::scalar:
+      return "scalar";
+    case InstructionSet::baseline:
+      return "baseline";
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::avx512:
+      return "avx512";
+  }
+  return "unknown";
+}
+
+template <class Camera>
+void add(const std::string& camera, bool behind_port, InstructionSet set, bool geometric) {
+  const std::string name =
+      "score/" + camera + "/" + name_of(set) + (geometric ? "/geometric" : "/photometric");
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [=](benchmark::State& state) { score<Camera>(state, behind_port, set, geometric); })
+      ->UseManualTime()
+      ->Unit(benchmark::kMicrosecond);
+}
+
+}  // namespace
+
+void add_scorer_benchmarks() {
+  for (const InstructionSet set : depth::lanes::available_instruction_sets())
+    for (const bool geometric : {false, true}) {
+      add<refractive::PinholeCamera<float>>("pinhole", false, set, geometric);
+      add<refractive::FlatPortCamera<float>>("flat_port", true, set, geometric);
+    }
+}
+
+}  // namespace axial::benchmarks

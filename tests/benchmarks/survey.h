@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the matching benchmarks work on: a textured floor with a dome on it, seen by a reference
+// view and five sources, in air or behind a flat port, and hypotheses near its true surface.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "depth/lane_matcher.h"
+#include "depth/patch_match.h"
+#include "depth/plane_map.h"
+
+namespace axial::benchmarks {
+
+inline constexpr int kSourceViews = 5;  // the default of --number-views
+
+struct Survey {
+  std::vector<depth::MatchImage> views;  // the reference first
+  std::vector<DepthMap> maps;            // the truth, with a map's usual noise
+  std::vector<Eigen::Vector3f> points;   // sparse, world frame
+  depth::PlaneMap truth;                 // of the reference
+  std::vector<const depth::MatchImage*> sources;
+  std::vector<const DepthMap*> source_maps;
+
+  depth::MatchInput input() const {
+    return {&views[0], sources, points, nullptr, ProjectionMethod::exact};
+  }
+};
+
+// Made once and kept. 512 x 384 pixels.
+const Survey& survey(bool behind_port);
+
+// The true plane at a pixel, moved by at most `depth` (relative) and `turn` [rad].
+depth::PlaneHypothesis near_truth(const Survey& survey, int x, int y, float depth, float turn,
+                                  std::mt19937& random);
+
+// What LaneMatcher needs, with and without the sources' depth maps.
+template <class Camera>
+class Bench {
+ public:
+  Bench(const Survey& survey, bool geometric, depth::lanes::InstructionSet set);
+
+  const depth::LaneMatcher<Camera>& matcher() const { return matcher_; }
+
+ private:
+  std::vector<depth::QuadImage> quads_;
+  depth::LaneMatcher<Camera> matcher_;
+};
+
+}  // namespace axial::benchmarks

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the acceptance points and the benchmarks share: running the project's programs on scenes, and
+what such a run costs and gives."""
+
+import dataclasses
+import hashlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = ROOT / "build" / "release" / "bin"
+SHARED = ROOT.parent / "shared" / "data"
+
+
+class Skipped(Exception):
+    """The data is not on this machine."""
+
+
+def shared(*parts):
+    path = SHARED.joinpath(*parts)
+    if not path.exists():
+        raise Skipped(f"no {path}")
+    return path
+
+
+def measured(log, *command):
+    """Runs a command, output to `log`; wall and CPU seconds, peak memory in bytes."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    begin = time.monotonic()
+    with open(log, "w") as out:
+        process = subprocess.Popen([str(c) for c in command], stdout=out, stderr=subprocess.STDOUT,
+                                   stdin=subprocess.DEVNULL, cwd=ROOT)
+        _, status, usage = os.wait4(process.pid, 0)
+    if os.waitstatus_to_exitcode(status) != 0:
+        raise RuntimeError(f"{pathlib.Path(command[0]).name} failed, see {log}")
+    return {"wall": time.monotonic() - begin, "cpu": usage.ru_utime + usage.ru_stime,
+            "memory": usage.ru_maxrss * 1024}
+
+
+def step(name, *arguments):
+    """A shell function of apps/pipeline/steps.sh."""
+    script = f'source apps/pipeline/steps.sh; bin={BIN}; {name} "$@"'
+    subprocess.run(["bash", "-euo", "pipefail", "-c", script, name, *map(str, arguments)], cwd=ROOT,
+                   check=True)
+
+
+# Scenes with ground truth.
+
+@dataclasses.dataclass(frozen=True)
+class Truth:
+    name: str
+    data: pathlib.Path  # sparse, housing.json, and the folders of images air and water
+    mesh: pathlib.Path
+    tolerance: float  # [m]
+
+    def housing(self, medium):
+        return self.data / "housing.json" if medium == "water" else None
+
+
+def synthetic(name, base):
+    """closeup or reef of data/synthetic; its mesh is made under `base`."""
+    data = ROOT / "data" / "synthetic" / name
+    if not data.is_dir():
+        raise Skipped(f"no {data}")
+    step("make_truth", name, base / "truth" / name)
+    return Truth(name, data, base / "truth" / name / "mesh.ply",
+                 {"closeup": 0.002, "reef": 0.005}[name])
+
+
+def simulated(name, base, *options, tolerance=0.002):
+    """A scene that is not in git, made once under `base`: again only if the simulator changed."""
+    folder = base / "simulated" / name
+    made_by = hashlib.sha1((BIN / "SimulateUnderwater").read_bytes()).hexdigest() + f" {options}"
+    mark = folder / "made-by"
+    if not mark.exists() or mark.read_text() != made_by:
+        measured(folder / "simulate.log", BIN / "SimulateUnderwater", "-o", folder, *options)
+        mark.write_text(made_by)
+    return Truth(name, folder, folder / "mesh.ply", tolerance)
+
+
+# Reconstruction.
+
+def import_scene(folder, model, images, housing=None):
+    """A COLMAP model as `folder`/scene.mvs."""
+    port = ["--housing", housing] if housing else []
+    measured(folder / "import.log", BIN / "InterfaceCOLMAP", "-i", model, "--image-folder", images,
+             "-o", folder / "scene.mvs", *port)
+
+
+def densify(folder, *options):
+    """`folder`/scene.mvs to scene_dense.ply, from nothing, and what it cost."""
+    for pattern in ("depth*.dmap*", "scene_dense.*"):
+        for path in folder.glob(pattern):
+            path.unlink()
+    cost = measured(folder / "densify.log", BIN / "DensifyPointCloud", "-i", "scene.mvs", "-w",
+                    folder, *options)
+    return cost | {"points": points_in(folder), "megapixels": megapixels(folder)}
+
+
+def points_in(folder):
+    header = (folder / "scene_dense.ply").read_bytes()[:2000].decode("ascii", "replace")
+    return int(re.search(r"element vertex (\d+)", header)[1])
+
+
+def megapixels(folder):
+    """Of all depth maps in a folder, from their headers."""
+    total = 0
+    for path in folder.glob("depth????.dmap"):
+        width, height = (int.from_bytes(path.read_bytes()[i:i + 4], "little") for i in (12, 16))
+        total += width * height
+    return total / 1e6
+
+
+def evaluate(folder, truth, medium, align="none"):
+    """The dense cloud of `folder` against the true mesh, lengths in metres."""
+    housing = truth.housing(medium)
+    file = folder / f"evaluation-{align}.json"
+    measured(folder / "evaluate.log", BIN / "EvaluateReconstruction", "-i",
+             folder / "scene_dense.ply", "-m", truth.mesh, "--cameras", truth.data / "sparse",
+             "--tolerance", truth.tolerance, "--json", file, "--align", align,
+             *(["--housing", housing] if housing else []))
+    result = json.loads(file.read_text())
+    return {"mean": result["accuracy"]["mean"], "median": result["accuracy"]["median"],
+            "points": result["accuracy"]["count"], "f": result["scores"][0]["f_score"]}
