@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <map>
 
 #include "depth/lanes/scorer.h"
 
@@ -11,7 +12,7 @@ namespace axial::benchmarks {
 
 double clock_ghz() {
   constexpr int kRounds = 20000, kAdditions = 10;
-  double best = 0;
+  static double best = 0;
   for (int run = 0; run < 25; ++run) {
     std::uint64_t sum = 1;
     const std::uint64_t term = 3;
@@ -29,7 +30,9 @@ double clock_ghz() {
   return best;
 }
 
-MachineLimits machine_limits(depth::lanes::InstructionSet set) {
+namespace {
+
+MachineLimits measured_limits(depth::lanes::InstructionSet set) {
   using depth::lanes::InstructionSet;
   switch (set) {
     case InstructionSet::scalar:
@@ -42,6 +45,18 @@ MachineLimits machine_limits(depth::lanes::InstructionSet set) {
       return detail::avx512_limits();
   }
   return {};
+}
+
+}  // namespace
+
+MachineLimits machine_limits(depth::lanes::InstructionSet set) {
+  static std::map<depth::lanes::InstructionSet, MachineLimits> kept;
+  MachineLimits& best = kept[set];
+  const MachineLimits now = measured_limits(set);
+  best.gathered_words_per_ns = std::max(best.gathered_words_per_ns, now.gathered_words_per_ns);
+  best.float_operations_per_ns =
+      std::max(best.float_operations_per_ns, now.float_operations_per_ns);
+  return best;
 }
 
 }  // namespace axial::benchmarks

@@ -8,7 +8,10 @@ enum class InstructionSet;  // lanes/scorer.h
 
 namespace axial::benchmarks {
 
-// Cycles per nanosecond at this moment, from a chain of additions, one cycle each.
+// All of these are the best seen since the program began: what disturbs a measurement only slows
+// it.
+
+// Cycles per nanosecond, from a chain of additions, one cycle each.
 double clock_ghz();
 
 // Of one core, with one instruction set, data in the first-level cache.

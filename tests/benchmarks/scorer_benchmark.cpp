@@ -98,6 +98,7 @@ void score(benchmark::State& state, bool behind_port, InstructionSet set, bool g
   const MachineLimits limits = machine_limits(set);
   const double ghz = clock_ghz();
   state.counters["ns_per_score"] = seconds * 1e9 / scores;
+  state.counters["GHz"] = ghz;
   state.counters["samples_per_cycle"] = samples_per_ns / ghz;
   state.counters["gather_roof"] = limits.gathered_words_per_ns / ghz;
   state.counters["float_roof"] = limits.float_operations_per_ns / kOperationsPerSample / ghz;
