@@ -38,8 +38,10 @@ class Axis:
 
     def ticks(self):
         if self.logarithmic:
-            return [m * 10**e for e in range(-6, 7) for m in (1, 2, 5)
-                    if self.low <= m * 10**e <= self.high]
+            ticks = [m * 10**e for e in range(-6, 7) for m in (1, 2, 5)
+                     if self.low <= m * 10**e <= self.high]
+            if len(ticks) >= 3:
+                return ticks
         step = nice_step((self.high - self.low) / 5)
         first = math.ceil(self.low / step)
         return [i * step for i in range(first, math.floor(self.high / step) + 1)]
