@@ -196,15 +196,16 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
   const T rho2 = across.squaredNorm();
   // The root has no derivative at zero; nothing below needs one there.
   const Mask<T> on_axis = rho2 <= T(1e-30);
-  T rho = select(on_axis, T(0), T(sqrt(select(on_axis, T(1), rho2))));
+  const T root = sqrt(select(on_axis, T(1), rho2));
+  T rho = select(on_axis, T(0), root);
   const Mask<T> in_field = field_.contains(rho, z_water);
   // Outside, a harmless point on the axis keeps everything below finite.
   for (int k = 0; k < 3; ++k) across(k) = select(in_field, across(k), T(0));
   z_water = select(in_field, z_water, T(1));
   rho = select(in_field, rho, T(0));
-  const T t = solve_tangent(optics_, field_, rho, z_water);
-  const FlatPortSlopes<T> at(optics_, t, z_water);
-  const T m = T(1) / at.secant;
+  const T inv_rho = select(rho > T(0), T(T(1) / root), T(0));
+  const FlatPortRoot<T> at = solve_tangent(optics_, field_, rho, inv_rho, z_water);
+  const T& m = at.inv_secant;
   const Vector3<T> bearing = n + m * across;
   const Mask<T> in_front = bearing.z() > T(1e-3);
   const T inv_z = T(1) / select(in_front, bearing.z(), T(1));
@@ -216,9 +217,8 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
     // d(bearing)/dX = m (I - n n^T) + (m_r - m) e e^T - (t/q_w) m_r e n^T, each row of the lens's
     // Jacobian times that.
     const T m_r = T(1) / at.tangent;
-    const Mask<T> off_axis = rho > T(0);
-    const Vector3<T> e = across * select(off_axis, T(T(1) / select(off_axis, rho, T(1))), T(0));
-    const T slope = t * at.inv_qw * m_r;
+    const Vector3<T> e = across * inv_rho;
+    const T slope = at.t * at.inv_qw * m_r;
     for (int row = 0; row < 2; ++row) {
       const T f = (row == 0 ? lens_.fx : lens_.fy) * inv_z;
       const T fz = -f * (row == 0 ? x : y);

@@ -72,7 +72,7 @@ void declare_matching(po::options_description& add, Options& options) {
        "coarser levels matched first")("number-views",
                                        po::value(&options.number_views)->default_value(5),
                                        "source views per image (0: all, 1: the best one)")(
-          "iters", po::value(&options.matching.iterations)->default_value(3),
+          "iters", po::value(&options.matching.iterations)->default_value(2),
           "sweeps per resolution level")("geometric-iters",
                                          po::value(&options.geometric_iterations)->default_value(2),
                                          "sweeps with geometric consistency")(

@@ -2,14 +2,23 @@
 #include "base/hash.h"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <bit>
-#include <boost/uuid/detail/sha1.hpp>
+#include <new>
 
 namespace axial {
 
 struct Fingerprint::State {
-  boost::uuids::detail::sha1 sha1;
+  XXH3_state_t* hash = XXH3_createState();
+
+  State() {
+    if (!hash) throw std::bad_alloc();
+    XXH3_128bits_reset(hash);
+  }
+  ~State() { XXH3_freeState(hash); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 };
 
 Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {}
@@ -17,12 +26,12 @@ Fingerprint::~Fingerprint() = default;
 
 Fingerprint& Fingerprint::add(std::string_view bytes) {
   add(static_cast<std::uint64_t>(bytes.size()));
-  state_->sha1.process_bytes(bytes.data(), bytes.size());
+  XXH3_128bits_update(state_->hash, bytes.data(), bytes.size());
   return *this;
 }
 
 Fingerprint& Fingerprint::add(std::uint64_t value) {
-  state_->sha1.process_bytes(&value, sizeof value);
+  XXH3_128bits_update(state_->hash, &value, sizeof value);
   return *this;
 }
 
@@ -31,11 +40,8 @@ Fingerprint& Fingerprint::add(double value) {
 }
 
 std::string Fingerprint::hex() const {
-  boost::uuids::detail::sha1 copy = state_->sha1;
-  unsigned digest[5];
-  copy.get_digest(digest);
-  return fmt::format("{:08x}{:08x}{:08x}{:08x}{:08x}", digest[0], digest[1], digest[2], digest[3],
-                     digest[4]);
+  const XXH128_hash_t digest = XXH3_128bits_digest(state_->hash);
+  return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
 }
 
 }  // namespace axial

@@ -40,6 +40,9 @@ void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std:
     tables.translation[k][view] = source.from_reference.translation(static_cast<int>(k));
 
   const QuadImage& image = *source.image;
+  if (std::max(image.width(), image.height()) > lanes::kLargestSide)
+    fail("a source image is {}x{}, but matching takes at most {} pixels a side", image.width(),
+         image.height(), lanes::kLargestSide);
   const auto pixels =
       static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
   if (tables.words.size() + pixels > std::numeric_limits<std::int32_t>::max())
@@ -64,12 +67,23 @@ std::unique_ptr<lanes::SceneTables> make_tables(const Camera& reference,
   tables->kind = std::is_same_v<Camera, PinholeCamera<float>> ? lanes::CameraKind::pinhole
                                                               : lanes::CameraKind::flat_port;
   tables->reference = fields_of(reference);
+  tables->smoothness = options.smoothness;
   tables->geometric_weight = options.geometric_weight;
   tables->geometric_limit = options.geometric_limit;
+  // At once: growing step by step would hold everything twice.
+  std::size_t pixels = 0;
+  for (const auto& source : sources)
+    pixels += static_cast<std::size_t>(source.image->width()) *
+              static_cast<std::size_t>(source.image->height());
+  tables->words.reserve(pixels);
   const bool with_depths = std::any_of(sources.begin(), sources.end(),
                                        [](const auto& source) { return source.depth != nullptr; });
+  if (with_depths) tables->depths.reserve(pixels);
   for (std::size_t view = 0; view < sources.size(); ++view)
     add_view(*tables, sources[view], view, with_depths);
+  tables->same_camera = std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
+    return fields_of(source.camera) == fields_of(sources[0].camera);
+  });
   return tables;
 }
 
@@ -107,15 +121,16 @@ struct Batch {
   std::size_t pair_count = 0;
 
   void run(const lanes::Scorer& scorer, const lanes::LanePixel& pixel,
-           std::span<ViewScore> scores) {
+           std::span<const SurfacePoint> neighbours, std::span<ViewScore> scores) {
     for (std::size_t k = pair_count; k < kLanes; ++k) {
       pairs.plane[k] = pairs.plane[0];
       pairs.view[k] = pairs.view[0];
     }
+    pairs.count = pair_count;
     lanes::LaneScores result;
-    scorer.score(pixel, planes, pairs, result);
+    scorer.score(pixel, planes, pairs, neighbours, result);
     for (std::size_t k = 0; k < pair_count; ++k)
-      scores[target[k]] = {result.cost[k], result.motion[k]};
+      scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
     plane_count = pair_count = 0;
   }
 };
@@ -126,7 +141,7 @@ template <class Camera>
 LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
                                  std::span<const SourceView<Camera>> sources,
                                  const PatchMatchOptions& options, lanes::InstructionSet set)
-    : pixels_(image, camera, options), smoothness_(options.smoothness), views_(sources.size()) {
+    : pixels_(image, camera, options), views_(sources.size()) {
   for (std::size_t first = 0; first < sources.size(); first += kLanes) {
     Group group;
     group.tables = make_tables(
@@ -140,6 +155,7 @@ template <class Camera>
 void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
                                 std::span<const PlaneHypothesis> planes,
                                 std::span<const std::uint8_t> views,
+                                std::span<const SurfacePoint> neighbours,
                                 std::span<ViewScore> scores) const {
   const lanes::LanePixel lane = lane_pixel(pixel);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -149,7 +165,7 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
       for (std::size_t k = 0; k < views.size(); ++k) {
         if (views[k] / kLanes != g) continue;
         if (batch.pair_count == kLanes) {
-          batch.run(*groups_[g].scorer, lane, scores);
+          batch.run(*groups_[g].scorer, lane, neighbours, scores);
           placed = false;
         }
         if (!placed) set_plane(batch.planes, batch.plane_count++, planes[p]);
@@ -159,21 +175,8 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
         batch.target[batch.pair_count++] = p * views.size() + k;
       }
     }
-    if (batch.pair_count > 0) batch.run(*groups_[g].scorer, lane, scores);
+    if (batch.pair_count > 0) batch.run(*groups_[g].scorer, lane, neighbours, scores);
   }
-}
-
-template <class Camera>
-void LaneMatcher<Camera>::smoothness(const ReferencePixel& pixel,
-                                     std::span<const PlaneHypothesis> planes,
-                                     std::span<const SurfacePoint> neighbours,
-                                     std::span<float> factors) const {
-  lanes::LanePlanes lane_planes;
-  for (std::size_t k = 0; k < kLanes; ++k)
-    set_plane(lane_planes, k, planes[k < planes.size() ? k : 0]);
-  lanes::LaneFloats result;
-  groups_[0].scorer->smoothness(lane_pixel(pixel), lane_planes, neighbours, smoothness_, result);
-  std::copy_n(result.begin(), planes.size(), factors.begin());
 }
 
 template class LaneMatcher<PinholeCamera<float>>;

@@ -26,11 +26,8 @@ class LaneMatcher {
 
   // As Matcher::score.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<ViewScore> scores) const;
-
-  // As Matcher::smoothness. Precondition: at most lanes::kLanes planes.
-  void smoothness(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-                  std::span<const SurfacePoint> neighbours, std::span<float> factors) const;
+             std::span<const std::uint8_t> views, std::span<const SurfacePoint> neighbours,
+             std::span<ViewScore> scores) const;
 
  private:
   // Up to lanes::kLanes source views.
@@ -40,7 +37,6 @@ class LaneMatcher {
   };
 
   PixelSampler<Camera> pixels_;
-  SmoothnessOptions smoothness_;
   std::size_t views_;
   std::vector<Group> groups_;
 };

@@ -31,8 +31,9 @@ struct SourceView {
 
 // Of one hypothesis in one source view.
 struct ViewScore {
-  float cost = kMaxCost;  // photometric, geometric and prior, 0 to kMaxCost
-  float motion = 0;       // of the patch's centre with depth [px/m]; 0 if unseen
+  float cost;        // photometric, geometric and prior, 0 to kMaxCost
+  float motion;      // of the patch's centre with depth [px/m]; 0 if unseen
+  float smoothness;  // the hypothesis' factor (smoothness.h), the same in all views
 };
 
 template <class Camera, class Warp>
@@ -48,22 +49,21 @@ class Matcher {
   std::size_t views() const { return sources_.size(); }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
 
-  // scores[p * views.size() + k]: hypothesis planes[p] in source view views[k].
+  // scores[p * views.size() + k]: hypothesis planes[p] in source view views[k]. `neighbours`: the
+  // surface around the pixel, for the smoothness factors.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<ViewScore> scores) const {
+             std::span<const std::uint8_t> views, std::span<const SurfacePoint> neighbours,
+             std::span<ViewScore> scores) const {
     std::size_t i = 0;
     for (const PlaneHypothesis& plane : planes) {
       const PatchDerivative patch = patch_derivative(pixel.ray, pixel.jacobian, plane);
-      for (const std::uint8_t view : views) scores[i++] = score_view(pixel, plane, patch, view);
+      const float smoothness =
+          depth::smoothness<float>(patch.point, plane.normal, neighbours, options_.smoothness);
+      for (const std::uint8_t view : views) {
+        scores[i] = score_view(pixel, plane, patch, view);
+        scores[i++].smoothness = smoothness;
+      }
     }
-  }
-
-  // factors[p]: smoothness of planes[p].
-  void smoothness(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-                  std::span<const SurfacePoint> neighbours, std::span<float> factors) const {
-    for (std::size_t p = 0; p < planes.size(); ++p)
-      factors[p] = depth::smoothness<float>(pixel.ray.at(planes[p].depth), planes[p].normal,
-                                            neighbours, options_.smoothness);
   }
 
   ViewScore score_view(const ReferencePixel& pixel, const PlaneHypothesis& plane,
@@ -71,7 +71,7 @@ class Matcher {
     const SourceView<Camera>& source = sources_[view];
     const auto map = Warp::between(pixels_.camera(), pixel.at(), plane, patch, source.camera,
                                    source.from_reference);
-    return {cost_of(pixel, plane, patch, source, map), motion_of(pixel, patch, source)};
+    return {cost_of(pixel, plane, patch, source, map), motion_of(pixel, patch, source), 1.0f};
   }
 
  private:

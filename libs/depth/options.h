@@ -22,7 +22,7 @@ inline constexpr float radians(float degrees) {
 struct PatchMatchOptions {
   Warp warp = Warp::affine;
   int sub_resolution_levels = 2;  // coarser levels before the working resolution
-  int iterations = 3;             // sweeps per level
+  int iterations = 2;             // sweeps per level
   int coarsest_side = 64;         // no level gets a shorter side below this
 
   float sigma_color = 0.1f;  // bilateral weight: intensity, in [0, 1]
@@ -34,8 +34,12 @@ struct PatchMatchOptions {
 
   float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
 
-  int refinement_trials = 8;             // at most 8, scored together
-  float refinement_shrink = 0.65f;       // of the ranges, from trial to trial
+  // Pairs of trials around a pixel's best plane. Few are enough where the plane is good already;
+  // more would only fit the noise (docs/performance.md).
+  int first_pairs = 4;                   // in a level's first sweep
+  int later_pairs = 2;                   // after it, also with geometric consistency
+  int last_pairs = 0;                    // in the last geometric pass, which only propagates
+  float refinement_shrink = 0.65f;       // of the ranges, from pair to pair
   int restart_trials = 3;                // random planes of a hopeless pixel
   float refinement_pixels = 1.5f;        // depth trial: largest motion in a source view
   float refinement_angle = radians(16);  // normal trial

@@ -73,6 +73,7 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
     for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
       Sweep(matcher, planes, options, sweep).run();
       sweep.first = false;
+      sweep.trial_pairs = options.later_pairs;
     }
   };
   constexpr bool kInLanes = std::is_same_v<Warp, AffineWarp> &&
@@ -238,6 +239,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     sweep.prior = state.prior.empty() ? nullptr : &state.prior;
     sweep.mask = state.mask.empty() ? nullptr : &state.mask;
     sweep.first = true;
+    sweep.trial_pairs = options.first_pairs;
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);
   }
@@ -257,6 +259,7 @@ DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
   sweep.min_depth = current.min_depth;
   sweep.max_depth = current.max_depth;
   sweep.textureless_prior = &current.depth;
+  sweep.trial_pairs = last ? options.last_pairs : options.later_pairs;
   sweep.mask = mask.empty() ? nullptr : &mask;
   run_sweeps(input, level, source_maps, options, sweep, 1, planes);
   const DepthRange range{current.min_depth, current.max_depth};

@@ -33,6 +33,7 @@ struct SweepInput {
   // lose what the coarser levels filled in.
   const cv::Mat1f* textureless_prior = nullptr;
   const cv::Mat1b* mask = nullptr;  // non-zero: work on this pixel
+  int trial_pairs = 0;              // trials around the best hypothesis, at most 4 pairs
   bool first = false;               // fill pixels without a hypothesis at random
 };
 
@@ -195,9 +196,7 @@ class Sweep {
   void keep_best(const Visit& at, const Candidates& candidates, Best& best) const {
     const std::size_t views = matcher_.views();
     std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
-    matcher_.score(at.pixel, candidates.all(), {all_views_.data(), views}, scores);
-    std::array<float, kMaxCandidates> factors;
-    matcher_.smoothness(at.pixel, candidates.all(), at.around.all(), factors);
+    matcher_.score(at.pixel, candidates.all(), {all_views_.data(), views}, at.around.all(), scores);
     for (std::size_t p = 0; p < candidates.count; ++p) {
       const ViewScore* of = scores.data() + p * views;
       std::size_t first = 0, second = views;
@@ -211,7 +210,7 @@ class Sweep {
       }
       const PlaneHypothesis& plane = candidates.planes[p];
       float cost = second < views ? aggregate(of[first].cost, of[second].cost) : of[first].cost;
-      cost *= factors[p];
+      cost *= of[0].smoothness;
       if (p > 0 && !(cost < best.cost)) continue;
       if (second == views) second = first;
       best = {plane, cost, {all_views_[first], all_views_[second]}, of[first].motion};
@@ -230,35 +229,50 @@ class Sweep {
     const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
                                                          0.05f * best.plane.depth)
                                               : 0.003f * best.plane.depth;
-    const Eigen::Vector3f u = best.plane.normal.unitOrthogonal();
-    const Eigen::Vector3f v = best.plane.normal.cross(u);
     Candidates trials;
-    for (int trial = 0; trial < options_.refinement_trials; ++trial) {
-      const std::array<float, 3> step = random.symmetric_triple();
-      const float turn = options_.refinement_angle * scale;
-      const PlaneHypothesis plane{
-          best.plane.depth + step[0] * depth_range * scale,
-          (best.plane.normal + (step[1] * turn) * u + (step[2] * turn) * v).normalized()};
-      scale *= options_.refinement_shrink;
-      if (in_range(plane.depth) && plane.normal.dot(at.pixel.ray.direction) < -0.05f)
-        trials.add(plane);
-    }
+    add_trials(at, best.plane, depth_range, scale, random, trials);
     if (trials.count > 0) keep_best_trial(at, trials, best);
+  }
+
+  // Pairs of trials on either side of a plane, in turn along the ray and of the normal, ever
+  // closer. A trial that moved both at once would seldom be better: near the optimum what one
+  // gains the other loses.
+  void add_trials(const Visit& at, const PlaneHypothesis& plane, float depth_range, float scale,
+                  KeyedRandom& random, Candidates& trials) const {
+    const auto add = [&](float depth, const Eigen::Vector3f& normal) {
+      if (in_range(depth) && normal.dot(at.pixel.ray.direction) < -0.05f)
+        trials.add({depth, normal});
+    };
+    const Eigen::Vector3f u = plane.normal.unitOrthogonal();
+    const Eigen::Vector3f v = plane.normal.cross(u);
+    for (int pair = 0; pair < input_.trial_pairs; ++pair) {
+      const std::array<float, 3> step = random.symmetric_triple();
+      if (pair % 2 == 0) {
+        const float move = step[0] * depth_range * scale;
+        add(plane.depth + move, plane.normal);
+        add(plane.depth - move, plane.normal);
+      } else {
+        const float turn = options_.refinement_angle * scale;
+        const Eigen::Vector3f tilt = (step[1] * turn) * u + (step[2] * turn) * v;
+        const float inv_norm = 1 / std::sqrt(1 + tilt.squaredNorm());
+        add(plane.depth, (plane.normal + tilt) * inv_norm);
+        add(plane.depth, (plane.normal - tilt) * inv_norm);
+      }
+      scale *= options_.refinement_shrink;
+    }
   }
 
   void keep_best_trial(const Visit& at, const Candidates& trials, Best& best) const {
     const std::size_t views = best.views[0] == best.views[1] ? 1 : 2;
     std::array<ViewScore, 2 * kMaxCandidates> scores;
-    matcher_.score(at.pixel, trials.all(), {best.views.data(), views}, scores);
-    std::array<float, kMaxCandidates> factors;
-    matcher_.smoothness(at.pixel, trials.all(), at.around.all(), factors);
+    matcher_.score(at.pixel, trials.all(), {best.views.data(), views}, at.around.all(), scores);
     for (std::size_t p = 0; p < trials.count; ++p) {
       const PlaneHypothesis& plane = trials.planes[p];
       const ViewScore* of = scores.data() + p * views;
       float cost = views == 1 ? of[0].cost
                               : aggregate(std::min(of[0].cost, of[1].cost),
                                           std::max(of[0].cost, of[1].cost));
-      cost *= factors[p];
+      cost *= of[0].smoothness;
       if (cost < best.cost) {
         best.plane = plane;
         best.cost = cost;

@@ -37,14 +37,10 @@ class Counting {
   double scores() const { return static_cast<double>(scores_); }
 
   void score(const depth::ReferencePixel& pixel, std::span<const depth::PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<depth::ViewScore> scores) const {
+             std::span<const std::uint8_t> views, std::span<const depth::SurfacePoint> neighbours,
+             std::span<depth::ViewScore> scores) const {
     scores_ += planes.size() * views.size();
-    matcher_.score(pixel, planes, views, scores);
-  }
-  void smoothness(const depth::ReferencePixel& pixel,
-                  std::span<const depth::PlaneHypothesis> planes,
-                  std::span<const depth::SurfacePoint> neighbours, std::span<float> factors) const {
-    matcher_.smoothness(pixel, planes, neighbours, factors);
+    matcher_.score(pixel, planes, views, neighbours, scores);
   }
 
  private:
@@ -72,7 +68,9 @@ depth::SweepInput sweep_input(int number) {
   input.sweep = static_cast<std::uint32_t>(number);
   input.min_depth = 0.5f;
   input.max_depth = 4.0f;
+  const depth::PatchMatchOptions options;
   input.first = number == 0;
+  input.trial_pairs = input.first ? options.first_pairs : options.later_pairs;
   return input;
 }
 

@@ -29,6 +29,7 @@ struct Question {
   std::array<depth::PlaneHypothesis, kCandidates> candidates;
   std::array<depth::PlaneHypothesis, kTrials> trials;
   std::array<std::uint8_t, kTrialViews> best;
+  std::array<depth::SurfacePoint, 4> around;
 };
 
 template <class Camera>
@@ -38,6 +39,12 @@ Question question(const Survey& survey, const depth::LaneMatcher<Camera>& matche
   asked.pixel = matcher.pixels().prepare(x, y);
   for (auto& plane : asked.candidates) plane = near_truth(survey, x, y, 0.004f, 0.2f, random);
   for (auto& plane : asked.trials) plane = near_truth(survey, x, y, 0.002f, 0.1f, random);
+  for (std::size_t k = 0; k < asked.around.size(); ++k) {
+    const depth::PlaneHypothesis& plane = asked.trials[k];
+    const Eigen::Vector3f p = asked.pixel.ray.at(plane.depth);
+    asked.around[k] = {{p.x(), p.y(), p.z()},
+                       {plane.normal.x(), plane.normal.y(), plane.normal.z()}};
+  }
   asked.best[0] = static_cast<std::uint8_t>(random() % kSourceViews);
   asked.best[1] = static_cast<std::uint8_t>((asked.best[0] + 1u) % kSourceViews);
   return asked;
@@ -48,8 +55,8 @@ void answer(const depth::LaneMatcher<Camera>& matcher, const Question& asked) {
   static constexpr std::array<std::uint8_t, kSourceViews> kAllViews{0, 1, 2, 3, 4};
   std::array<depth::ViewScore, kCandidates * kSourceViews> all;
   std::array<depth::ViewScore, kTrials * kTrialViews> best;
-  matcher.score(asked.pixel, asked.candidates, kAllViews, all);
-  matcher.score(asked.pixel, asked.trials, asked.best, best);
+  matcher.score(asked.pixel, asked.candidates, kAllViews, asked.around, all);
+  matcher.score(asked.pixel, asked.trials, asked.best, asked.around, best);
   benchmark::DoNotOptimize(all);
   benchmark::DoNotOptimize(best);
 }

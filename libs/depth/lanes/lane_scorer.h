@@ -25,7 +25,7 @@ template <template <class> class Camera, class Abi>
 class LaneScorer final : public Scorer {
   using T = Pack<Abi>;
   using Vector = refractive::Vector3<T>;
-  using Mask = PackMask<Abi>;
+  using Ints = typename T::Ints;
 
   // A source view in every lane.
   struct Views {
@@ -42,21 +42,30 @@ class LaneScorer final : public Scorer {
 
  public:
   explicit LaneScorer(const SceneTables& tables) : tables_(tables) {
-    std::size_t k = 0;
-    reference_.each_field([&](auto& field) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
-        field = tables.reference.steps;
-      else
-        field = T(tables.reference.value[k++]);
-    });
+    fill(reference_, tables.reference.steps,
+         [&](std::size_t k) { return T(tables.reference.value[k]); });
+    fill(first_source_, tables.steps, [&](std::size_t k) { return T(tables.camera[k][0]); });
   }
 
-  AXIAL_FLATTEN void score(const LanePixel& pixel, const LanePlanes& lane_planes,
-                           const LanePairs& pairs, LaneScores& scores) const override {
-    const Planes planes = deal_planes(lane_planes, pairs);
-    const Views views = deal_views(pairs);
+  void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
+             std::span<const SurfacePoint> neighbours, LaneScores& scores) const override {
+    for (std::size_t first = 0; first < pairs.count; first += T::kWidth)
+      score_pack(pixel, planes, pairs, neighbours, first, scores);
+  }
+
+ private:
+  // The pairs from `first` on, as many as a pack holds.
+  AXIAL_FLATTEN void score_pack(const LanePixel& pixel, const LanePlanes& lane_planes,
+                                const LanePairs& pairs, std::span<const SurfacePoint> neighbours,
+                                std::size_t first, LaneScores& scores) const {
+    const Planes planes = deal_planes(lane_planes, Lookup<Abi>(pairs.plane.data() + first));
+    const Lookup<Abi> of_view(pairs.view.data() + first);
+    const Views views = deal_views(of_view, pairs.view.data() + first);
     const refractive::AxialRay<T> ray{vector(pixel.origin), vector(pixel.direction)};
-    const Vector point = views.rotation * ray.at(planes.depth) + views.translation;
+    const Vector surface = ray.at(planes.depth);
+    depth::smoothness<T>(surface, planes.normal, neighbours, tables_.smoothness)
+        .store(scores.smoothness.data() + first);
+    const Vector point = views.rotation * surface + views.translation;
 
     refractive::Matrix23<T> jacobian;
     const refractive::Projection<T> image = views.camera.project(point, &jacobian);
@@ -66,29 +75,28 @@ class LaneScorer final : public Scorer {
 
     const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, image, warp);
     T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
-    if (!tables_.depths.empty()) cost += inconsistency(pixel, pairs, views, point, image);
+    if (!tables_.depths.empty()) cost += inconsistency(pixel, of_view, views, point, image);
     if (pixel.prior_weight > 0) {
       const T off = abs(planes.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
       cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
     }
-    min(cost, T(kMaxCost)).store(scores.cost.data());
+    min(cost, T(kMaxCost)).store(scores.cost.data() + first);
     const refractive::Vector2<T> motion = jacobian * (views.rotation * ray.direction);
-    select(image.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data());
+    select(image.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data() + first);
   }
 
-  AXIAL_FLATTEN void smoothness(const LanePixel& pixel, const LanePlanes& lane_planes,
-                                std::span<const SurfacePoint> neighbours,
-                                const SmoothnessOptions& options,
-                                LaneFloats& factors) const override {
-    const Vector normal(T::load(lane_planes.nx.data()), T::load(lane_planes.ny.data()),
-                        T::load(lane_planes.nz.data()));
-    const Vector point =
-        vector(pixel.origin) + T::load(lane_planes.depth.data()) * vector(pixel.direction);
-    depth::smoothness<T>(point, normal, neighbours, options).store(factors.data());
-  }
-
- private:
   static Vector vector(const std::array<float, 3>& v) { return {T(v[0]), T(v[1]), T(v[2])}; }
+
+  template <class Field>
+  static void fill(Camera<T>& camera, int steps, Field&& value) {
+    std::size_t k = 0;
+    camera.each_field([&](auto& field) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
+        field = steps;
+      else
+        field = value(k++);
+    });
+  }
 
   static refractive::AxialRayJacobian<T> ray_jacobian(const LanePixel& pixel) {
     refractive::AxialRayJacobian<T> jacobian;
@@ -99,35 +107,31 @@ class LaneScorer final : public Scorer {
     return jacobian;
   }
 
-  static Planes deal_planes(const LanePlanes& planes, const LanePairs& pairs) {
-    const Lookup<Abi> of{pairs.plane};
+  static Planes deal_planes(const LanePlanes& planes, const Lookup<Abi>& of) {
     return {of(planes.depth.data()),
             {of(planes.nx.data()), of(planes.ny.data()), of(planes.nz.data())}};
   }
 
-  Views deal_views(const LanePairs& pairs) const {
-    const Lookup<Abi> of{pairs.view};
+  Views deal_views(const Lookup<Abi>& of, const std::int32_t* view) const {
     Views views;
-    std::size_t k = 0;
-    views.camera.each_field([&](auto& field) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
-        field = tables_.steps;
-      else
-        field = of(tables_.camera[k++].data());
-    });
+    if (tables_.same_camera)
+      views.camera = first_source_;
+    else
+      fill(views.camera, tables_.steps,
+           [&](std::size_t k) { return of(tables_.camera[k].data()); });
     for (int i = 0; i < 9; ++i)
       views.rotation(i / 3, i % 3) = of(tables_.rotation[static_cast<std::size_t>(i)].data());
     for (int i = 0; i < 3; ++i)
       views.translation(i) = of(tables_.translation[static_cast<std::size_t>(i)].data());
     views.image.width = of(tables_.width.data());
     views.image.height = of(tables_.height.data());
-    for (std::size_t i = 0; i < kLanes; ++i)
-      views.image.begin[i] = tables_.image_begin[static_cast<std::size_t>(pairs.view[i])];
+    views.image.begin =
+        Ints([&](auto k) { return tables_.image_begin[static_cast<std::size_t>(view[k])]; });
     return views;
   }
 
   // The term of geometric_check.h, times its weight.
-  T inconsistency(const LanePixel& pixel, const LanePairs& pairs, const Views& views,
+  T inconsistency(const LanePixel& pixel, const Lookup<Abi>& of_view, const Views& views,
                   const Vector& point, const refractive::Projection<T>& image) const {
     const T limit(tables_.geometric_limit);
     const refractive::AxialRay<T> ray = views.camera.ray(image.pixel);
@@ -140,13 +144,13 @@ class LaneScorer final : public Scorer {
     const T dv = backward.pixel.y() - T(pixel.at[1]);
     const T error = sqrt(du * du + dv * dv);
     const T term = min(sqrt(error * (error + T(2))), limit);
-    const T has = Lookup<Abi>{pairs.view}(tables_.has_depth.data());
+    const T has = of_view(tables_.has_depth.data());
     return T(tables_.geometric_weight) * has *
            select(found > T(0) && backward.visible, term, limit);
   }
 
   const SceneTables& tables_;
-  Camera<T> reference_;
+  Camera<T> reference_, first_source_;
 };
 
 template <class Abi>

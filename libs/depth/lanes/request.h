@@ -16,6 +16,9 @@ namespace axial::depth::lanes {
 // Pairs of a plane hypothesis and a source view that are scored at once.
 inline constexpr std::size_t kLanes = 16;
 
+// Largest side of a source image [px]: columns and rows are signed 16-bit numbers.
+inline constexpr int kLargestSide = 32767;
+
 struct alignas(64) LaneFloats : std::array<float, kLanes> {};
 
 // Up to kLanes plane hypotheses of one reference pixel.
@@ -27,8 +30,9 @@ struct LanePlanes {
 };
 
 // Which plane (of LanePlanes) and which source view a lane works on. All lanes must be valid:
-// unused ones repeat another.
+// unused ones, those from `count` on, repeat another, and their scores mean nothing.
 struct LanePairs {
+  std::size_t count;
   alignas(64) std::array<std::int32_t, kLanes> plane;
   alignas(64) std::array<std::int32_t, kLanes> view;
 };
@@ -43,9 +47,10 @@ struct LanePixel {
 };
 
 struct LaneScores {
-  LaneFloats cost;    // 0 to kMaxCost
-  LaneFloats motion;  // of the patch's centre in the source view with depth [px/m]; 0
-                      // if unseen
+  LaneFloats cost;        // 0 to kMaxCost
+  LaneFloats motion;      // of the patch's centre in the source view with depth [px/m]; 0
+                          // if unseen
+  LaneFloats smoothness;  // factor of the lane's plane (smoothness.h)
 };
 
 }  // namespace axial::depth::lanes

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "depth/lanes/request.h"
 #include "depth/smoothness.h"
 
@@ -23,6 +24,8 @@ inline constexpr std::size_t kMaxCameraFields = 32;
 struct CameraFields {
   std::array<float, kMaxCameraFields> value{};
   int steps = 0;  // the one int among them
+
+  bool operator==(const CameraFields&) const = default;
 };
 
 // Everything about the reference camera and up to kLanes source views. Tables have one entry per
@@ -31,33 +34,31 @@ struct SceneTables {
   CameraKind kind = CameraKind::pinhole;
   CameraFields reference;
   std::array<LaneFloats, kMaxCameraFields> camera{};
-  int steps = 0;  // largest of the source cameras'
+  int steps = 0;             // largest of the source cameras'
+  bool same_camera = false;  // all source views have the first one's
   // x_source = rotation * x_reference + translation; row-major.
   std::array<LaneFloats, 9> rotation{};
   std::array<LaneFloats, 3> translation{};
   // Quad words (zncc.h) of all source images in one run, and where each begins.
-  std::vector<std::uint32_t> words;
+  std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> words;
   std::array<std::int32_t, kLanes> image_begin{};
   LaneFloats width{};
   LaneFloats height{};
   // The source views' depth maps, as `words`; empty: photometric only. has_depth is 0 or 1.
-  std::vector<float> depths;
+  std::vector<float, HugePageAllocator<float>> depths;
   LaneFloats has_depth{};
   float geometric_weight = 0;
   float geometric_limit = 0;
+  SmoothnessOptions smoothness;
 };
 
 // Precondition of all: indices of views are below the number of views in the tables.
 class Scorer {
  public:
   virtual ~Scorer() = default;
-  // Fills `scores` for every pair.
+  // Fills `scores` for every pair. `neighbours`: the surface around the pixel.
   virtual void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
-                     LaneScores& scores) const = 0;
-  // The smoothness factor (smoothness.h) of the first kLanes planes.
-  virtual void smoothness(const LanePixel& pixel, const LanePlanes& planes,
-                          std::span<const SurfacePoint> neighbours,
-                          const SmoothnessOptions& options, LaneFloats& factors) const = 0;
+                     std::span<const SurfacePoint> neighbours, LaneScores& scores) const = 0;
 };
 
 enum class InstructionSet { scalar, baseline, avx2, avx512 };
