@@ -2,38 +2,103 @@
 #include "cloud/fuse.h"
 
 #include <algorithm>
-#include <optional>
 #include <unordered_map>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cloud/fusion_map.h"
+#include "cloud/map_store.h"
 
 namespace axial::cloud {
 namespace {
 
-enum class PixelState : std::uint8_t { free, used, deleted };
+constexpr std::size_t kGrain = 1024;
 
-// A view with what must outlive its map, which is loaded late and dropped early.
+// Pixels of a view that ask its neighbours at a time: few enough that the answers stay in the
+// processor's cache.
+constexpr std::size_t kPortion = std::size_t{1} << 16;
+
+// A view with what must outlive its map.
 struct Slot {
   std::uint32_t image = 0;
   std::vector<std::size_t> neighbours;  // other slots
-  std::size_t last_use = 0;             // step after which the map is no longer needed
-  std::optional<FusionMap> view;
-  std::vector<PixelState> state;
+  std::vector<bool> taken;              // pixels that support a point, or were proved wrong
 };
 
-// One pixel that supports a point.
+// One pixel that supports a point: entry `index` of view `view`'s PixelPoints.
 struct Support {
-  std::uint32_t slot;
-  std::uint32_t pixel;
+  std::uint32_t view;  // 0: the reference; n: its neighbour n - 1
+  std::uint32_t index;
 };
 
-// Points that were accepted but not averaged yet: those of point i are at [begin[i], begin[i + 1]).
-struct Accepted {
+// The reference's next pixels and what comes of them.
+struct Portion {
+  std::vector<PixelPoints> views;            // the reference's pixels, then the supports of others
+  std::vector<std::vector<Answer>> answers;  // of each neighbour to each of the reference's pixels
+  // Those of accepted point i are at [begin[i], begin[i + 1]).
   std::vector<Support> supports;
-  std::vector<std::size_t> begin{0};
+  std::vector<std::size_t> begin;
+
+  explicit Portion(std::size_t neighbours) : views(neighbours + 1), answers(neighbours) {}
+
+  std::span<const Support> supports_of(std::size_t point) const {
+    return std::span(supports).subspan(begin[point], begin[point + 1] - begin[point]);
+  }
+
+  void clear() {
+    for (PixelPoints& view : views) view.pixels.clear();
+    supports.clear();
+    begin.assign(1, 0);
+  }
 };
+
+// Sums up the pixels that support one point.
+class Mean {
+ public:
+  void add(const FusionMap& map, std::uint32_t pixel, const Eigen::Vector3f& point) {
+    const auto weight = static_cast<double>(map.weight_at(pixel));
+    total_ += weight;
+    position_ += weight * point.cast<double>();
+    normal_ += weight * map.normal_at(pixel).cast<double>();
+    if (map.color.empty()) return;
+    const cv::Vec3b bgr = map.color_at(pixel);
+    color_ += weight * Eigen::Vector3d(bgr[2], bgr[1], bgr[0]);
+  }
+
+  Eigen::Vector3f position() const { return (position_ / total_).cast<float>(); }
+
+  // Towards `camera` if no pixel knows it.
+  Eigen::Vector3f normal(const Eigen::Vector3d& camera) const {
+    if (normal_.norm() > 1e-6 * total_) return normal_.stableNormalized().cast<float>();
+    return (camera - position_ / total_).stableNormalized().cast<float>();
+  }
+
+  Rgb color() const {
+    Rgb rgb;
+    for (int c = 0; c < 3; ++c)
+      rgb[static_cast<std::size_t>(c)] =
+          static_cast<std::uint8_t>(std::clamp(color_(c) / total_ + 0.5, 0.0, 255.0));
+    return rgb;
+  }
+
+ private:
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d color_ = Eigen::Vector3d::Zero();
+  double total_ = 0;
+};
+
+// Insertion keeps the few views of a point, at [begin, end) so far, sorted by image.
+void insert_view(PointCloud& cloud, std::size_t begin, std::size_t end, std::uint32_t image,
+                 float weight) {
+  std::size_t k = end;
+  for (; k > begin && cloud.view_images[k - 1] > image; --k) {
+    cloud.view_images[k] = cloud.view_images[k - 1];
+    cloud.view_weights[k] = cloud.view_weights[k - 1];
+  }
+  cloud.view_images[k] = image;
+  cloud.view_weights[k] = weight;
+}
 
 class Fusion {
  public:
@@ -47,27 +112,29 @@ class Fusion {
     make_order(views);
   }
 
-  PointCloud run(const ProgressSink& progress) {
-    cloud_.view_begin.push_back(0);
+  void run(const CloudSink& sink, const ProgressSink& progress) {
+    MapStore store(needed_maps(), slots_.size(), {options_.max_maps, options_.max_loads},
+                   [this](std::size_t slot) { return load(slot); });
     for (std::size_t step = 0; step < order_.size(); ++step) {
-      fuse_view(order_[step]);
-      for (Slot& slot : slots_) {
-        if (slot.last_use == step) slot.view.reset();
-      }
+      store.begin_step(step);
+      fuse_view(order_[step], store, sink);
+      store.end_step(step);
+      for (const std::size_t slot : views_of(order_[step]))
+        if (!store.needed_later(slot)) slots_[slot].taken = {};
       if (progress) progress(step + 1, order_.size());
     }
-    return std::move(cloud_);
   }
 
  private:
   void make_slots(const Scene& scene, std::span<const FusionView> views);
   void make_order(std::span<const FusionView> views);
-  FusionMap& load(std::size_t slot);
-  void fuse_view(std::size_t reference);
-  void accept(std::size_t reference, std::span<const std::uint32_t> asking,
-              const std::vector<std::vector<Answer>>& answers, Accepted& accepted);
-  void append(const Accepted& accepted);
-  void average(std::span<const Support> supports, std::size_t point, std::size_t view_begin);
+  std::vector<std::size_t> views_of(std::size_t reference) const;
+  std::vector<std::vector<std::size_t>> needed_maps() const;
+  FusionMap load(std::size_t slot) const;
+  void fuse_view(std::size_t reference, const MapStore& store, const CloudSink& sink);
+  void accept(std::span<Slot* const> views, Portion& portion) const;
+  PointCloud averaged(std::span<const FusionMap* const> maps, std::span<Slot* const> views,
+                      const Portion& portion) const;
 
   const FusionProviders& providers_;
   const FuseOptions& options_;
@@ -75,7 +142,6 @@ class Fusion {
   std::size_t min_views_;
   std::vector<Slot> slots_;
   std::vector<std::size_t> order_;
-  PointCloud cloud_;
 };
 
 void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
@@ -111,150 +177,147 @@ void Fusion::make_order(std::span<const FusionView> views) {
     if (views[a].rank != views[b].rank) return views[a].rank > views[b].rank;
     return views[a].image < views[b].image;
   });
-  for (std::size_t step = 0; step < order_.size(); ++step) {
-    slots_[order_[step]].last_use = step;
-    for (const std::size_t neighbour : slots_[order_[step]].neighbours) {
-      slots_[neighbour].last_use = step;
-    }
-  }
 }
 
-FusionMap& Fusion::load(std::size_t index) {
-  Slot& slot = slots_[index];
-  if (!slot.view) {
-    cv::Mat3b color;
-    DepthMap map = providers_.load_map(slot.image);
-    if (providers_.load_color) color = providers_.load_color(slot.image);
-    slot.view = make_fusion_map(std::move(map), std::move(color));
-    slot.state.resize(slot.view->pixels(), PixelState::free);
-  }
-  return *slot.view;
+// The slots that are needed to fuse one view: itself, then its neighbours.
+std::vector<std::size_t> Fusion::views_of(std::size_t reference) const {
+  std::vector<std::size_t> views{reference};
+  const std::vector<std::size_t>& neighbours = slots_[reference].neighbours;
+  views.insert(views.end(), neighbours.begin(), neighbours.end());
+  return views;
 }
 
-void Fusion::fuse_view(std::size_t reference) {
-  const FusionMap& view = load(reference);
-  for (const std::size_t neighbour : slots_[reference].neighbours) load(neighbour);
+std::vector<std::vector<std::size_t>> Fusion::needed_maps() const {
+  std::vector<std::vector<std::size_t>> needed;
+  for (const std::size_t reference : order_) needed.push_back(views_of(reference));
+  return needed;
+}
 
-  std::vector<std::uint32_t> free;
-  for (std::uint32_t pixel = 0; pixel < view.pixels(); ++pixel) {
-    const bool is_free = slots_[reference].state[pixel] == PixelState::free;
-    if (is_free && view.depth(pixel) > 0) free.push_back(pixel);
+FusionMap Fusion::load(std::size_t slot) const {
+  const std::uint32_t image = slots_[slot].image;
+  cv::Mat3b color;
+  if (providers_.load_color) color = providers_.load_color(image);
+  return make_fusion_map(providers_.load_map(image), color);
+}
+
+void Fusion::fuse_view(std::size_t reference, const MapStore& store, const CloudSink& sink) {
+  std::vector<Slot*> views;
+  std::vector<const FusionMap*> maps;
+  for (const std::size_t slot : views_of(reference)) {
+    views.push_back(&slots_[slot]);
+    maps.push_back(&store.map(slot));
+    views.back()->taken.resize(maps.back()->pixels());
   }
-  // In portions, so that the answers of large images do not fill the memory.
-  constexpr std::size_t kPortion = std::size_t{1} << 19;
-  std::vector<std::vector<Answer>> answers(slots_[reference].neighbours.size());
-  for (std::size_t begin = 0; begin < free.size(); begin += kPortion) {
-    const auto asking = std::span(free).subspan(begin, std::min(kPortion, free.size() - begin));
-    for (std::size_t n = 0; n < answers.size(); ++n) {
-      answers[n].resize(asking.size());
-      ask_neighbour(view, *slots_[slots_[reference].neighbours[n]].view, asking, options_,
-                    answers[n]);
+  const FusionMap& map = *maps[0];
+  Portion portion(views.size() - 1);
+  std::vector<std::uint32_t>& asking = portion.views[0].pixels;
+  for (std::uint32_t pixel = 0; pixel < map.pixels();) {
+    portion.clear();
+    for (; pixel < map.pixels() && asking.size() < kPortion; ++pixel)
+      if (map.depth_at(pixel) > 0 && !views[0]->taken[pixel]) asking.push_back(pixel);
+    back_project(map, portion.views[0]);
+    for (std::size_t n = 0; n < portion.answers.size(); ++n) {
+      portion.answers[n].resize(asking.size());
+      ask_neighbour(map, *maps[n + 1], portion.views[0], options_, portion.answers[n]);
     }
-    Accepted accepted;
-    accept(reference, asking, answers, accepted);
-    append(accepted);
+    accept(views, portion);
+    for (std::size_t n = 1; n < maps.size(); ++n) back_project(*maps[n], portion.views[n]);
+    if (portion.begin.size() > 1) sink(averaged(maps, views, portion));
   }
 }
 
 // The one serial pass: who comes first gets the pixel.
-void Fusion::accept(std::size_t reference, std::span<const std::uint32_t> asking,
-                    const std::vector<std::vector<Answer>>& answers, Accepted& accepted) {
-  const std::vector<std::size_t>& neighbours = slots_[reference].neighbours;
-  std::vector<Support> disproved;
+void Fusion::accept(std::span<Slot* const> views, Portion& portion) const {
+  const std::vector<std::uint32_t>& asking = portion.views[0].pixels;
+  std::vector<std::size_t> joining;
+  std::vector<std::pair<std::size_t, std::uint32_t>> disproved;
   for (std::size_t i = 0; i < asking.size(); ++i) {
-    const std::size_t first = accepted.supports.size();
-    accepted.supports.push_back({static_cast<std::uint32_t>(reference), asking[i]});
+    joining.clear();
     disproved.clear();
-    for (std::size_t n = 0; n < neighbours.size(); ++n) {
-      const Answer answer = answers[n][i];
-      if (answer.none()) continue;
-      if (slots_[neighbours[n]].state[answer.pixel()] != PixelState::free) continue;
-      const Support support{static_cast<std::uint32_t>(neighbours[n]), answer.pixel()};
-      (answer.agrees() ? accepted.supports : disproved).push_back(support);
+    for (std::size_t n = 1; n < views.size(); ++n) {
+      const Answer answer = portion.answers[n - 1][i];
+      if (answer.none() || views[n]->taken[answer.pixel()]) continue;
+      if (answer.agrees())
+        joining.push_back(n);
+      else
+        disproved.emplace_back(n, answer.pixel());
     }
-    if (accepted.supports.size() - first < min_views_) {
-      accepted.supports.resize(first, {0, 0});
-      continue;
+    if (joining.size() + 1 < min_views_) continue;
+    views[0]->taken[asking[i]] = true;
+    portion.supports.push_back({0, static_cast<std::uint32_t>(i)});
+    for (const std::size_t n : joining) {
+      std::vector<std::uint32_t>& pixels = portion.views[n].pixels;
+      portion.supports.push_back(
+          {static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(pixels.size())});
+      pixels.push_back(portion.answers[n - 1][i].pixel());
+      views[n]->taken[pixels.back()] = true;
     }
-    for (std::size_t k = first; k < accepted.supports.size(); ++k) {
-      slots_[accepted.supports[k].slot].state[accepted.supports[k].pixel] = PixelState::used;
-    }
-    for (const Support& s : disproved) slots_[s.slot].state[s.pixel] = PixelState::deleted;
-    accepted.begin.push_back(accepted.supports.size());
+    for (const auto& [n, pixel] : disproved) views[n]->taken[pixel] = true;
+    portion.begin.push_back(portion.supports.size());
   }
 }
 
-void Fusion::append(const Accepted& accepted) {
-  const std::size_t count = accepted.begin.size() - 1;
-  const std::size_t first = cloud_.size();
-  const std::size_t first_view = cloud_.view_images.size();
-  cloud_.positions.resize(first + count);
-  if (options_.normals) cloud_.normals.resize(first + count);
-  if (providers_.load_color) cloud_.colors.resize(first + count);
-  cloud_.view_images.resize(first_view + accepted.supports.size());
-  cloud_.view_weights.resize(first_view + accepted.supports.size());
-  for (std::size_t i = 1; i <= count; ++i) {
-    cloud_.view_begin.push_back(first_view + accepted.begin[i]);
-  }
-  constexpr std::size_t kGrain = 4096;
+PointCloud Fusion::averaged(std::span<const FusionMap* const> maps, std::span<Slot* const> views,
+                            const Portion& portion) const {
+  const std::size_t count = portion.begin.size() - 1;
+  PointCloud cloud;
+  cloud.positions.resize(count);
+  if (options_.normals) cloud.normals.resize(count);
+  if (providers_.load_color) cloud.colors.resize(count);
+  cloud.view_begin = portion.begin;
+  cloud.view_images.resize(portion.supports.size());
+  cloud.view_weights.resize(portion.supports.size());
   parallel_for(
       count,
       [&](std::size_t i) {
-        const auto supports =
-            std::span(accepted.supports)
-                .subspan(accepted.begin[i], accepted.begin[i + 1] - accepted.begin[i]);
-        average(supports, first + i, first_view + accepted.begin[i]);
+        Mean mean;
+        std::size_t end = portion.begin[i];
+        for (const Support& support : portion.supports_of(i)) {
+          const FusionMap& map = *maps[support.view];
+          const PixelPoints& where = portion.views[support.view];
+          const std::uint32_t pixel = where.pixels[support.index];
+          mean.add(map, pixel, where.points[support.index]);
+          insert_view(cloud, portion.begin[i], end++, views[support.view]->image,
+                      map.weight_at(pixel));
+        }
+        cloud.positions[i] = mean.position();
+        if (options_.normals) cloud.normals[i] = mean.normal(maps[0]->pose.centre);
+        if (!cloud.colors.empty()) cloud.colors[i] = mean.color();
       },
       kGrain);
-}
-
-void Fusion::average(std::span<const Support> supports, std::size_t point, std::size_t view_begin) {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d color = Eigen::Vector3d::Zero();
-  double total = 0;
-  std::size_t count = 0;
-  for (const Support& support : supports) {
-    const FusionMap& view = *slots_[support.slot].view;
-    const float weight = view.weight[support.pixel];
-    const auto w = static_cast<double>(weight);
-    total += w;
-    position += w * view.point[support.pixel].cast<double>();
-    normal += w * view.normal[support.pixel].cast<double>();
-    if (!view.color.empty()) {
-      const cv::Vec3b bgr = view.color_at(support.pixel);
-      color += w * Eigen::Vector3d(bgr[2], bgr[1], bgr[0]);
-    }
-    // Insertion keeps the few views sorted by image.
-    std::size_t k = view_begin + count++;
-    for (; k > view_begin && cloud_.view_images[k - 1] > slots_[support.slot].image; --k) {
-      cloud_.view_images[k] = cloud_.view_images[k - 1];
-      cloud_.view_weights[k] = cloud_.view_weights[k - 1];
-    }
-    cloud_.view_images[k] = slots_[support.slot].image;
-    cloud_.view_weights[k] = weight;
-  }
-  cloud_.positions[point] = (position / total).cast<float>();
-  if (!cloud_.normals.empty()) {
-    if (!(normal.norm() > 1e-6 * total)) {  // unknown: towards the first view
-      normal = slots_[supports[0].slot].view->map.pose.centre - position / total;
-    }
-    cloud_.normals[point] = normal.stableNormalized().cast<float>();
-  }
-  if (!cloud_.colors.empty()) {
-    for (int c = 0; c < 3; ++c) {
-      cloud_.colors[point][static_cast<std::size_t>(c)] =
-          static_cast<std::uint8_t>(std::clamp(color(c) / total + 0.5, 0.0, 255.0));
-    }
-  }
+  return cloud;
 }
 
 }  // namespace
 
+void append(PointCloud& cloud, const PointCloud& portion) {
+  const auto add = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  const std::size_t first_view = cloud.view_images.size();
+  add(cloud.positions, portion.positions);
+  add(cloud.normals, portion.normals);
+  add(cloud.colors, portion.colors);
+  add(cloud.view_images, portion.view_images);
+  add(cloud.view_weights, portion.view_weights);
+  for (std::size_t i = 1; i < portion.view_begin.size(); ++i)
+    cloud.view_begin.push_back(first_view + portion.view_begin[i]);
+}
+
+void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
+          const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress) {
+  Fusion(scene, views, providers, options).run(sink, progress);
+}
+
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options,
                 const ProgressSink& progress) {
-  return Fusion(scene, views, providers, options).run(progress);
+  PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  fuse(
+      scene, views, providers, options, [&](const PointCloud& portion) { append(cloud, portion); },
+      progress);
+  return cloud;
 }
 
 }  // namespace axial::cloud

@@ -88,8 +88,9 @@ TEST_F(PlyTest, WritesTheLayoutOfOpenMvs) {
   cloud.view_weights = {0.5f, 0.25f};
   write_cloud_ply(file_, cloud);
   const std::string header =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float32 x\n"
-      "property float32 y\nproperty float32 z\nproperty uint8 red\nproperty uint8 green\n"
+      "ply\nformat binary_little_endian 1.0\ncomment AxialMVS" + std::string(19, ' ') +
+      "\nelement vertex 1\nproperty float32 x\nproperty float32 y\nproperty float32 z\nproperty "
+      "uint8 red\nproperty uint8 green\n"
       "property uint8 blue\nproperty float32 nx\nproperty float32 ny\nproperty float32 nz\n"
       "property list uint8 uint32 view_indices\nproperty list uint8 float32 view_weights\n"
       "end_header\n";
