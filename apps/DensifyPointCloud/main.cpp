@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include "base/atomic_file.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "depth_stage.h"
 #include "fusion_stage.h"
@@ -46,7 +45,6 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  axial::return_large_blocks_when_freed();
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
   axial::require_writable(options.output);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
-#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -76,13 +75,6 @@ std::uint64_t resident_memory() {
   std::uint64_t total = 0, resident = 0;
   in >> total >> resident;
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
-
-void return_large_blocks_when_freed() {
-  // Said explicitly, because otherwise the threshold rises with every large block that is freed.
-  constexpr int kLarge = 1 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, kLarge);
-  ::mallopt(M_TRIM_THRESHOLD, kLarge);
 }
 
 }  // namespace axial

@@ -15,8 +15,4 @@ std::uint64_t available_memory(const std::filesystem::path& root = "/");
 // Bytes of this process that are in memory now.
 std::uint64_t resident_memory();
 
-// From now on large blocks go back to the system the moment they are freed. The C library would
-// keep some of them for later, in every thread its own.
-void return_large_blocks_when_freed();
-
 }  // namespace axial

@@ -79,7 +79,6 @@ TEST(AvailableMemory, NamesTheFileThatDoesNotSay) {
 }
 
 TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
-  return_large_blocks_when_freed();
   constexpr std::size_t kBytes = 64 << 20;
   const std::uint64_t before = resident_memory();
   {
