@@ -8,6 +8,7 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(nanoflann REQUIRED)
 find_package(embree 3 REQUIRED)
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as a header alone
 find_package(Boost REQUIRED COMPONENTS program_options)
 if(AXIAL_TESTS)
   find_package(Ceres REQUIRED)

@@ -4,25 +4,30 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <boost/uuid/detail/sha1.hpp>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 namespace axial {
 
 struct Fingerprint::State {
-  boost::uuids::detail::sha1 sha1;
+  XXH3_state_t xxh3;
 };
 
-Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {}
+Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {
+  XXH3_128bits_reset(&state_->xxh3);
+}
+
 Fingerprint::~Fingerprint() = default;
 
 Fingerprint& Fingerprint::add(std::string_view bytes) {
   add(static_cast<std::uint64_t>(bytes.size()));
-  state_->sha1.process_bytes(bytes.data(), bytes.size());
+  XXH3_128bits_update(&state_->xxh3, bytes.data(), bytes.size());
   return *this;
 }
 
 Fingerprint& Fingerprint::add(std::uint64_t value) {
-  state_->sha1.process_bytes(&value, sizeof value);
+  XXH3_128bits_update(&state_->xxh3, &value, sizeof value);
   return *this;
 }
 
@@ -31,11 +36,8 @@ Fingerprint& Fingerprint::add(double value) {
 }
 
 std::string Fingerprint::hex() const {
-  boost::uuids::detail::sha1 copy = state_->sha1;
-  unsigned digest[5];
-  copy.get_digest(digest);
-  return fmt::format("{:08x}{:08x}{:08x}{:08x}{:08x}", digest[0], digest[1], digest[2], digest[3],
-                     digest[4]);
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state_->xxh3);
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 }  // namespace axial
