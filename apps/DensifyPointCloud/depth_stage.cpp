@@ -5,11 +5,13 @@
 #include <spdlog/spdlog.h>
 
 #include <functional>
-#include <list>
 #include <memory>
+#include <mutex>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/progress.h"
+#include "base/shared_cache.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/dmap.h"
@@ -28,34 +30,24 @@ struct Stage {
   std::function<DepthMap(std::size_t image)> make;
 };
 
-// Maps of the stage before, read from their files (never handed over in memory: a resumed run must
-// see the same bytes), the most recent ones kept.
-class MapCache {
- public:
-  using Load = std::function<DepthMap(std::size_t image)>;
-  MapCache(Load load, std::size_t capacity) : load_(std::move(load)), capacity_(capacity) {}
+// Maps of the stage before, read from their files: never handed over in memory, because a resumed
+// run must see the same bytes.
+using MapCache = axial::SharedCache<DepthMap>;
 
-  std::shared_ptr<const DepthMap> get(std::size_t image) {
-    for (auto it = recent_.begin(); it != recent_.end(); ++it) {
-      if (it->first != image) continue;
-      recent_.splice(recent_.begin(), recent_, it);
-      return recent_.front().second;
-    }
-    recent_.emplace_front(image, std::make_shared<const DepthMap>(load_(image)));
-    if (recent_.size() > capacity_) recent_.pop_back();
-    return recent_.front().second;
-  }
-
- private:
-  Load load_;
-  std::size_t capacity_;
-  std::list<std::pair<std::size_t, std::shared_ptr<const DepthMap>>> recent_;
+// What matching one image needs, kept alive while it runs.
+struct Task {
+  std::vector<std::shared_ptr<const WorkImage>> pixels;  // the reference's, then the sources'
+  std::vector<axial::depth::MatchImage> views;           // as pixels
+  std::vector<const axial::depth::MatchImage*> sources;
+  std::vector<Eigen::Vector3f> points;
+  axial::depth::MatchInput input;
 };
 
 class DepthMapRun {
  public:
-  DepthMapRun(const Project& project, const Options& options)
-      : project_(project), options_(options) {
+  DepthMapRun(const Project& project, const Options& options, const MemoryPlan& plan,
+              ImageStore& images)
+      : project_(project), options_(options), plan_(plan), images_(images) {
     add_stages();
   }
 
@@ -114,17 +106,21 @@ class DepthMapRun {
         [this, stage](std::size_t image) {
           return axial::io::read_dmap(path(stage - 1, image)).map;
         },
-        32);
+        plan_.cached_maps);
     const axial::ProgressSink progress = axial::console_progress(stages_[stage].title);
+    std::mutex mutex;
     std::size_t done = 0;
     std::size_t reused = 0;
-    for (const std::size_t image : project_.references) {
-      if (finished(stage, image))
-        ++reused;
-      else
+    const std::vector<std::size_t>& references = project_.references;
+    axial::for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
+      const std::size_t image = references[i];
+      const bool there = finished(stage, image);
+      if (!there)
         axial::io::write_dmap(path(stage, image), stages_[stage].make(image), made_from(stage));
-      progress(++done, project_.references.size());
-    }
+      const std::lock_guard lock(mutex);
+      if (there) ++reused;
+      progress(++done, references.size());
+    });
     if (reused > 0) spdlog::info("{}: {} maps were there already", stages_[stage].title, reused);
   }
 
@@ -145,20 +141,22 @@ class DepthMapRun {
     return images;
   }
 
-  struct Task {
-    std::vector<const axial::depth::MatchImage*> sources;
-    std::vector<Eigen::Vector3f> points;
-    axial::depth::MatchInput input;
-  };
+  void add_view(Task& task, std::size_t image) const {
+    const View& view = project_.views[image];
+    task.pixels.push_back(images_.get(image));
+    task.views.push_back({view.id, view.camera, view.pose, task.pixels.back()->grey});
+  }
 
   std::unique_ptr<Task> task(std::size_t image) const {
     auto result = std::make_unique<Task>();
-    for (const axial::ViewScore& source : project_.sources[image])
-      result->sources.push_back(&project_.views[source.image]);
+    add_view(*result, image);
+    for (const axial::ViewScore& source : project_.sources[image]) add_view(*result, source.image);
+    for (std::size_t i = 1; i < result->views.size(); ++i)
+      result->sources.push_back(&result->views[i]);
     for (const std::uint32_t point : project_.preparations[image].init_points)
       result->points.push_back(project_.scene.points[point].position);
-    const cv::Mat1b& mask = project_.masks[image];
-    result->input = {&project_.views[image], result->sources, result->points,
+    const cv::Mat1b& mask = result->pixels[0]->mask;
+    result->input = {&result->views[0], result->sources, result->points,
                      mask.empty() ? nullptr : &mask, options_.projection};
     return result;
   }
@@ -191,8 +189,8 @@ class DepthMapRun {
     if (options_.postprocess & kSpeckles) map = axial::depth::remove_speckles(map);
     if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
-      if (!project_.masks[image].empty())
-        cv::compare(project_.masks[image], 0, ignored, cv::CMP_EQ);
+      if (!project_.views[image].mask.empty())
+        cv::compare(images_.get(image)->mask, 0, ignored, cv::CMP_EQ);
       map = axial::depth::fill_gaps(map, {}, ignored);
     }
     return map;
@@ -222,6 +220,8 @@ class DepthMapRun {
 
   const Project& project_;
   const Options& options_;
+  const MemoryPlan& plan_;
+  ImageStore& images_;
   std::vector<Stage> stages_;
   std::unique_ptr<MapCache> previous_;
 };
@@ -233,8 +233,9 @@ fs::path depth_map_path(const Project& project, const Options& options, std::siz
          fmt::format("depth{:04}.dmap", project.views[image].id);
 }
 
-void make_depth_maps(const Project& project, const Options& options) {
-  DepthMapRun(project, options).run();
+void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,
+                     ImageStore& images) {
+  DepthMapRun(project, options, plan, images).run();
 }
 
 }  // namespace densify

@@ -2,6 +2,8 @@
 // Depth maps of all images, stage by stage, each map a file: a killed run goes on where it stopped.
 #pragma once
 
+#include "image_store.h"
+#include "memory_plan.h"
 #include "project.h"
 
 namespace densify {
@@ -14,6 +16,8 @@ std::filesystem::path depth_map_path(const Project& project, const Options& opti
 //   photometric matching, geometric passes, speckle and gap filters (after the last pass), adjust.
 // Every stage reads only complete files of the stage before, so that an interrupted run gives the
 // same bytes; a file counts only if its side file carries this run's fingerprint and stage.
-void make_depth_maps(const Project& project, const Options& options);
+// Several images at a time, as the plan allows.
+void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,
+                     ImageStore& images);
 
 }  // namespace densify

@@ -10,10 +10,12 @@
 #include "cloud/normals.h"
 #include "depth_stage.h"
 #include "io/dmap.h"
+#include "io/ply.h"
 
 namespace densify {
+namespace {
 
-axial::PointCloud make_cloud(const Project& project, const Options& options) {
+std::vector<axial::cloud::FusionView> views_to_fuse(const Project& project) {
   std::vector<axial::cloud::FusionView> views;
   for (const std::size_t image : project.references) {
     axial::cloud::FusionView view{static_cast<std::uint32_t>(image), {}, 0};
@@ -22,24 +24,76 @@ axial::PointCloud make_cloud(const Project& project, const Options& options) {
     view.rank = project.scene.images[image].neighbours.size();
     views.push_back(view);
   }
-  const auto color = [&](std::size_t image) { return load_color(project, image); };
-  axial::cloud::FusionProviders providers;
-  providers.load_map = [&](std::size_t image) {
-    return axial::io::read_dmap(depth_map_path(project, options, image)).map;
-  };
-  if (options.estimate_colors == 2) providers.load_color = color;
+  return views;
+}
 
-  axial::PointCloud cloud = axial::cloud::fuse(project.scene, views, providers, options.fusion,
-                                               axial::console_progress("Fused depth maps"));
-  if (options.crop_to_roi && project.scene.region) {
-    const std::size_t removed = axial::cloud::crop(cloud, *project.scene.region);
-    spdlog::info("Region of interest: {} points outside removed", removed);
+class CloudRun {
+ public:
+  CloudRun(const Project& project, const Options& options, const MemoryPlan& plan,
+           ImageStore& images, const std::filesystem::path& ply)
+      : project_(project), options_(options), plan_(plan), images_(images), ply_(ply) {}
+
+  std::size_t run() {
+    const bool whole = options_.estimate_colors == 1 || options_.estimate_normals == 1;
+    const std::size_t points = whole ? run_in_memory() : run_in_a_stream();
+    if (removed_ > 0) spdlog::info("Region of interest: {} points outside removed", removed_);
+    return points;
   }
-  if (options.estimate_colors == 1 && cloud.size() > 0)
-    axial::cloud::estimate_colors(cloud, project.scene, color);
-  if (options.estimate_normals == 1 && cloud.size() > 0)
-    axial::cloud::estimate_normals(cloud, project.scene);
-  return cloud;
+
+ private:
+  std::size_t run_in_a_stream() {
+    axial::io::CloudWriter writer(
+        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true});
+    fuse_into([&](const axial::PointCloud& portion) { writer.add(portion); });
+    writer.finish();
+    return writer.size();
+  }
+
+  std::size_t run_in_memory() {
+    axial::PointCloud cloud;
+    cloud.view_begin.push_back(0);
+    fuse_into([&](const axial::PointCloud& portion) { axial::cloud::append(cloud, portion); });
+    if (options_.estimate_colors == 1)
+      axial::cloud::estimate_colors(cloud, project_.scene,
+                                    [&](std::size_t image) { return images_.get(image)->color; });
+    if (options_.estimate_normals == 1) axial::cloud::estimate_normals(cloud, project_.scene);
+    axial::io::write_cloud_ply(ply_, cloud);
+    return cloud.size();
+  }
+
+  void fuse_into(const axial::cloud::CloudSink& sink) {
+    axial::cloud::FusionProviders providers;
+    providers.load_map = [&](std::size_t image) {
+      return axial::io::read_dmap(depth_map_path(project_, options_, image)).map;
+    };
+    if (options_.estimate_colors == 2)
+      providers.load_color = [&](std::size_t image) { return images_.get(image)->color; };
+    axial::cloud::FuseOptions fusion = options_.fusion;
+    fusion.max_maps = plan_.fused_maps;
+    fusion.max_loads = plan_.fusion_loads;
+    axial::cloud::fuse(
+        project_.scene, views_to_fuse(project_), providers, fusion,
+        [&](axial::PointCloud portion) {
+          if (options_.crop_to_roi && project_.scene.region)
+            removed_ += axial::cloud::crop(portion, *project_.scene.region);
+          sink(std::move(portion));
+        },
+        axial::console_progress("Fused depth maps"));
+  }
+
+  const Project& project_;
+  const Options& options_;
+  const MemoryPlan& plan_;
+  ImageStore& images_;
+  const std::filesystem::path& ply_;
+  std::size_t removed_ = 0;
+};
+
+}  // namespace
+
+std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
+                        ImageStore& images, const std::filesystem::path& ply) {
+  return CloudRun(project, options, plan, images, ply).run();
 }
 
 }  // namespace densify

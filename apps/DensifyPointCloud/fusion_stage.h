@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "image_store.h"
+#include "memory_plan.h"
 #include "project.h"
-#include "scene/point_cloud.h"
 
 namespace densify {
 
-// The final depth maps as one cloud, cropped, with colours and normals as the options say.
-axial::PointCloud make_cloud(const Project& project, const Options& options);
+// Writes the final depth maps as one cloud to `ply`, cropped, with colours and normals as the
+// options say; returns its number of points. The cloud goes to the file as it grows, unless its
+// colours or normals are estimated from the whole of it (1).
+std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
+                        ImageStore& images, const std::filesystem::path& ply);
 
 }  // namespace densify

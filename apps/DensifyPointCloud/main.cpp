@@ -5,8 +5,10 @@
 #include "base/parallel.h"
 #include "depth_stage.h"
 #include "fusion_stage.h"
+#include "image_store.h"
 #include "io/mvs.h"
 #include "io/ply.h"
+#include "memory_plan.h"
 #include "options.h"
 #include "project.h"
 
@@ -15,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
-axial::PointCloud sparse_cloud(const axial::Scene& scene) {
+std::size_t write_sparse_cloud(const axial::Scene& scene, const fs::path& ply) {
   axial::PointCloud cloud;
   cloud.view_begin.push_back(0);
   for (const axial::SparsePoint& point : scene.points) {
@@ -28,7 +30,8 @@ axial::PointCloud sparse_cloud(const axial::Scene& scene) {
   }
   cloud.normals = scene.point_normals;
   cloud.colors = scene.point_colors;
-  return cloud;
+  axial::io::write_cloud_ply(ply, cloud);
+  return cloud.size();
 }
 
 void remove_depth_maps(const densify::Project& project, const densify::Options& options) {
@@ -47,17 +50,20 @@ int run(int argc, char** argv) {
   axial::require_writable(options.output);
   axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
   const densify::Project project = densify::load_project(options);
-  densify::make_depth_maps(project, options);
-  const axial::PointCloud cloud =
-      options.fuse ? densify::make_cloud(project, options) : sparse_cloud(project.scene);
+  const densify::MemoryPlan plan = densify::plan_memory(project, options);
+  densify::ImageStore images(project, options, plan.cached_images);
+  images.check_all(plan.decodes);
+  densify::make_depth_maps(project, options, plan, images);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");
-  axial::io::write_cloud_ply(ply, cloud);
+  const std::size_t points = options.fuse
+                                 ? densify::write_cloud(project, options, plan, images, ply)
+                                 : write_sparse_cloud(project.scene, ply);
   densify::write_housing_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
-  spdlog::info("{}: {} points", ply.string(), cloud.size());
-  if (options.fuse && cloud.size() == 0)
+  spdlog::info("{}: {} points", ply.string(), points);
+  if (options.fuse && points == 0)
     spdlog::warn(
         "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
         "masks and the region of interest leave nothing",

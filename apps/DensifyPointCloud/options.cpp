@@ -62,7 +62,10 @@ void declare_io(po::options_description& add, Raw& raw, Options& options) {
           "ignore-mask-label", po::value(&options.ignore_mask_label)->default_value(-1),
           "mask value to leave out; below 0: no masks")(
           "remove-dmaps", po::value(&options.remove_dmaps)->default_value(false),
-          "remove the depth maps after fusion");
+          "remove the depth maps after fusion")(
+          "max-memory", po::value(&options.max_memory)->default_value(0),
+          "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 and "
+          "--estimate-normals 1 keep the whole cloud on top of it");
 }
 
 void declare_matching(po::options_description& add, Options& options) {
@@ -158,6 +161,7 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("estimate-colors", options.estimate_colors, 0u, 2u);
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
+  check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
 }
 

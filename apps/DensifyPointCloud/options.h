@@ -2,6 +2,7 @@
 // DensifyPointCloud's options: OpenMVS's names and defaults, and the refractive ones.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -46,7 +47,13 @@ struct Options {
   double roi_border = 0;
   bool crop_to_roi = true;
   bool remove_dmaps = false;
+  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of what is free
 };
+
+// Whether the cloud takes colours from the images.
+inline bool needs_colors(const Options& options) {
+  return options.fuse && options.estimate_colors > 0;
+}
 
 // Error for an unknown option, a value out of range, or an OpenMVS option that is not built yet and
 // has another than its default or "off" value.

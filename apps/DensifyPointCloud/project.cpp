@@ -3,7 +3,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -80,37 +79,29 @@ fs::path mask_path(const axial::SceneImage& image, const Options& options) {
   return image.mask_path.empty() ? axial::io::mask_beside(image.path) : fs::path(image.mask_path);
 }
 
-cv::Mat1b load_mask(const axial::SceneImage& image, const cv::Size& file_size, const cv::Size& size,
-                    const Options& options) {
+// Where the labels of an image are that masks are asked for.
+fs::path find_mask(const axial::SceneImage& image, const Options& options) {
   const fs::path path = mask_path(image, options);
   if (options.ignore_mask_label < 0) return {};
   std::error_code error;
-  if (!fs::exists(path, error)) {
-    spdlog::warn("{}: no mask", image.path);
-    return {};
-  }
-  const cv::Mat1w labels = axial::io::read_label_image(path);
-  axial::io::check_mask_shape(path, labels.size(), file_size);
-  cv::Mat1b mask;
-  cv::compare(axial::resized_labels(labels, size), options.ignore_mask_label, mask, cv::CMP_NE);
-  return mask;
+  if (fs::exists(path, error)) return path;
+  spdlog::warn("{}: no mask", image.path);
+  return {};
 }
 
 void load_views(Project& project, const Options& options) {
   const std::size_t count = project.scene.images.size();
   project.views.resize(count);
-  project.masks.resize(count);
   axial::parallel_for(count, [&](std::size_t i) {
     const axial::SceneImage& image = project.scene.images[i];
     if (!image.calibrated) return;
-    const cv::Mat3b color = axial::io::read_color_image(image.path);
-    const cv::Size size = size_to_work_on(image, color.size(), options);
-    axial::depth::MatchImage& view = project.views[i];
+    View& view = project.views[i];
     view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(i) : image.id;
+    view.file_size = axial::io::read_image_size(image.path);
+    const cv::Size size = size_to_work_on(image, view.file_size, options);
     view.camera = image.camera.resized(size.width, size.height);
     view.pose = image.pose;
-    cv::cvtColor(axial::resized_image(color, size), view.grey, cv::COLOR_BGR2GRAY);
-    project.masks[i] = load_mask(image, color.size(), size, options);
+    view.mask = find_mask(image, options);
   });
 }
 
@@ -166,13 +157,22 @@ void add_options(axial::Fingerprint& print, const Options& options) {
         static_cast<std::uint64_t>(matching.sub_resolution_levels),
         static_cast<std::uint64_t>(matching.iterations),
         static_cast<std::uint64_t>(options.geometric_iterations),
-        static_cast<std::uint64_t>(options.postprocess)})
+        static_cast<std::uint64_t>(options.postprocess),
+        static_cast<std::uint64_t>(options.ignore_mask_label)})
     print.add(value);
 }
 
-void add_pixels(axial::Fingerprint& print, const cv::Mat1b& image) {
-  for (int y = 0; y < image.rows; ++y)
-    print.add(std::string_view(image.ptr<char>(y), static_cast<std::size_t>(image.cols)));
+// Fingerprints of the files that each view's pixels and mask come from.
+std::vector<std::string> content_of_files(const Project& project) {
+  std::vector<std::string> prints(project.views.size());
+  axial::parallel_for(prints.size(), [&](std::size_t i) {
+    if (!project.scene.images[i].calibrated) return;
+    axial::Fingerprint print;
+    print.add(axial::read_file(project.scene.images[i].path));
+    if (!project.views[i].mask.empty()) print.add(axial::read_file(project.views[i].mask));
+    prints[i] = print.hex();
+  });
+  return prints;
 }
 
 // Everything the depth maps depend on; not what only fusion uses, nor the number of threads.
@@ -180,14 +180,14 @@ std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
   print.add("AxialMVS depth maps 2");  // the number: of the matching method
   add_options(print, options);
+  const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
-    const axial::depth::MatchImage& view = project.views[i];
+    const View& view = project.views[i];
     print.add(std::uint64_t{view.id});
     add_camera(print, view.camera);
     for (const double value : view.pose.rotation.reshaped()) print.add(value);
     for (const double value : view.pose.centre) print.add(value);
-    add_pixels(print, view.grey);
-    add_pixels(print, project.masks[i]);
+    print.add(contents[i]);
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
       print.add(static_cast<std::uint64_t>(list->size()));
       for (const axial::ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});
@@ -221,11 +221,6 @@ void write_housing_beside_output(const Project& project, const Options& options)
   if (file == axial::io::housing_beside(options.input)) return;
   std::error_code error;
   if (fs::remove(file, error)) spdlog::info("{} removed: the scene has no ports", file.string());
-}
-
-cv::Mat3b load_color(const Project& project, std::size_t image) {
-  return axial::resized_image(axial::io::read_color_image(project.scene.images[image].path),
-                              project.views[image].grey.size());
 }
 
 }  // namespace densify

@@ -3,12 +3,13 @@
 // fingerprint of everything that the depth maps depend on.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "depth/patch_match.h"
 #include "io/housing.h"
 #include "options.h"
 #include "scene/scene.h"
@@ -16,27 +17,34 @@
 
 namespace densify {
 
+// One image of the scene at the resolution that it is worked on at; ImageStore has the pixels.
+// Images without calibration have an empty camera.
+struct View {
+  std::uint32_t id = 0;  // global id
+  axial::CameraModel camera;
+  axial::Pose pose;
+  cv::Size file_size;
+  std::filesystem::path mask;  // empty: none
+};
+
 struct Project {
   axial::Scene scene;                         // as read, with ports and neighbour scores
   std::optional<axial::io::Housing> housing;  // that the ports come from
   std::vector<axial::ViewPreparation> preparations;
-  std::vector<axial::depth::MatchImage> views;            // one an image of the scene
+  std::vector<View> views;                                // one an image of the scene
   std::vector<std::vector<axial::ViewScore>> neighbours;  // filtered
   std::vector<std::vector<axial::ViewScore>> sources;     // chosen for matching
-  std::vector<cv::Mat1b> masks;                           // empty, or non-zero: match
   std::vector<std::size_t> references;                    // images that get a depth map
   std::string fingerprint;
 };
 
-// Reads everything but keeps no colours. Error for anything wrong with the scene, its housing, its
-// images or masks.
+// Reads the scene and the bytes of its images and masks, but keeps no pixels. Error for anything
+// wrong with the scene or its housing, for files that are missing or cut, and for images of another
+// shape than their camera; ImageStore::check_all finds the rest.
 Project load_project(const Options& options);
 
 // Leaves the housing beside the output scene, where every later program finds it. A scene without
 // ports gets none, and an older one of the same name goes.
 void write_housing_beside_output(const Project& project, const Options& options);
-
-// The colours of an image at its working resolution, B G R.
-cv::Mat3b load_color(const Project& project, std::size_t image);
 
 }  // namespace densify

@@ -14,7 +14,7 @@ ProgramOptions describe(Arguments& a) {
   program.description = "makes a synthetic scene with ground truth, in air and under water";
   const simulate::PresetOptions preset;
   program.visible.add_options()("preset", po::value(&a.preset.name)->default_value(preset.name),
-                                "reef or closeup")(
+                                "reef, closeup or survey")(
       "seed", po::value(&a.preset.seed)->default_value(preset.seed), "of everything random")(
       "output,o", po::value(&a.output), "folder of the scene (required)")(
       "views", po::value(&a.preset.views)->default_value(0), "images (0: the preset's number)")(
@@ -31,6 +31,8 @@ ProgramOptions describe(Arguments& a) {
                                                             "refractive index")(
       "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
       "jpeg-quality", po::value(&a.jpeg_quality)->default_value(93), "1 to 100")(
+      "truth", po::value(&a.truth)->default_value(true),
+      "write distances and normals of the images")(
       "truth-only", po::value(&a.truth_only)->default_value(false)->implicit_value(true),
       "write mesh.ply, distances and normals, nothing else")(
       "medium", po::value(&a.medium)->default_value("both"), "air, water or both");
@@ -38,6 +40,7 @@ ProgramOptions describe(Arguments& a) {
 }
 
 void check(const Arguments& a) {
+  if (a.truth_only && !a.truth) fail("--truth-only contradicts --truth 0");
   if (a.output.empty()) fail("no output folder given (-o DIR)");
   if (a.medium != "air" && a.medium != "water" && a.medium != "both")
     fail("--medium is '{}': must be air, water or both", a.medium);

@@ -13,7 +13,7 @@ struct Arguments {
   std::string output, medium;
   int samples = 0, jpeg_quality = 0;
   double noise = 0;
-  bool truth_only = false;
+  bool truth = true, truth_only = false;
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
 };
 

@@ -12,7 +12,7 @@ using namespace axial;
 
 namespace {
 
-// Images and truth of all views in one medium.
+// Images and truth of all views in one medium, as asked for.
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
   make_folder(folder);
@@ -20,7 +20,8 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
   const ProgressSink progress = console_progress(water ? "Images (water)" : "Images (air)");
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
     const simulate::View& view = preset.views[i];
-    write_truth(folder, view_name(i), simulate::render_truth(scene, preset.lens, port, view));
+    if (a.truth)
+      write_truth(folder, view_name(i), simulate::render_truth(scene, preset.lens, port, view));
     if (!a.truth_only) {
       const auto radiance =
           simulate::render_radiance(scene, shader, preset.lens, port, view, a.samples);

@@ -8,8 +8,7 @@ packages=(
   # to build
   g++ cmake ninja-build
   libeigen3-dev libopencv-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
-  libnanoflann-dev libembree-dev libboost-dev libboost-program-options-dev
-  libxxhash-dev
+  libnanoflann-dev libembree-dev libxxhash-dev libboost-dev libboost-program-options-dev
   # to test
   libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
   # to run the pipeline

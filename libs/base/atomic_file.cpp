@@ -34,21 +34,37 @@ void flush_to_disk(const std::filesystem::path& temporary) {
 
 }  // namespace
 
+AtomicFile::AtomicFile(std::filesystem::path path)
+    : path_(std::move(path)), temporary_(temporary_beside(path_)) {}
+
+// Nothing is left of it after a commit.
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  try {
+    flush_to_disk(temporary_);
+    std::filesystem::rename(temporary_, path_);
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail("{}: cannot be written: {}", path_.string(), error.code().message());
+  } catch (const Error& error) {
+    fail("{}: cannot be written: {}", path_.string(), error.what());
+  }
+}
+
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write) {
-  const std::filesystem::path temporary = temporary_beside(path);
-  std::error_code ignored;
+  AtomicFile file(path);
   try {
-    write(temporary);
-    flush_to_disk(temporary);
-    std::filesystem::rename(temporary, path);
+    write(file.temporary());
   } catch (const std::filesystem::filesystem_error& error) {
-    std::filesystem::remove(temporary, ignored);
     fail("{}: cannot be written: {}", path.string(), error.code().message());
   } catch (const std::exception& error) {
-    std::filesystem::remove(temporary, ignored);
     fail("{}: cannot be written: {}", path.string(), error.what());
   }
+  file.commit();
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view bytes) {

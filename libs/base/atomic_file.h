@@ -8,12 +8,32 @@
 
 namespace axial {
 
+// A file under way: what is written to `temporary`, beside `path`, becomes `path` by commit().
+// Without it the temporary goes with this object, and `path` keeps what it held before. The
+// temporary's name ends in `path`'s own extension, because libraries that open files themselves
+// read it.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& temporary() const { return temporary_; }
+
+  // Call it once the temporary is closed. Error that names `path` unless everything reached the
+  // disk and the temporary took its name.
+  void commit();
+
+ private:
+  std::filesystem::path path_, temporary_;
+};
+
 // Writes `path` through a temporary file beside it, which is renamed over `path` once `write` has
 // returned and everything reached the disk. On any failure (unwritable folder, full disk, an
 // exception out of `write`) the temporary is removed, `path` keeps what it held before, and an
-// Error that names `path` is thrown. `write` gets the temporary's name: for libraries that open
-// files themselves. The temporary's name ends in `path`'s own extension, because such libraries
-// read it.
+// Error that names `path` is thrown. `write` gets the temporary's name.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 

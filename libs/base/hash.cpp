@@ -2,36 +2,32 @@
 #include "base/hash.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <bit>
-#include <new>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 namespace axial {
 
 struct Fingerprint::State {
-  XXH3_state_t* hash = XXH3_createState();
-
-  State() {
-    if (!hash) throw std::bad_alloc();
-    XXH3_128bits_reset(hash);
-  }
-  ~State() { XXH3_freeState(hash); }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+  XXH3_state_t xxh3;
 };
 
-Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {}
+Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {
+  XXH3_128bits_reset(&state_->xxh3);
+}
+
 Fingerprint::~Fingerprint() = default;
 
 Fingerprint& Fingerprint::add(std::string_view bytes) {
   add(static_cast<std::uint64_t>(bytes.size()));
-  XXH3_128bits_update(state_->hash, bytes.data(), bytes.size());
+  XXH3_128bits_update(&state_->xxh3, bytes.data(), bytes.size());
   return *this;
 }
 
 Fingerprint& Fingerprint::add(std::uint64_t value) {
-  XXH3_128bits_update(state_->hash, &value, sizeof value);
+  XXH3_128bits_update(&state_->xxh3, &value, sizeof value);
   return *this;
 }
 
@@ -40,8 +36,8 @@ Fingerprint& Fingerprint::add(double value) {
 }
 
 std::string Fingerprint::hex() const {
-  const XXH128_hash_t digest = XXH3_128bits_digest(state_->hash);
-  return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state_->xxh3);
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 }  // namespace axial

@@ -11,8 +11,8 @@
 
 namespace axial {
 
-// Collects bytes into a fingerprint (XXH3, 128 bits), printed as 32 hex digits. For recognising
-// what a file was made from, not for security.
+// Collects bytes into a 128-bit XXH3 fingerprint, printed as 32 hex digits. For recognising what a
+// file was made from, not for security: it must keep up with the disk.
 class Fingerprint {
  public:
   Fingerprint();

@@ -5,17 +5,40 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace axial {
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain) {
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, count, grain),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-      },
-      tbb::simple_partitioner());
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+void for_each_in_flight(std::size_t count, std::size_t in_flight,
+                        const std::function<void(std::size_t)>& body) {
+  std::size_t next = 0;
+  const auto begin_next = [&](tbb::flow_control& control) {
+    if (next == count) control.stop();
+    return next++;
+  };
+  tbb::parallel_pipeline(
+      std::max<std::size_t>(in_flight, 1),
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin_next) &
+          tbb::make_filter<std::size_t, void>(tbb::filter_mode::parallel, body));
+}
+
+std::size_t thread_count() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 // Built where it stays: a copy of a global_control compiles, but limits nothing.

@@ -2,37 +2,21 @@
 #include "cloud/fuse.h"
 
 #include <algorithm>
-#include <optional>
 #include <unordered_map>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "cloud/fusion_map.h"
+#include "cloud/map_store.h"
+#include "cloud/portion.h"
 
 namespace axial::cloud {
 namespace {
 
-enum class PixelState : std::uint8_t { free, used, deleted };
-
-// A view with what must outlive its map, which is loaded late and dropped early.
+// A view with what must outlive its map.
 struct Slot {
   std::uint32_t image = 0;
   std::vector<std::size_t> neighbours;  // other slots
-  std::size_t last_use = 0;             // step after which the map is no longer needed
-  std::optional<FusionMap> view;
-  std::vector<PixelState> state;
-};
-
-// One pixel that supports a point.
-struct Support {
-  std::uint32_t slot;
-  std::uint32_t pixel;
-};
-
-// Points that were accepted but not averaged yet: those of point i are at [begin[i], begin[i + 1]).
-struct Accepted {
-  std::vector<Support> supports;
-  std::vector<std::size_t> begin{0};
+  std::vector<bool> taken;              // pixels that support a point, or were proved wrong
 };
 
 class Fusion {
@@ -47,27 +31,26 @@ class Fusion {
     make_order(views);
   }
 
-  PointCloud run(const ProgressSink& progress) {
-    cloud_.view_begin.push_back(0);
+  void run(const CloudSink& sink, const ProgressSink& progress) {
+    MapStore store(needed_maps(), slots_.size(), {options_.max_maps, options_.max_loads},
+                   [this](std::size_t slot) { return load(slot); });
     for (std::size_t step = 0; step < order_.size(); ++step) {
-      fuse_view(order_[step]);
-      for (Slot& slot : slots_) {
-        if (slot.last_use == step) slot.view.reset();
-      }
+      store.begin_step(step);
+      fuse_view(order_[step], store, sink);
+      store.end_step(step);
+      for (const std::size_t slot : views_of(order_[step]))
+        if (!store.needed_later(slot)) slots_[slot].taken = {};
       if (progress) progress(step + 1, order_.size());
     }
-    return std::move(cloud_);
   }
 
  private:
   void make_slots(const Scene& scene, std::span<const FusionView> views);
   void make_order(std::span<const FusionView> views);
-  FusionMap& load(std::size_t slot);
-  void fuse_view(std::size_t reference);
-  void accept(std::size_t reference, std::span<const std::uint32_t> asking,
-              const std::vector<std::vector<Answer>>& answers, Accepted& accepted);
-  void append(const Accepted& accepted);
-  void average(std::span<const Support> supports, std::size_t point, std::size_t view_begin);
+  std::vector<std::size_t> views_of(std::size_t reference) const;
+  std::vector<std::vector<std::size_t>> needed_maps() const;
+  FusionMap load(std::size_t slot) const;
+  void fuse_view(std::size_t reference, const MapStore& store, const CloudSink& sink);
 
   const FusionProviders& providers_;
   const FuseOptions& options_;
@@ -75,7 +58,6 @@ class Fusion {
   std::size_t min_views_;
   std::vector<Slot> slots_;
   std::vector<std::size_t> order_;
-  PointCloud cloud_;
 };
 
 void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
@@ -111,150 +93,77 @@ void Fusion::make_order(std::span<const FusionView> views) {
     if (views[a].rank != views[b].rank) return views[a].rank > views[b].rank;
     return views[a].image < views[b].image;
   });
-  for (std::size_t step = 0; step < order_.size(); ++step) {
-    slots_[order_[step]].last_use = step;
-    for (const std::size_t neighbour : slots_[order_[step]].neighbours) {
-      slots_[neighbour].last_use = step;
-    }
-  }
 }
 
-FusionMap& Fusion::load(std::size_t index) {
-  Slot& slot = slots_[index];
-  if (!slot.view) {
-    cv::Mat3b color;
-    DepthMap map = providers_.load_map(slot.image);
-    if (providers_.load_color) color = providers_.load_color(slot.image);
-    slot.view = make_fusion_map(std::move(map), std::move(color));
-    slot.state.resize(slot.view->pixels(), PixelState::free);
-  }
-  return *slot.view;
-}
-
-void Fusion::fuse_view(std::size_t reference) {
-  const FusionMap& view = load(reference);
-  for (const std::size_t neighbour : slots_[reference].neighbours) load(neighbour);
-
-  std::vector<std::uint32_t> free;
-  for (std::uint32_t pixel = 0; pixel < view.pixels(); ++pixel) {
-    const bool is_free = slots_[reference].state[pixel] == PixelState::free;
-    if (is_free && view.depth(pixel) > 0) free.push_back(pixel);
-  }
-  // In portions, so that the answers of large images do not fill the memory.
-  constexpr std::size_t kPortion = std::size_t{1} << 19;
-  std::vector<std::vector<Answer>> answers(slots_[reference].neighbours.size());
-  for (std::size_t begin = 0; begin < free.size(); begin += kPortion) {
-    const auto asking = std::span(free).subspan(begin, std::min(kPortion, free.size() - begin));
-    for (std::size_t n = 0; n < answers.size(); ++n) {
-      answers[n].resize(asking.size());
-      ask_neighbour(view, *slots_[slots_[reference].neighbours[n]].view, asking, options_,
-                    answers[n]);
-    }
-    Accepted accepted;
-    accept(reference, asking, answers, accepted);
-    append(accepted);
-  }
-}
-
-// The one serial pass: who comes first gets the pixel.
-void Fusion::accept(std::size_t reference, std::span<const std::uint32_t> asking,
-                    const std::vector<std::vector<Answer>>& answers, Accepted& accepted) {
+// The slots that are needed to fuse one view: itself, then its neighbours.
+std::vector<std::size_t> Fusion::views_of(std::size_t reference) const {
+  std::vector<std::size_t> views{reference};
   const std::vector<std::size_t>& neighbours = slots_[reference].neighbours;
-  std::vector<Support> disproved;
-  for (std::size_t i = 0; i < asking.size(); ++i) {
-    const std::size_t first = accepted.supports.size();
-    accepted.supports.push_back({static_cast<std::uint32_t>(reference), asking[i]});
-    disproved.clear();
-    for (std::size_t n = 0; n < neighbours.size(); ++n) {
-      const Answer answer = answers[n][i];
-      if (answer.none()) continue;
-      if (slots_[neighbours[n]].state[answer.pixel()] != PixelState::free) continue;
-      const Support support{static_cast<std::uint32_t>(neighbours[n]), answer.pixel()};
-      (answer.agrees() ? accepted.supports : disproved).push_back(support);
-    }
-    if (accepted.supports.size() - first < min_views_) {
-      accepted.supports.resize(first, {0, 0});
-      continue;
-    }
-    for (std::size_t k = first; k < accepted.supports.size(); ++k) {
-      slots_[accepted.supports[k].slot].state[accepted.supports[k].pixel] = PixelState::used;
-    }
-    for (const Support& s : disproved) slots_[s.slot].state[s.pixel] = PixelState::deleted;
-    accepted.begin.push_back(accepted.supports.size());
-  }
+  views.insert(views.end(), neighbours.begin(), neighbours.end());
+  return views;
 }
 
-void Fusion::append(const Accepted& accepted) {
-  const std::size_t count = accepted.begin.size() - 1;
-  const std::size_t first = cloud_.size();
-  const std::size_t first_view = cloud_.view_images.size();
-  cloud_.positions.resize(first + count);
-  if (options_.normals) cloud_.normals.resize(first + count);
-  if (providers_.load_color) cloud_.colors.resize(first + count);
-  cloud_.view_images.resize(first_view + accepted.supports.size());
-  cloud_.view_weights.resize(first_view + accepted.supports.size());
-  for (std::size_t i = 1; i <= count; ++i) {
-    cloud_.view_begin.push_back(first_view + accepted.begin[i]);
-  }
-  constexpr std::size_t kGrain = 4096;
-  parallel_for(
-      count,
-      [&](std::size_t i) {
-        const auto supports =
-            std::span(accepted.supports)
-                .subspan(accepted.begin[i], accepted.begin[i + 1] - accepted.begin[i]);
-        average(supports, first + i, first_view + accepted.begin[i]);
-      },
-      kGrain);
+std::vector<std::vector<std::size_t>> Fusion::needed_maps() const {
+  std::vector<std::vector<std::size_t>> needed;
+  for (const std::size_t reference : order_) needed.push_back(views_of(reference));
+  return needed;
 }
 
-void Fusion::average(std::span<const Support> supports, std::size_t point, std::size_t view_begin) {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d color = Eigen::Vector3d::Zero();
-  double total = 0;
-  std::size_t count = 0;
-  for (const Support& support : supports) {
-    const FusionMap& view = *slots_[support.slot].view;
-    const float weight = view.weight[support.pixel];
-    const auto w = static_cast<double>(weight);
-    total += w;
-    position += w * view.point[support.pixel].cast<double>();
-    normal += w * view.normal[support.pixel].cast<double>();
-    if (!view.color.empty()) {
-      const cv::Vec3b bgr = view.color_at(support.pixel);
-      color += w * Eigen::Vector3d(bgr[2], bgr[1], bgr[0]);
-    }
-    // Insertion keeps the few views sorted by image.
-    std::size_t k = view_begin + count++;
-    for (; k > view_begin && cloud_.view_images[k - 1] > slots_[support.slot].image; --k) {
-      cloud_.view_images[k] = cloud_.view_images[k - 1];
-      cloud_.view_weights[k] = cloud_.view_weights[k - 1];
-    }
-    cloud_.view_images[k] = slots_[support.slot].image;
-    cloud_.view_weights[k] = weight;
+FusionMap Fusion::load(std::size_t slot) const {
+  const std::uint32_t image = slots_[slot].image;
+  cv::Mat3b color;
+  if (providers_.load_color) {
+    color = providers_.load_color(image);
+    if (color.empty()) fail("fusion: image {} has no pixels", image);
   }
-  cloud_.positions[point] = (position / total).cast<float>();
-  if (!cloud_.normals.empty()) {
-    if (!(normal.norm() > 1e-6 * total)) {  // unknown: towards the first view
-      normal = slots_[supports[0].slot].view->map.pose.centre - position / total;
-    }
-    cloud_.normals[point] = normal.stableNormalized().cast<float>();
+  return make_fusion_map(providers_.load_map(image), color);
+}
+
+void Fusion::fuse_view(std::size_t reference, const MapStore& store, const CloudSink& sink) {
+  std::vector<WorkingView> views;
+  for (const std::size_t slot : views_of(reference)) {
+    slots_[slot].taken.resize(store.map(slot).pixels());
+    views.push_back({slots_[slot].image, &store.map(slot), &slots_[slot].taken});
   }
-  if (!cloud_.colors.empty()) {
-    for (int c = 0; c < 3; ++c) {
-      cloud_.colors[point][static_cast<std::size_t>(c)] =
-          static_cast<std::uint8_t>(std::clamp(color(c) / total + 0.5, 0.0, 255.0));
-    }
+  Portion portion(views);
+  for (std::size_t pixel = 0; pixel < store.map(reference).pixels();) {
+    pixel = portion.collect(pixel);
+    portion.ask(options_);
+    portion.accept(min_views_);
+    if (portion.size() > 0) sink(portion.points(options_.normals));
   }
 }
 
 }  // namespace
 
+void append(PointCloud& cloud, const PointCloud& portion) {
+  const auto add = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  const std::size_t first_view = cloud.view_images.size();
+  add(cloud.positions, portion.positions);
+  add(cloud.normals, portion.normals);
+  add(cloud.colors, portion.colors);
+  add(cloud.view_images, portion.view_images);
+  add(cloud.view_weights, portion.view_weights);
+  for (std::size_t i = 1; i < portion.view_begin.size(); ++i)
+    cloud.view_begin.push_back(first_view + portion.view_begin[i]);
+}
+
+void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
+          const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress) {
+  Fusion(scene, views, providers, options).run(sink, progress);
+}
+
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options,
                 const ProgressSink& progress) {
-  return Fusion(scene, views, providers, options).run(progress);
+  PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  fuse(
+      scene, views, providers, options, [&](const PointCloud& portion) { append(cloud, portion); },
+      progress);
+  return cloud;
 }
 
 }  // namespace axial::cloud

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <span>
@@ -25,8 +26,8 @@ struct FusionView {
       0;  // views are fused in decreasing rank (unfiltered neighbours), ties by image
 };
 
-// Both are called with an index into Scene::images, from one thread, at most once a view and as
-// late as possible; what they return is dropped after the last view that needs it.
+// Both are called with an index into Scene::images, as late as possible, from up to
+// FuseOptions::max_loads threads; once a view unless max_maps makes it necessary to load one again.
 struct FusionProviders {
   std::function<DepthMap(std::size_t image)> load_map;
   // B G R at the depth map's size. Empty function: no colours.
@@ -39,8 +40,21 @@ struct FuseOptions {
   std::size_t min_views = 3;
   double depth_threshold = 0.01;                              // relative, along the neighbour's ray
   double normal_threshold = 25.0 * std::numbers::pi / 180.0;  // [rad]
-  bool normals = true;  // fill PointCloud::normals
+  bool normals = true;                                        // fill PointCloud::normals
+
+  // What memory allows; the cloud does not depend on it. Maps in memory at a time (20 bytes a
+  // pixel, 3 more with colours), but never fewer than a view and its neighbours; calls of the
+  // providers at the same time.
+  std::size_t max_maps = std::numeric_limits<std::size_t>::max();
+  std::size_t max_loads = 1;
 };
+
+// Adds the points of `portion`, which has the same attributes, to `cloud`, whose view_begin starts
+// as {0}.
+void append(PointCloud& cloud, const PointCloud& portion);
+
+// Takes the next points of a cloud.
+using CloudSink = std::function<void(PointCloud portion)>;
 
 // Every pixel that belongs to no point yet asks its view's neighbours: those whose depth at the
 // projection agrees in depth and normal join, and their pixels are used up. A point with enough
@@ -49,7 +63,13 @@ struct FuseOptions {
 // wrong (a neighbour sees behind it) are deleted. Each pixel of a depth map supports at most one
 // point. Positions, weights and views (sorted by image) are always filled. Maps without normals get
 // them from depth (estimate_map_normals); pixels without a normal skip the normal test. The same
-// bytes for any number of threads. Error for a map whose size, image and normals disagree.
+// bytes for any number of threads. The cloud is handed on in portions: besides the maps only one
+// bit a pixel is kept of the views that are not done yet. Error for a map whose size, image and
+// normals disagree.
+void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
+          const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
+
+// The same, all portions in one.
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options = {},
                 const ProgressSink& progress = {});

@@ -10,6 +10,8 @@
 namespace axial::cloud {
 namespace {
 
+constexpr std::size_t kGrain = 1024;
+
 void check(const DepthMap& map, const cv::Mat3b& color) {
   const cv::Size size = map.depth.size();
   const auto agrees = [&](const cv::Mat& image) { return image.empty() || image.size() == size; };
@@ -30,23 +32,24 @@ float weight_of(float depth, float confidence) {
   return 1.0f / (std::max(1.0f - confidence, 0.03f) * depth * depth);
 }
 
-template <class Camera>
-void back_project_row(const Camera& camera, int y, FusionMap& view) {
-  const DepthMap& map = view.map;
+// Normals and weights of one row.
+void prepare_row(const DepthMap& map, int y, FusionMap& view) {
   const Eigen::Matrix3d to_world = map.pose.rotation.transpose();
-  std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width());
-  for (int x = 0; x < map.width(); ++x, ++i) {
+  for (int x = 0; x < map.width(); ++x) {
     const float depth = map.depth(y, x);
     if (!(depth > 0)) continue;
-    const auto ray = camera.ray({x, y});
-    const Eigen::Vector3d in_camera = ray.at(static_cast<double>(depth));
-    view.point[i] = map.pose.to_world(in_camera).template cast<float>();
-    view.weight[i] = weight_of(depth, map.confidence.empty() ? 0.0f : map.confidence(y, x));
-    if (map.normal.empty()) continue;
+    view.weight(y, x) = weight_of(depth, map.confidence.empty() ? 0.0f : map.confidence(y, x));
     const cv::Vec3f n = map.normal(y, x);
     const Eigen::Vector3d normal = Eigen::Vector3f(n[0], n[1], n[2]).cast<double>();
-    view.normal[i] = (to_world * normal).cast<float>();
+    const Eigen::Vector3f turned = (to_world * normal).cast<float>();
+    view.normal(y, x) = {turned.x(), turned.y(), turned.z()};
   }
+}
+
+// Pixels are addressed as one run.
+template <class Image>
+Image in_one_run(const Image& image) {
+  return image.isContinuous() ? image : Image(image.clone());
 }
 
 // Answers of one neighbour. Float projection: its error of a thousandth of a pixel only matters to
@@ -59,13 +62,14 @@ class Neighbour {
       : reference_(reference),
         neighbour_(neighbour),
         camera_(camera),
-        width_(neighbour.map.width()),
-        height_(neighbour.map.height()),
+        width_(neighbour.depth.cols),
+        height_(neighbour.depth.rows),
         depth_threshold_(static_cast<float>(options.depth_threshold)),
         least_cosine_(static_cast<float>(std::cos(options.normal_threshold))) {}
 
-  Answer operator()(std::uint32_t asking) const {
-    const Eigen::Vector3f X = in_camera(neighbour_, reference_.point[asking]);
+  // Pixel `asking` of the reference, and its point.
+  Answer operator()(std::uint32_t asking, const Eigen::Vector3f& point) const {
+    const Eigen::Vector3f X = neighbour_.pose.to_camera(point.cast<double>()).cast<float>();
     const auto projection = camera_.project(X);
     if (!projection.visible) return {};
     const float u = std::floor(projection.pixel.x() + 0.5f);
@@ -75,7 +79,7 @@ class Neighbour {
     }
     const auto pixel = static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) +
                        static_cast<std::uint32_t>(u);
-    const float seen = neighbour_.depth(pixel);
+    const float seen = neighbour_.depth_at(pixel);
     if (!(seen > 0)) return {};
     const auto ray = camera_.ray(projection.pixel);
     const float depth = (X - ray.origin).dot(ray.direction);
@@ -86,14 +90,9 @@ class Neighbour {
   }
 
  private:
-  static Eigen::Vector3f in_camera(const FusionMap& view, const Eigen::Vector3f& point) {
-    return view.map.pose.to_camera(point.cast<double>()).cast<float>();
-  }
-
   bool same_normal(std::uint32_t asking, std::uint32_t pixel) const {
-    if (reference_.normal.empty() || neighbour_.normal.empty()) return true;
-    const Eigen::Vector3f& mine = reference_.normal[asking];
-    const Eigen::Vector3f& other = neighbour_.normal[pixel];
+    const Eigen::Vector3f mine = reference_.normal_at(asking);
+    const Eigen::Vector3f other = neighbour_.normal_at(pixel);
     return mine.isZero(0) || other.isZero(0) || mine.dot(other) > least_cosine_;
   }
 
@@ -106,38 +105,47 @@ class Neighbour {
 
 }  // namespace
 
-FusionMap make_fusion_map(DepthMap map, cv::Mat3b color) {
+FusionMap make_fusion_map(DepthMap map, const cv::Mat3b& color) {
   check(map, color);
   if (map.normal.empty()) map.normal = estimate_map_normals(map);
-  FusionMap view;
-  view.map = std::move(map);
-  // Pixels are addressed as one run.
-  if (!view.map.depth.isContinuous()) view.map.depth = view.map.depth.clone();
-  view.color = color.isContinuous() ? color : cv::Mat3b(color.clone());
-  const std::size_t pixels = view.map.depth.total();
-  view.point.assign(pixels, Eigen::Vector3f::Zero());
-  view.normal.assign(pixels, Eigen::Vector3f::Zero());
-  view.weight.assign(pixels, 0.0f);
-  std::visit(
-      [&](const auto& camera) {
-        parallel_for(static_cast<std::size_t>(view.map.height()),
-                     [&](std::size_t y) { back_project_row(camera, static_cast<int>(y), view); });
-      },
-      make_camera<double>(view.map.camera));
+  FusionMap view{map.image_path,   map.pose, map.camera, in_one_run(map.depth), {}, {},
+                 in_one_run(color)};
+  view.normal = cv::Mat3f(map.depth.size(), cv::Vec3f::all(0));
+  view.weight = cv::Mat1f(map.depth.size(), 0.0f);
+  parallel_for(static_cast<std::size_t>(map.height()),
+               [&](std::size_t y) { prepare_row(map, static_cast<int>(y), view); });
   return view;
 }
 
+void back_project(const FusionMap& view, PixelPoints& where) {
+  where.points.resize(where.pixels.size());
+  const auto width = static_cast<std::uint32_t>(view.depth.cols);
+  std::visit(
+      [&](const auto& camera) {
+        parallel_for(
+            where.pixels.size(),
+            [&](std::size_t i) {
+              const std::uint32_t pixel = where.pixels[i];
+              const auto ray = camera.ray({pixel % width, pixel / width});
+              const auto depth = static_cast<double>(view.depth_at(pixel));
+              where.points[i] = view.pose.to_world(ray.at(depth)).template cast<float>();
+            },
+            kGrain);
+      },
+      make_camera<double>(view.camera));
+}
+
 void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
-                   std::span<const std::uint32_t> asking, const FuseOptions& options,
+                   const PixelPoints& asking, const FuseOptions& options,
                    std::span<Answer> answers) {
   std::visit(
       [&](const auto& camera) {
         const Neighbour ask(reference, neighbour, camera, options);
-        constexpr std::size_t kGrain = 4096;
         parallel_for(
-            asking.size(), [&](std::size_t i) { answers[i] = ask(asking[i]); }, kGrain);
+            answers.size(),
+            [&](std::size_t i) { answers[i] = ask(asking.pixels[i], asking.points[i]); }, kGrain);
       },
-      make_camera<float>(neighbour.map.camera));
+      make_camera<float>(neighbour.camera));
 }
 
 }  // namespace axial::cloud

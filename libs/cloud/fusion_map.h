@@ -1,30 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): one view's map in world coordinates, and what it answers to another view.
+// Inside of fuse(): one view's map, and what it answers to another view.
 #pragma once
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "cloud/fuse.h"
 
 namespace axial::cloud {
 
-// A depth map back-projected once. Pixels are addressed by y * width + x.
+// A depth map as fusion needs it: 20 bytes a pixel, and 3 with colours. Points are computed when
+// needed, which is cheaper than to keep them. Pixels are addressed by y * width + x.
 struct FusionMap {
-  DepthMap map;
-  cv::Mat3b color;                      // may be empty
-  std::vector<Eigen::Vector3f> point;   // world; meaningless where depth is 0
-  std::vector<Eigen::Vector3f> normal;  // world; 0: unknown; empty: none at all
-  std::vector<float> weight;            // 1 / (max(1 - confidence, 0.03) depth^2)
+  std::string image_path;
+  Pose pose;
+  CameraModel camera;
+  cv::Mat1f depth;   // 0: none
+  cv::Mat3f normal;  // world frame; 0: unknown
+  cv::Mat1f weight;  // 1 / (max(1 - confidence, 0.03) depth^2); meaningless without depth
+  cv::Mat3b color;   // may be empty
 
-  std::size_t pixels() const { return point.size(); }
-  float depth(std::size_t pixel) const { return map.depth.ptr<float>()[pixel]; }
+  std::size_t pixels() const { return depth.total(); }
+  float depth_at(std::size_t pixel) const { return depth.ptr<float>()[pixel]; }
+  float weight_at(std::size_t pixel) const { return weight.ptr<float>()[pixel]; }
+  Eigen::Vector3f normal_at(std::size_t pixel) const {
+    return Eigen::Map<const Eigen::Vector3f>(normal.ptr<float>() + 3 * pixel);
+  }
   cv::Vec3b color_at(std::size_t pixel) const { return color.ptr<cv::Vec3b>()[pixel]; }
 };
 
-// Checks the map (Error that names its image) and back-projects it.
-FusionMap make_fusion_map(DepthMap map, cv::Mat3b color);
+// Checks the map (Error that names its image) and turns its normals into the world. Shares depths
+// and colours with what it is given.
+FusionMap make_fusion_map(DepthMap map, const cv::Mat3b& color);
+
+// Some pixels of a view and their points in the world.
+struct PixelPoints {
+  std::vector<std::uint32_t> pixels;
+  std::vector<Eigen::Vector3f> points;  // as many, once back_project has filled them
+};
+
+// Fills the points; every pixel must have a depth.
+void back_project(const FusionMap& view, PixelPoints& where);
 
 // What a neighbour says to a pixel: nothing, "my pixel sees the same", or "my pixel sees through
 // you".
@@ -47,7 +66,7 @@ class Answer {
 // The answers of `neighbour` to the pixels `asking` of `reference`, in that order; `answers` has
 // that length too. They do not depend on which pixels are used already.
 void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
-                   std::span<const std::uint32_t> asking, const FuseOptions& options,
+                   const PixelPoints& asking, const FuseOptions& options,
                    std::span<Answer> answers);
 
 }  // namespace axial::cloud

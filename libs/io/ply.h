@@ -2,7 +2,9 @@
 // PLY clouds and meshes: ascii and binary in, binary little-endian out.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
@@ -14,9 +16,37 @@ namespace axial::io {
 // properties are skipped. Error that names the file for anything malformed or truncated.
 PointCloud read_cloud_ply(const std::filesystem::path& path);
 
-// Layout as OpenMVS writes it: x y z, red green blue, nx ny nz, view_indices, view_weights; each
-// group only where the cloud has it. Error if a point has more than 255 views (the format counts in
-// a byte).
+// What every point of a cloud has besides its position.
+struct CloudLayout {
+  bool colors = false, normals = false, views = false, view_weights = false;
+};
+
+// A cloud written portion by portion, of any size. The file takes its name in finish(); until then,
+// and if that is never called, there is none. Layout as OpenMVS writes it: x y z, red green blue,
+// nx ny nz, view_indices, view_weights. The number of points is known last, so a comment line keeps
+// the room that its digits do not need.
+class CloudWriter {
+ public:
+  CloudWriter(const std::filesystem::path& path, const CloudLayout& layout);
+  ~CloudWriter();
+  CloudWriter(CloudWriter&&) = delete;
+
+  // Appends all points of `portion`. Error that names the file if an array of the layout is missing
+  // or has another length than the positions, if a point has more than 255 views (the format counts
+  // in a byte), or if the file cannot be written.
+  void add(const PointCloud& portion);
+
+  std::size_t size() const;  // points so far
+
+  void finish();
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+};
+
+// The whole cloud at once, each group of the layout only where the cloud has it. Errors as
+// CloudWriter::add.
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true);
 

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/byte_writer.h"
@@ -14,63 +18,124 @@ constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nprope
 
 void require_length(std::size_t length, std::size_t points, const char* field,
                     const std::string& file) {
-  if (length != 0 && length != points)
-    fail("{}: the cloud has {} {} for {} points", file, length, field, points);
+  if (length != points) fail("{}: the cloud has {} {} for {} points", file, length, field, points);
 }
 
-void check_cloud(const PointCloud& cloud, bool with_views, const std::string& file) {
-  require_length(cloud.normals.size(), cloud.size(), "normals", file);
-  require_length(cloud.colors.size(), cloud.size(), "colors", file);
-  if (!with_views) return;
+void check_views(const PointCloud& cloud, std::size_t before, const std::string& file) {
+  if (cloud.view_begin.empty()) fail("{}: the cloud has no view lists", file);
   require_length(cloud.view_begin.size() - 1, cloud.size(), "view lists", file);
-  require_length(cloud.view_weights.size(), cloud.view_images.size(), "view weights", file);
   if (cloud.view_begin.back() > cloud.view_images.size())
     fail("{}: the cloud's view lists end at {}, but there are {} views", file,
          cloud.view_begin.back(), cloud.view_images.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.views_of(i).size() > 255)
-      fail("{}: point {} has {} views, but the format counts them in a byte (at most 255)", file, i,
-           cloud.views_of(i).size());
+      fail("{}: point {} has {} views, but the format counts them in a byte (at most 255)", file,
+           before + i, cloud.views_of(i).size());
 }
 
 void write_vector(ByteWriter& out, const Eigen::Vector3f& v) {
   out.write(std::span(v.data(), 3));
 }
 
-void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i) {
+void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i, bool weights) {
   const std::span<const std::uint32_t> views = cloud.views_of(i);
   const auto size = static_cast<std::uint8_t>(views.size());
   out.write(size);
   out.write(views);
-  if (cloud.view_weights.empty()) return;
+  if (!weights) return;
   out.write(size);
   out.write(std::span(cloud.view_weights).subspan(cloud.view_begin[i], views.size()));
 }
 
+// The same length for any number of points.
+std::string cloud_header(const CloudLayout& layout, std::size_t points) {
+  constexpr std::size_t kMostDigits = 20;
+  const std::string count = std::to_string(points);
+  std::string header = fmt::format("{}comment AxialMVS{}\nelement vertex {}\n{}", kStart,
+                                   std::string(kMostDigits - count.size(), ' '), count, kPosition);
+  if (layout.colors) header += kColor;
+  if (layout.normals) header += kNormal;
+  if (layout.views) header += "property list uint8 uint32 view_indices\n";
+  if (layout.view_weights) header += "property list uint8 float32 view_weights\n";
+  return header + "end_header\n";
+}
+
 }  // namespace
 
-void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views) {
-  with_views = with_views && !cloud.view_begin.empty();
-  check_cloud(cloud, with_views, path.string());
-  ByteWriter out;
-  out.text(fmt::format("{}element vertex {}\n{}", kStart, cloud.size(), kPosition));
-  if (!cloud.colors.empty()) out.text(kColor);
-  if (!cloud.normals.empty()) out.text(kNormal);
-  if (with_views) out.text("property list uint8 uint32 view_indices\n");
-  if (with_views && !cloud.view_weights.empty())
-    out.text("property list uint8 float32 view_weights\n");
-  out.text("end_header\n");
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    write_vector(out, cloud.positions[i]);
-    if (!cloud.colors.empty()) out.write(std::span(cloud.colors[i]));
-    if (!cloud.normals.empty()) write_vector(out, cloud.normals[i]);
-    if (with_views) write_views(out, cloud, i);
+struct CloudWriter::File {
+  AtomicFile file;
+  CloudLayout layout;
+  std::ofstream stream;
+  std::size_t points = 0;
+
+  std::string name() const { return file.path().string(); }
+
+  void check(const PointCloud& portion) const {
+    if (layout.colors) require_length(portion.colors.size(), portion.size(), "colors", name());
+    if (layout.normals) require_length(portion.normals.size(), portion.size(), "normals", name());
+    if (layout.views) check_views(portion, points, name());
+    if (layout.view_weights)
+      require_length(portion.view_weights.size(), portion.view_images.size(), "view weights",
+                     name());
   }
-  write_atomically(path, out.bytes());
+
+  void write(const std::string& bytes) {
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    require_good();
+  }
+
+  void require_good() const {
+    if (!stream)
+      fail("{}: cannot be written: {}", name(), errno ? std::strerror(errno) : "write failed");
+  }
+};
+
+CloudWriter::CloudWriter(const std::filesystem::path& path, const CloudLayout& layout)
+    : file_(new File{AtomicFile(path), layout, {}, 0}) {
+  errno = 0;
+  file_->stream.open(file_->file.temporary(), std::ios::binary);
+  file_->write(cloud_header(layout, 0));
+}
+
+CloudWriter::~CloudWriter() = default;
+
+std::size_t CloudWriter::size() const {
+  return file_->points;
+}
+
+void CloudWriter::add(const PointCloud& portion) {
+  const CloudLayout& layout = file_->layout;
+  file_->check(portion);
+  ByteWriter out;
+  for (std::size_t i = 0; i < portion.size(); ++i) {
+    write_vector(out, portion.positions[i]);
+    if (layout.colors) out.write(std::span(portion.colors[i]));
+    if (layout.normals) write_vector(out, portion.normals[i]);
+    if (layout.views) write_views(out, portion, i, layout.view_weights);
+  }
+  file_->write(out.bytes());
+  file_->points += portion.size();
+}
+
+void CloudWriter::finish() {
+  file_->stream.seekp(0);
+  file_->write(cloud_header(file_->layout, file_->points));
+  file_->stream.close();
+  file_->require_good();
+  file_->file.commit();
+}
+
+void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views) {
+  const bool views = with_views && !cloud.view_begin.empty();
+  CloudWriter out(path, {!cloud.colors.empty(), !cloud.normals.empty(), views,
+                         views && !cloud.view_weights.empty()});
+  out.add(cloud);
+  out.finish();
 }
 
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh) {
-  require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
+  if (!mesh.colors.empty())
+    require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
   ByteWriter out;
   out.text(fmt::format("{}element vertex {}\n{}", kStart, mesh.vertices.size(), kPosition));
   if (!mesh.colors.empty()) out.text(kColor);

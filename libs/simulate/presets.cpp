@@ -137,6 +137,35 @@ void make_reef(Preset& preset, std::uint32_t seed, int views) {
   }
 }
 
+// There along one row, back along the next, over a seabed that grows with the number of rows.
+void make_survey(Preset& preset, std::uint32_t seed, int views) {
+  constexpr int kColumns = 10;
+  constexpr double kStep = 0.9, kHeight = 2.9, kMargin = 2.6;
+  const int rows = (views + kColumns - 1) / kColumns;
+  preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
+  preset.texture = {seed + 2000u, 1.0};
+  Draw draw(seed + 2000u);
+  Terrain& terrain = preset.terrain;
+  terrain.floor = {draw.seed(), 2.2, 0.42, 1, 2, 0};
+  terrain.cell = 0.02;
+  terrain.half_width = 0.5 * kStep * (kColumns - 1) + kMargin;
+  terrain.half_height = 0.5 * kStep * (rows - 1) + kMargin;
+  terrain.skirt = 12;
+  scatter(terrain, views, {terrain.half_width, terrain.half_height}, 0, {0.08, 0.4}, draw);
+
+  for (int i = 0; i < views; ++i) {
+    const int row = i / kColumns, along = i % kColumns;
+    const int column = row % 2 == 0 ? along : kColumns - 1 - along;
+    const Eigen::Vector3d centre(
+        kStep * (column - 0.5 * (kColumns - 1)) + draw.between(-0.06, 0.06),
+        kStep * (row - 0.5 * (rows - 1)) + draw.between(-0.06, 0.06),
+        kHeight + draw.between(-0.12, 0.12));
+    View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+    shake(view, 4, draw);
+    preset.views.push_back(view);
+  }
+}
+
 void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(3), 0.030, 0.018, 1.0, 1.49, 1.333};
   preset.texture = {seed + 1000u, 0.30};
@@ -183,8 +212,10 @@ Preset make_preset(const PresetOptions& options) {
     make_reef(preset, options.seed, views_or(10));
   else if (options.name == "closeup")
     make_closeup(preset, options.seed, views_or(12));
+  else if (options.name == "survey")
+    make_survey(preset, options.seed, views_or(50));
   else
-    fail("preset '{}' is unknown: there are reef and closeup", options.name);
+    fail("preset '{}' is unknown: there are reef, closeup and survey", options.name);
   return preset;
 }
 

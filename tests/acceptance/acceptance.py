@@ -336,6 +336,70 @@ def demo(work):
         cost["wall"] <= 1200
 
 
+# Memory: a survey of 0.3 megapixels a view, whose views have the same neighbours however many there
+# are.
+
+def survey(views):
+    """The first of 200 views: a model, and the folder of all images. Rendered once."""
+    folder = BASE / "survey"
+    if not (folder / "rendered").exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        measured(BASE / "survey.log", BIN / "SimulateUnderwater", "--preset", "survey", "--views", 200,
+                 "--width", 640, "--height", 480, "--samples", 1, "--truth", 0, "--medium", "air",
+                 "-o", folder)
+        (folder / "rendered").touch()
+    if views == 200:
+        return folder / "sparse", folder / "air"
+    measured(BASE / "survey.log", sys.executable, ROOT / "tests/acceptance/hold_out.py",
+             folder / "sparse", folder / f"sparse-{views}",
+             *[f"{i:04}.jpg" for i in range(views, 200)])
+    return folder / f"sparse-{views}", folder / "air"
+
+
+def survey_run(work, views, *options):
+    """A run over the survey and what it cost, in a folder of its own. One sweep instead of three:
+    that changes the time, not the memory."""
+    model, images = survey(views)
+    folder = work / "-".join(["survey", str(views), *map(str, options[1::2])])
+    return folder, densified(folder, model, images, None, "--iters", 1, "--geometric-iters", 1,
+                             *options)
+
+
+@point("peak memory at 200 views of 0.3 MP at most 1.3 times that at 50")
+def memory_growth(work):
+    peaks, seen = {}, []
+    for views in (50, 200):
+        _, cost = survey_run(work, views)
+        peaks[views] = cost["memory"]
+        seen.append(f"{views} views: {cost['memory'] / 1e6:.0f} MB, {cost['cpu']:.0f} CPU-s, "
+                    f"{cost['points']:,} points")
+    ratio = peaks[200] / peaks[50]
+    return "; ".join(seen) + f"; ratio {ratio:.2f}", ratio <= 1.3
+
+
+def results_of(folder):
+    """Fingerprints of the cloud and the depth maps."""
+    files = [folder / "scene_dense.ply", *sorted(folder.glob("depth????.dmap"))]
+    return {file.name: hashlib.sha1(file.read_bytes()).hexdigest() for file in files}
+
+
+@point("200 views with --max-memory 512 and 1000: the same bytes, at most 10 % above the cap; below "
+       "the minimum one line and exit 1")
+def memory_cap(work):
+    free, cost = survey_run(work, 200)
+    expected, seen, good = results_of(free), [f"no cap: {cost['memory'] / 1e6:.0f} MB"], True
+    for cap in (512, 1000):
+        folder, cost = survey_run(work, 200, "--max-memory", cap)
+        same, peak = results_of(folder) == expected, cost["memory"] / 1e6
+        good &= same and len(expected) == 201 and peak <= 1.1 * cap
+        seen.append(f"{cap}: {peak:.0f} MB, {cost['cpu']:.0f} CPU-s, "
+                    f"{'same' if same else 'OTHER'} bytes")
+    refused = subprocess.run([BIN / "DensifyPointCloud", "-i", "scene.mvs", "-w", free,
+                              "--max-memory", "30"], capture_output=True, text=True)
+    good &= refused.returncode == 1 and refused.stderr.count("\n") == 1
+    return "; ".join([*seen, f"30: exit {refused.returncode}, {refused.stderr.strip()}"]), good
+
+
 # The table.
 
 def run_point(name, state):

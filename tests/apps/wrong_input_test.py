@@ -3,9 +3,11 @@
 
 import os
 import random
+import re
 
 import tiny_scene
-from programs import ProgramTest, files_below, grey_png, main, read, run, write
+from programs import (ProgramTest, cloud_size, depth_rows, files_below, grey_png, main, read, run,
+                      write)
 
 DENSIFY = ("DensifyPointCloud", "--max-threads", "1")
 
@@ -131,8 +133,8 @@ class Densify(ProgramTest):
         write(self.scene, tiny_scene.mvs(self.images))
 
     def refuses_scene(self, expected, *arguments, **options):
-        self.refuses(expected, *DENSIFY, "-i", self.scene, "-w", self.path("work"),
-                     "--resolution-level", "0", *arguments, **options)
+        return self.refuses(expected, *DENSIFY, "-i", self.scene, "-w", self.path("work"),
+                            "--resolution-level", "0", *arguments, **options)
 
     def test_the_scene_itself_is_accepted(self):
         self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
@@ -217,6 +219,43 @@ class Densify(ProgramTest):
 
     def test_full_disk(self):
         self.refuses_scene("dmap", file_size_limit=5000)
+
+    def test_too_little_memory(self):
+        self.refuses_scene("--max-memory -1", "--max-memory", "-1")
+        for least in ("1", "30"):
+            said = self.refuses_scene(f"--max-memory {least}: ", "--max-memory", least)
+        needed = re.search(r"needs (\d+)", said.stderr)[1]
+        self.refuses_scene(needed, "--max-memory", int(needed) // 2)
+        # Resident memory is measured anew by every run, and differs by a few pages.
+        self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
+                      "0", "--max-memory", int(needed) + 5)
+
+    def test_full_disk_under_the_cloud(self):
+        cloud = self.path("work", "scene_dense.ply")
+        here = ("-i", self.scene, "-w", self.path("work"), "--resolution-level", "0",
+                "--number-views-fuse", "1", "--postprocess-dmaps", "0")
+        self.succeeds(*DENSIFY, *here)
+        largest = max(os.path.getsize(self.path(name)) for name in files_below(self.folder)
+                      if name != "work/scene_dense.ply")
+        before = read(cloud)
+        self.assertGreater(len(before), largest + 1000)
+        os.remove(cloud)
+        self.refuses("scene_dense.ply: cannot be written: ", *DENSIFY, *here,
+                     file_size_limit=largest + 1000)
+
+    def test_an_empty_cloud_is_a_warning(self):
+        here = ("-i", self.scene, "-w", self.path("work"), "--resolution-level", "0")
+        # A millionth of the region's size leaves nothing.
+        said = self.succeeds(*DENSIFY, *here, "--estimate-roi", "1", "--roi-border", "1e-6").stdout
+        self.assertIn("The cloud is empty", said)
+        self.assertEqual(cloud_size(read(self.path("work", "scene_dense.ply"))), 0)
+        said = self.succeeds(*DENSIFY, *here, "--number-views-fuse", "0",
+                             "--crop-to-roi", "0").stdout
+        self.assertNotIn("The cloud is empty", said)
+        merged = cloud_size(read(self.path("work", "scene_dense.ply")))
+        valid = sum(depth > 0 for name in files_below(self.path("work")) if name.endswith(".dmap")
+                    for row in depth_rows(read(self.path("work", name))) for depth in row)
+        self.assertEqual(merged, valid)
 
     def test_numbers_out_of_range(self):
         for border in ("nan", "inf", "-inf"):

@@ -107,6 +107,21 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
   fs::remove_all(folder);
 }
 
+TEST(AtomicFile, LeavesNothingWithoutACommit) {
+  const fs::path folder = fresh_folder("abandoned");
+  write_atomically(folder / "a.txt", "old");
+  for (const bool commit : {false, true}) {
+    AtomicFile file(folder / "a.txt");
+    write_atomically(file.temporary(), "new");
+    EXPECT_EQ(files_in(folder), 2u);
+    EXPECT_EQ(read_file(folder / "a.txt"), "old");
+    if (commit) file.commit();
+  }
+  EXPECT_EQ(files_in(folder), 1u);
+  EXPECT_EQ(read_file(folder / "a.txt"), "new");
+  fs::remove_all(folder);
+}
+
 TEST(AtomicFile, KeepsTheExtensionOfTheTemporary) {
   const fs::path folder = fresh_folder("extension");
   write_atomically(folder / "a.b.tiff", [&](const fs::path& temporary) {

@@ -9,8 +9,8 @@
 namespace axial {
 namespace {
 
-// Expected digests from the xxhsum program, of the bytes the header describes.
-TEST(Fingerprint, IsTheHashOfItsParts) {
+// Expected digests from xxhsum -H2 of the bytes the header describes.
+TEST(Fingerprint, IsTheXxh3OfItsParts) {
   EXPECT_EQ(Fingerprint().hex(), "99aa06d3014798d86001c324468d497f");
   EXPECT_EQ(Fingerprint().add("abc").add(std::uint64_t{7}).add(0.5).hex(),
             "d235b222b749848ac3edf0ab8a40a790");

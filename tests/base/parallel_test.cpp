@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <set>
@@ -48,6 +49,56 @@ TEST(ParallelFor, CanBeNested) {
   parallel_for(
       6, [&](std::size_t i) { parallel_for(10, [&](std::size_t k) { ++visits[10 * i + k]; }); });
   for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+}
+
+TEST(ForEachInFlight, RunsNoMoreThanItMay) {
+  const ThreadLimit limit(4);
+  for (const std::size_t most : {1u, 2u, 3u}) {
+    std::atomic<std::size_t> running = 0, worst = 0, done = 0;
+    for_each_in_flight(20, most, [&](std::size_t) {
+      const std::size_t now = ++running;
+      for (std::size_t seen = worst; now > seen && !worst.compare_exchange_weak(seen, now);) {
+      }
+      // A loop inside, which idle threads help with: they must not begin further items.
+      parallel_for(10, [](std::size_t) { std::this_thread::yield(); });
+      --running;
+      ++done;
+    });
+    EXPECT_EQ(done, 20u);
+    EXPECT_LE(worst, most);
+  }
+}
+
+TEST(ForEachInFlight, BeginsInOrderAndRethrows) {
+  const ThreadLimit limit(1);
+  std::vector<std::size_t> order;
+  for_each_in_flight(5, 3, [&](std::size_t i) { order.push_back(i); });
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_THROW(for_each_in_flight(5, 3,
+                                  [](std::size_t i) {
+                                    if (i == 2) fail("bad");
+                                  }),
+               Error);
+  for_each_in_flight(0, 3, [](std::size_t) { FAIL(); });
+}
+
+// Whoever waits for the others in an inner loop would else take up another item of the outer one,
+// and hold the memory of both.
+TEST(ParallelFor, DoesNotBeginAnotherItemWhileItWaits) {
+  const ThreadLimit limit(4);
+  thread_local int depth = 0;
+  std::atomic<int> deepest = 0;
+  parallel_for(60, [&](std::size_t) {
+    deepest = std::max<int>(deepest, ++depth);
+    parallel_for(10, [](std::size_t) { std::this_thread::yield(); });
+    --depth;
+  });
+  EXPECT_EQ(deepest, 1);
+}
+
+TEST(ThreadCount, IsTheLimit) {
+  const ThreadLimit limit(3);
+  EXPECT_EQ(thread_count(), 3u);
 }
 
 std::size_t threads_used() {

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <map>
+#include <thread>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -281,6 +283,72 @@ TEST(Fuse, LoadsEachMapOnce) {
   run(fixture);
   EXPECT_EQ(fixture.loads.size(), 4u);
   for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
+}
+
+// Two neighbours each, in a ring: three maps are enough at a time, and most come back later.
+Fixture make_ring(const CameraModel& model) {
+  AnalyticScene world;
+  world.sphere_centre = {0, 0, 0.75};
+  world.sphere_radius = 0.12;
+  Fixture fixture = make_fixture(world, model, 8);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    fixture.views[i].neighbours = {(i + 3) % 8, (i + 5) % 8};
+    fixture.views[i].rank = (i * 5) % 8;
+  }
+  return fixture;
+}
+
+TEST_P(FuseWithCamera, GivesTheSameCloudWhenMapsMustLeaveAndReturn) {
+  Fixture fixture = make_ring(model());
+  FuseOptions options;
+  options.min_views = 2;
+  const PointCloud all = run(fixture, options);
+  for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
+  EXPECT_GT(all.size(), 1000u);
+  fixture.loads.clear();
+  options.max_maps = 1;  // below what one view needs: as few as possible
+  const PointCloud few = run(fixture, options);
+  int loads = 0;
+  for (const auto& [image, count] : fixture.loads) loads += count;
+  EXPECT_GT(loads, 8);      // maps were dropped
+  EXPECT_LE(loads, 8 * 3);  // and each step loads no more than it needs
+  EXPECT_TRUE(same_bytes(all, few));
+}
+
+TEST_P(FuseWithCamera, HandsOnTheCloudInPortions) {
+  Fixture fixture = make_fixture({}, model());
+  PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  int portions = 0;
+  fuse(fixture.scene, fixture.views, fixture.providers(), {}, [&](const PointCloud& portion) {
+    EXPECT_GT(portion.size(), 0u);
+    append(cloud, portion);
+    ++portions;
+  });
+  EXPECT_GT(portions, 1);
+  EXPECT_TRUE(same_bytes(cloud, run(fixture)));
+}
+
+TEST(Fuse, LoadsSeveralMapsAtATime) {
+  Fixture fixture = make_ring(test::dry_camera());
+  FuseOptions options;
+  options.min_views = 2;
+  const PointCloud expected = run(fixture, options);
+  std::atomic<int> loading = 0, most = 0;
+  FusionProviders providers;
+  providers.load_map = [&](std::size_t i) {
+    most = std::max<int>(most, ++loading);
+    std::this_thread::yield();
+    --loading;
+    return fixture.maps[i];
+  };
+  for (const std::size_t loads : {1u, 2u}) {
+    options.max_loads = loads;
+    options.max_maps = 3;
+    most = 0;
+    EXPECT_TRUE(same_bytes(fuse(fixture.scene, fixture.views, providers, options), expected));
+    EXPECT_LE(most, static_cast<int>(loads));
+  }
 }
 
 TEST(Fuse, CapsMinViewsAtTheNumberOfViews) {

@@ -88,8 +88,9 @@ TEST_F(PlyTest, WritesTheLayoutOfOpenMvs) {
   cloud.view_weights = {0.5f, 0.25f};
   write_cloud_ply(file_, cloud);
   const std::string header =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float32 x\n"
-      "property float32 y\nproperty float32 z\nproperty uint8 red\nproperty uint8 green\n"
+      "ply\nformat binary_little_endian 1.0\ncomment AxialMVS" + std::string(19, ' ') +
+      "\nelement vertex 1\nproperty float32 x\nproperty float32 y\nproperty float32 z\nproperty "
+      "uint8 red\nproperty uint8 green\n"
       "property uint8 blue\nproperty float32 nx\nproperty float32 ny\nproperty float32 nz\n"
       "property list uint8 uint32 view_indices\nproperty list uint8 float32 view_weights\n"
       "end_header\n";
@@ -113,6 +114,71 @@ TEST_F(PlyTest, RefusesMoreViewsThanAByteCounts) {
   EXPECT_THAT(error_of([&] { write_cloud_ply(file_, cloud); }), HasSubstr("256 views"));
   cloud.colors.resize(2);
   EXPECT_THAT(error_of([&] { write_cloud_ply(file_, cloud, false); }), HasSubstr("2 colors"));
+}
+
+PointCloud three_points() {
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  cloud.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  cloud.view_begin = {0, 2, 2, 3};
+  cloud.view_images = {5, 6, 9};
+  cloud.view_weights = {0.5f, 0.25f, 0.75f};
+  return cloud;
+}
+
+constexpr CloudLayout kWithColorsAndViews{true, false, true, true};
+
+TEST_F(PlyTest, WritesPortionsAsOneCloud) {
+  const PointCloud portion = three_points();
+  CloudWriter writer(file_, kWithColorsAndViews);
+  for (int i = 0; i < 400; ++i) writer.add(portion);
+  EXPECT_EQ(writer.size(), 1200u);
+  EXPECT_FALSE(fs::exists(file_));
+  writer.finish();
+  const PointCloud cloud = read_cloud_ply(file_);
+  ASSERT_EQ(cloud.size(), 1200u);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_EQ(cloud.positions[i], portion.positions[i % 3]);
+    ASSERT_EQ(cloud.colors[i], portion.colors[i % 3]);
+    ASSERT_TRUE(std::ranges::equal(cloud.views_of(i), portion.views_of(i % 3)));
+  }
+  EXPECT_TRUE(cloud.normals.empty());
+}
+
+// The line that other programs look for has no padding, and the header no odd bytes.
+TEST_F(PlyTest, PutsTheNumberOfPointsIntoAPlainLine) {
+  std::size_t length = 0;
+  for (const int portions : {0, 1, 4, 40}) {
+    CloudWriter writer(file_, kWithColorsAndViews);
+    for (int i = 0; i < portions; ++i) writer.add(three_points());
+    writer.finish();
+    const std::string bytes = read_file(file_);
+    const std::string end = "end_header\n";
+    const std::string header = bytes.substr(0, bytes.find(end) + end.size());
+    EXPECT_THAT(header, HasSubstr("\nelement vertex " + std::to_string(3 * portions) + "\n"));
+    EXPECT_TRUE(
+        std::ranges::all_of(header, [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
+    if (portions == 0) length = header.size();
+    EXPECT_EQ(header.size(), length);
+  }
+}
+
+TEST_F(PlyTest, LeavesTheOldCloudUntilTheNewOneIsFinished) {
+  write_cloud_ply(file_, three_points());
+  const std::string before = read_file(file_);
+  {
+    CloudWriter writer(file_, kWithColorsAndViews);
+    writer.add(three_points());
+  }
+  EXPECT_EQ(read_file(file_), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(PlyTest, NamesTheCloudThatCannotBeStreamed) {
+  const fs::path nowhere = folder_ / "no_such_folder" / "a.ply";
+  EXPECT_THAT(error_of([&] { CloudWriter(nowhere, {}); }), HasSubstr(nowhere.string()));
+  CloudWriter writer(file_, {true, true, true, true});
+  EXPECT_THAT(error_of([&] { writer.add(three_points()); }), HasSubstr("0 normals for 3 points"));
 }
 
 // Everything a reader may meet, in ascii: old and new type names, other order, elements and

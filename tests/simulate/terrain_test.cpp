@@ -81,6 +81,25 @@ TEST(Terrain, CloseupIsWhereTheSpecificationPutsIt) {
   EXPECT_GT(1000 * seen.facing_down, seen.depths.size());
 }
 
+TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
+  for (const int views : {20, 50}) {
+    Preset preset = make_preset({"survey", 1, views, 64, 48, 80});
+    ASSERT_EQ(preset.views.size(), static_cast<std::size_t>(views));
+    preset.terrain.cell *= 6;
+    const RayScene scene(terrain_mesh(preset.terrain));
+    for (const std::size_t i : {0, views / 2, views - 1}) {
+      const Truth truth = render_truth(scene, preset.lens, nullptr, preset.views[i]);
+      for (const float distance : truth.distance) ASSERT_GT(distance, 1.5f);  // no background
+    }
+    // Ten a row, 0.9 m apart but for 0.12 m of chance; the next row turns back above the last view.
+    for (const std::size_t i : {0u, 8u, 9u, 10u}) {
+      const double step = (preset.views[i + 1].centre - preset.views[i].centre).norm();
+      EXPECT_NEAR(step, 0.9, 0.3) << i;
+    }
+    EXPECT_NEAR(preset.views[10].centre.x(), preset.views[9].centre.x(), 0.13);
+  }
+}
+
 TEST(Terrain, HasOverhangs) {
   for (const char* name : {"reef", "closeup"}) {
     Preset preset = make_preset({name, 1, 0, 64, 48, 80});

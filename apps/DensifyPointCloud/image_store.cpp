@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image_store.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "base/parallel.h"
+#include "io/image.h"
+
+namespace densify {
+namespace {
+
+cv::Mat1b load_mask(const View& view, int ignored_label) {
+  const cv::Mat1w labels = axial::io::read_label_image(view.mask);
+  axial::io::check_mask_shape(view.mask, labels.size(), view.file_size);
+  const cv::Size size(view.camera.width, view.camera.height);
+  cv::Mat1b mask;
+  cv::compare(axial::resized_labels(labels, size), ignored_label, mask, cv::CMP_NE);
+  return mask;
+}
+
+WorkImage load(const Project& project, const Options& options, std::size_t image) {
+  const View& view = project.views[image];
+  WorkImage result;
+  result.color = axial::resized_image(axial::io::read_color_image(project.scene.images[image].path),
+                                      {view.camera.width, view.camera.height});
+  cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
+  if (!needs_colors(options)) result.color.release();
+  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label);
+  return result;
+}
+
+}  // namespace
+
+ImageStore::ImageStore(const Project& project, const Options& options, std::size_t capacity)
+    : project_(project),
+      cache_([&](std::size_t image) { return load(project, options, image); }, capacity) {}
+
+void ImageStore::check_all(std::size_t at_once) {
+  const std::size_t count = project_.views.size();
+  axial::for_each_in_flight(count, at_once, [&](std::size_t i) {
+    const std::size_t image = count - 1 - i;
+    if (project_.scene.images[image].calibrated) get(image);
+  });
+}
+
+}  // namespace densify

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pixels of the images at their working resolution, read when somebody needs them.
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "base/shared_cache.h"
+#include "project.h"
+
+namespace densify {
+
+struct WorkImage {
+  cv::Mat1b grey;
+  cv::Mat3b color;  // B G R; empty if the options need no colours
+  cv::Mat1b mask;   // empty, or non-zero: match
+};
+
+// Keeps the `capacity` images that were used last. Thread-safe; an image is read once however many
+// threads want it.
+class ImageStore {
+ public:
+  ImageStore(const Project& project, const Options& options, std::size_t capacity);
+
+  // Error for files that cannot be decoded, and for masks of another shape than their image.
+  std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
+
+  // Reads every calibrated image once, `at_once` at a time, so that errors show before hours of
+  // work. The first images stay, which are needed first.
+  void check_all(std::size_t at_once);
+
+ private:
+  const Project& project_;
+  axial::SharedCache<WorkImage> cache_;
+};
+
+}  // namespace densify

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "memory_plan.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "depth/filters.h"
+
+namespace densify {
+namespace {
+
+constexpr std::size_t kMostCached = 48;
+constexpr std::uint64_t kMegabyte = 1000 * 1000;
+
+// Stacks, small blocks, and fusion's portions.
+constexpr std::uint64_t kOnTop = 48 * kMegabyte;
+
+// Bytes of the large things, for the largest image.
+struct Sizes {
+  std::uint64_t resident;  // the scene, the program
+  std::uint64_t
+      decode;           // while an image is read: its file's pixels in colour, its file, the result
+  std::uint64_t image;  // WorkImage
+  std::uint64_t map;    // DepthMap: depth, normal, confidence
+  std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
+  std::uint64_t match;     // matching, the results included
+  std::uint64_t adjust;
+  std::uint64_t fused;  // FusionMap
+  std::uint64_t taken;  // fusion's bits of all views
+};
+
+// Longest lists, an image itself included.
+struct Counts {
+  std::size_t images = 0, references = 0;
+  std::size_t matched = 0, adjusted = 0, fused = 0;
+};
+
+Counts count(const Project& project) {
+  Counts counts;
+  counts.images = project.scene.images.size();
+  counts.references = project.references.size();
+  for (const std::size_t image : project.references) {
+    counts.matched = std::max(counts.matched, 1 + project.sources[image].size());
+    counts.fused = std::max(counts.fused, 1 + project.neighbours[image].size());
+  }
+  counts.fused = std::min(counts.fused, counts.references);
+  counts.adjusted = std::min(counts.fused, 1 + axial::depth::AdjustOptions().max_neighbours);
+  return counts;
+}
+
+Sizes measure(const Project& project, const Options& options, const Counts& counts) {
+  std::uint64_t pixels = 0, file_pixels = 0;
+  bool masks = false;
+  for (const View& view : project.views) {
+    const auto area = [](std::int64_t width, std::int64_t height) {
+      return static_cast<std::uint64_t>(width * height);
+    };
+    pixels = std::max(pixels, area(view.camera.width, view.camera.height));
+    file_pixels = std::max(file_pixels, area(view.file_size.width, view.file_size.height));
+    masks |= !view.mask.empty();
+  }
+  const std::uint64_t sources = counts.matched - 1, neighbours = counts.adjusted - 1;
+  const std::uint64_t colors = needs_colors(options) ? 3 : 0;
+  Sizes sizes{};
+  sizes.resident = axial::resident_memory();
+  sizes.decode = 4 * file_pixels + 4 * pixels;
+  sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
+  sizes.map = 20 * pixels;
+  sizes.read_map = 44 * pixels;
+  // Planes of this level and the one before, priors, the result and its filtered copies; a source's
+  // pixels twice as words of 2 x 2 neighbours, its depths.
+  sizes.match = (32 + 8 + 8 + 60) * pixels + sources * 12 * pixels;
+  // Rays, the result; what a neighbour sees.
+  sizes.adjust = (24 + 20) * pixels + neighbours * 12 * pixels;
+  sizes.fused = (20 + colors) * pixels;
+  sizes.taken = counts.references * pixels / 8;
+  return sizes;
+}
+
+std::uint64_t matching(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
+  const std::uint64_t images = counts.matched * sizes.image;
+  const std::uint64_t maps = std::max(counts.matched, counts.adjusted) * sizes.map;
+  const std::uint64_t work = std::max({sizes.match, sizes.adjust, sizes.decode});
+  return in_flight * (images + maps + work + sizes.read_map);
+}
+
+std::uint64_t fusing(const Sizes& sizes, std::size_t maps, std::size_t loads) {
+  return sizes.taken + maps * sizes.fused + loads * (sizes.decode + sizes.read_map + sizes.map);
+}
+
+// What a run takes that works on `in_flight` images at a time and keeps nothing that is not in use.
+// The image store outlives matching.
+std::uint64_t least_for(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
+  return std::max(matching(sizes, counts, in_flight),
+                  in_flight * counts.matched * sizes.image + fusing(sizes, counts.fused, 1));
+}
+
+// The most of up to `wanted` things whose `need` is within `bytes`, at least one.
+template <class Need>
+std::size_t most(std::size_t wanted, std::uint64_t bytes, const Need& need) {
+  while (wanted > 1 && need(wanted) > bytes) --wanted;
+  return std::max<std::size_t>(wanted, 1);
+}
+
+// `entries` and as many more as `spare` pays for, but not beyond kMostCached.
+std::size_t enlarged(std::size_t entries, std::uint64_t each, std::uint64_t spare) {
+  const std::size_t wanted = kMostCached - std::min(entries, kMostCached);
+  return entries + std::min<std::size_t>(wanted, spare / each);
+}
+
+MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t room) {
+  MemoryPlan plan;
+  const std::size_t threads = axial::thread_count();
+  plan.in_flight = most(std::min(threads, counts.references), room,
+                        [&](std::size_t k) { return least_for(sizes, counts, k); });
+  const std::size_t images = counts.matched * plan.in_flight;
+  const std::size_t maps = std::max(counts.matched, counts.adjusted) * plan.in_flight;
+  const std::uint64_t spare = room - least_for(sizes, counts, plan.in_flight);
+  plan.cached_images = enlarged(images, sizes.image, spare / 2);
+  const std::uint64_t kept = plan.cached_images * sizes.image;
+  plan.decodes =
+      most(threads, room - kept, [&](std::size_t k) { return k * (sizes.decode + sizes.image); });
+
+  const std::uint64_t more_images = (plan.cached_images - images) * sizes.image;
+  plan.cached_maps =
+      enlarged(maps, sizes.map, room - matching(sizes, counts, plan.in_flight) - more_images);
+
+  const auto fuse = [&](std::size_t loads) { return fusing(sizes, counts.fused, loads); };
+  plan.fusion_loads = most(std::min(threads, counts.fused), room - kept, fuse);
+  plan.fused_maps = enlarged(counts.fused, sizes.fused, room - kept - fuse(plan.fusion_loads));
+  return plan;
+}
+
+}  // namespace
+
+MemoryPlan plan_memory(const Project& project, const Options& options) {
+  const Counts counts = count(project);
+  const Sizes sizes = measure(project, options, counts);
+  const std::uint64_t cap =
+      options.max_memory > 0 ? options.max_memory * kMegabyte : axial::available_memory() / 10 * 7;
+  const std::uint64_t fixed = sizes.resident + kOnTop;
+  const std::uint64_t least = fixed + least_for(sizes, counts, 1);
+  if (cap < least)
+    axial::fail("--max-memory {}: {} MB are too little, this scene needs {}", options.max_memory,
+                cap / kMegabyte, least / kMegabyte + 1);
+  const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
+  spdlog::debug("Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
+                cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
+                plan.cached_maps, plan.fused_maps);
+  return plan;
+}
+
+}  // namespace densify

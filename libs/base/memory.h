@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much memory there is, and how much of it this process holds.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace axial {
+
+// Bytes that can be taken without swapping: what the system calls available, or the limit of the
+// container (cgroup, version 1 or 2) if that is lower. `root`: where /proc and /sys lie. Error if
+// the system does not say.
+std::uint64_t available_memory(const std::filesystem::path& root = "/");
+
+// Bytes of this process that are in memory now.
+std::uint64_t resident_memory();
+
+}  // namespace axial

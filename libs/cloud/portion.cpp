@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloud/portion.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace axial::cloud {
+namespace {
+
+// Few enough that the answers stay in the processor's cache.
+constexpr std::size_t kPixels = std::size_t{1} << 16;
+constexpr std::size_t kGrain = 1024;
+
+// Sums up the pixels that support one point.
+class Mean {
+ public:
+  void add(const FusionMap& map, std::uint32_t pixel, const Eigen::Vector3f& point) {
+    const auto weight = static_cast<double>(map.weight_at(pixel));
+    total_ += weight;
+    position_ += weight * point.cast<double>();
+    normal_ += weight * map.normal_at(pixel).cast<double>();
+    if (map.color.empty()) return;
+    const cv::Vec3b bgr = map.color_at(pixel);
+    color_ += weight * Eigen::Vector3d(bgr[2], bgr[1], bgr[0]);
+  }
+
+  Eigen::Vector3f position() const { return (position_ / total_).cast<float>(); }
+
+  // Towards `camera` if no pixel knows it.
+  Eigen::Vector3f normal(const Eigen::Vector3d& camera) const {
+    if (normal_.norm() > 1e-6 * total_) return normal_.stableNormalized().cast<float>();
+    return (camera - position_ / total_).stableNormalized().cast<float>();
+  }
+
+  Rgb color() const {
+    Rgb rgb;
+    for (int c = 0; c < 3; ++c)
+      rgb[static_cast<std::size_t>(c)] =
+          static_cast<std::uint8_t>(std::clamp(color_(c) / total_ + 0.5, 0.0, 255.0));
+    return rgb;
+  }
+
+ private:
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d color_ = Eigen::Vector3d::Zero();
+  double total_ = 0;
+};
+
+// Insertion keeps the few views of a point, at [begin, end) so far, sorted by image.
+void insert_view(PointCloud& cloud, std::size_t begin, std::size_t end, std::uint32_t image,
+                 float weight) {
+  std::size_t k = end;
+  for (; k > begin && cloud.view_images[k - 1] > image; --k) {
+    cloud.view_images[k] = cloud.view_images[k - 1];
+    cloud.view_weights[k] = cloud.view_weights[k - 1];
+  }
+  cloud.view_images[k] = image;
+  cloud.view_weights[k] = weight;
+}
+
+}  // namespace
+
+Portion::Portion(std::span<const WorkingView> views)
+    : views_(views.begin(), views.end()), where_(views.size()), answers_(views.size() - 1) {}
+
+std::size_t Portion::collect(std::size_t pixel) {
+  for (PixelPoints& where : where_) where.pixels.clear();
+  supports_.clear();
+  begin_.assign(1, 0);
+  const auto& [image, map, taken] = views_[0];
+  std::vector<std::uint32_t>& asking = where_[0].pixels;
+  for (; pixel < map->pixels() && asking.size() < kPixels; ++pixel)
+    if (map->depth_at(pixel) > 0 && !(*taken)[pixel])
+      asking.push_back(static_cast<std::uint32_t>(pixel));
+  back_project(*map, where_[0]);
+  return pixel;
+}
+
+void Portion::ask(const FuseOptions& options) {
+  for (std::size_t n = 0; n < answers_.size(); ++n) {
+    answers_[n].resize(where_[0].pixels.size());
+    ask_neighbour(*views_[0].map, *views_[n + 1].map, where_[0], options, answers_[n]);
+  }
+}
+
+// The one serial pass: who comes first gets the pixel.
+void Portion::accept(std::size_t min_views) {
+  std::vector<std::size_t> joining;
+  std::vector<std::pair<std::size_t, std::uint32_t>> disproved;
+  for (std::size_t i = 0; i < where_[0].pixels.size(); ++i) {
+    joining.clear();
+    disproved.clear();
+    for (std::size_t v = 1; v < views_.size(); ++v) {
+      const Answer answer = answers_[v - 1][i];
+      if (answer.none() || (*views_[v].taken)[answer.pixel()]) continue;
+      if (answer.agrees())
+        joining.push_back(v);
+      else
+        disproved.emplace_back(v, answer.pixel());
+    }
+    if (joining.size() + 1 < min_views) continue;
+    (*views_[0].taken)[where_[0].pixels[i]] = true;
+    supports_.push_back({0, static_cast<std::uint32_t>(i)});
+    for (const std::size_t v : joining) {
+      std::vector<std::uint32_t>& pixels = where_[v].pixels;
+      supports_.push_back(
+          {static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(pixels.size())});
+      pixels.push_back(answers_[v - 1][i].pixel());
+      (*views_[v].taken)[pixels.back()] = true;
+    }
+    for (const auto& [v, pixel] : disproved) (*views_[v].taken)[pixel] = true;
+    begin_.push_back(supports_.size());
+  }
+  for (std::size_t v = 1; v < views_.size(); ++v) back_project(*views_[v].map, where_[v]);
+}
+
+PointCloud Portion::points(bool normals) const {
+  PointCloud cloud;
+  cloud.positions.resize(size());
+  if (normals) cloud.normals.resize(size());
+  if (!views_[0].map->color.empty()) cloud.colors.resize(size());
+  cloud.view_begin = begin_;
+  cloud.view_images.resize(supports_.size());
+  cloud.view_weights.resize(supports_.size());
+  parallel_for(
+      size(), [&](std::size_t i) { average(i, cloud); }, kGrain);
+  return cloud;
+}
+
+void Portion::average(std::size_t point, PointCloud& cloud) const {
+  Mean mean;
+  for (std::size_t k = begin_[point]; k < begin_[point + 1]; ++k) {
+    const auto [v, index] = supports_[k];
+    const FusionMap& map = *views_[v].map;
+    const std::uint32_t pixel = where_[v].pixels[index];
+    mean.add(map, pixel, where_[v].points[index]);
+    insert_view(cloud, begin_[point], k, views_[v].image, map.weight_at(pixel));
+  }
+  cloud.positions[point] = mean.position();
+  if (!cloud.normals.empty()) cloud.normals[point] = mean.normal(views_[0].map->pose.centre);
+  if (!cloud.colors.empty()) cloud.colors[point] = mean.color();
+}
+
+}  // namespace axial::cloud

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace axial {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A system that says what we put into its files.
+class FakeSystem {
+ public:
+  FakeSystem() { fs::create_directories(root_); }
+  ~FakeSystem() { fs::remove_all(root_); }
+  FakeSystem(const FakeSystem&) = delete;
+
+  FakeSystem& says(const fs::path& file, const std::string& text) {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+    return *this;
+  }
+  std::uint64_t available() const { return available_memory(root_); }
+
+ private:
+  fs::path root_ = fs::path(testing::TempDir()) / ("axial_system_" + std::to_string(::getpid()));
+};
+
+const std::string kMeminfo =
+    "MemTotal:       24684040 kB\nMemFree:          100000 kB\nMemAvailable:    3000000 kB\n"
+    "Buffers:               0 kB\n";
+
+TEST(AvailableMemory, IsWhatTheSystemSays) {
+  FakeSystem system;
+  system.says("proc/meminfo", kMeminfo);
+  EXPECT_EQ(system.available(), 3000000u * 1024);
+}
+
+TEST(AvailableMemory, IsTheContainersLimitWhereThatIsLower) {
+  for (const char* file :
+       {"sys/fs/cgroup/memory.max", "sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    FakeSystem system;
+    system.says("proc/meminfo", kMeminfo).says(file, "1000000\n");
+    EXPECT_EQ(system.available(), 1000000u);
+    system.says(file, "9223372036854771712\n");
+    EXPECT_EQ(system.available(), 3000000u * 1024);
+    system.says(file, "max\n");
+    EXPECT_EQ(system.available(), 3000000u * 1024);
+  }
+}
+
+TEST(AvailableMemory, KnowsTheLimitsOfNestedContainers) {
+  for (const char* groups : {"9:cpu:/x\n4:memory:/outer/inner\n", "0::/outer/inner\n"}) {
+    const bool first = groups[0] == '9';
+    const fs::path mount = first ? "sys/fs/cgroup/memory" : "sys/fs/cgroup";
+    const char* file = first ? "memory.limit_in_bytes" : "memory.max";
+    FakeSystem system;
+    system.says("proc/meminfo", kMeminfo).says("proc/self/cgroup", groups);
+    system.says(mount / "outer" / "inner" / file, "2000000\n");
+    EXPECT_EQ(system.available(), 2000000u);
+    system.says(mount / "outer" / file, "1500000\n");
+    EXPECT_EQ(system.available(), 1500000u);
+    system.says(mount / "other" / file, "1000\n");
+    EXPECT_EQ(system.available(), 1500000u);
+  }
+}
+
+TEST(AvailableMemory, NamesTheFileThatDoesNotSay) {
+  FakeSystem system;
+  system.says("proc/meminfo", "MemTotal: 5 kB\n");
+  EXPECT_THROW(system.available(), Error);
+}
+
+TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
+  constexpr std::size_t kBytes = 64 << 20;
+  const std::uint64_t before = resident_memory();
+  {
+    const std::vector<char> block(kBytes, 1);
+    EXPECT_GT(resident_memory(), before + kBytes / 2 + static_cast<std::size_t>(block[7]));
+  }
+  EXPECT_LT(resident_memory(), before + kBytes / 2);
+}
+
+}  // namespace
+}  // namespace axial
