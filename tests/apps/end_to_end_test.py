@@ -105,7 +105,7 @@ class EndToEnd(ProgramTest):
 
         self.assertIn("All 4 depth maps are there already",
                       self.densify("killed", "--refractive", *QUICK))
-        changed = self.densify("killed", "--refractive", "--iters", "2", *QUICK)
+        changed = self.densify("killed", "--refractive", "--iters", "3", *QUICK)
         self.assertNotIn("there already", changed, "maps of other options were taken over")
 
     def test_the_same_bytes_under_a_small_cap_on_memory(self):
