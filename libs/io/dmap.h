@@ -14,7 +14,8 @@ namespace axial::io {
 // pose. The side file "<path>.json" holds the camera model (port included) and `made_from`, a
 // fingerprint of the inputs and options; without one the map counts as pinhole and `made_from` is
 // empty. It also holds a fingerprint of the map's bytes: a damaged or foreign map is told from the
-// one it was written with. In memory depth is lambda (see DepthMap): it is converted here, at the file boundary.
+// one it was written with. In memory depth is lambda (see DepthMap): it is converted here, at the
+// file boundary.
 struct StoredDepthMap {
   DepthMap map;
   std::string made_from;

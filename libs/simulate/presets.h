@@ -30,7 +30,8 @@ struct Preset {
 // "reef": a survey from above in two rows, seabed 2 to 3.5 m away, thin gap and thick glass.
 // "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
 // "survey": rows of ten views from above, as many as it takes; what a view sees does not depend on
-// how many there are. Error for another name, a number of views outside [0, 200], or what make_lens refuses.
+// how many there are. Error for another name, a number of views outside [0, 200], or what make_lens
+// refuses.
 Preset make_preset(const PresetOptions& options);
 
 }  // namespace axial::simulate

@@ -23,7 +23,7 @@ from support import runs  # noqa: E402
 # Option: its default and the other values. Images of the synthetic scenes are not halved at the
 # default of --min-resolution, so their default level is 0.
 OPTIONS = {
-    "iters": (3, (1, 2, 4)),
+    "iters": (2, (1, 3, 4)),
     "sub-resolution-levels": (2, (0, 1, 3)),
     "geometric-iters": (2, (0, 1, 3)),
     "number-views": (5, (2, 3, 4, 8)),
