@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/shared_cache.h"
@@ -122,6 +123,8 @@ class DepthMapRun {
       progress(++done, references.size());
     });
     if (reused > 0) spdlog::info("{}: {} maps were there already", stages_[stage].title, reused);
+    previous_.reset();
+    axial::return_freed_memory();
   }
 
   void remove_stage(std::size_t stage) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -75,6 +76,10 @@ std::uint64_t resident_memory() {
   std::uint64_t total = 0, resident = 0;
   in >> total >> resident;
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void return_freed_memory() {
+  ::malloc_trim(0);
 }
 
 }  // namespace axial

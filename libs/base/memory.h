@@ -15,4 +15,8 @@ std::uint64_t available_memory(const std::filesystem::path& root = "/");
 // Bytes of this process that are in memory now.
 std::uint64_t resident_memory();
 
+// Gives back to the system what this process has freed and the C library keeps for later, in every
+// thread its own. For the end of a stage, whose successor needs blocks of other sizes.
+void return_freed_memory();
+
 }  // namespace axial

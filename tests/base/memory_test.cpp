@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -86,6 +88,20 @@ TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
     EXPECT_GT(resident_memory(), before + kBytes / 2 + static_cast<std::size_t>(block[7]));
   }
   EXPECT_LT(resident_memory(), before + kBytes / 2);
+}
+
+// Many small blocks, every other one of which stays: the C library would keep the rest.
+TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
+  constexpr std::size_t kBlocks = 2000, kBytes = 64 << 10;
+  std::vector<std::unique_ptr<char[]>> blocks;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    blocks.push_back(std::make_unique<char[]>(kBytes));
+    std::fill_n(blocks.back().get(), kBytes, static_cast<char>(i));
+  }
+  for (std::size_t i = 0; i < kBlocks; i += 2) blocks[i].reset();
+  const std::uint64_t before = resident_memory();
+  return_freed_memory();
+  EXPECT_LT(resident_memory(), before - kBlocks / 2 * kBytes / 2);
 }
 
 }  // namespace
