@@ -81,6 +81,9 @@ TEST(AvailableMemory, NamesTheFileThatDoesNotSay) {
 }
 
 TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
+#endif
   constexpr std::size_t kBytes = 64 << 20;
   const std::uint64_t before = resident_memory();
   {
@@ -92,6 +95,9 @@ TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
 
 // Many small blocks, every other one of which stays: the C library would keep the rest.
 TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
+#endif
   constexpr std::size_t kBlocks = 2000, kBytes = 64 << 10;
   std::vector<std::unique_ptr<char[]>> blocks;
   for (std::size_t i = 0; i < kBlocks; ++i) {
