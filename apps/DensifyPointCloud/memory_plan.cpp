@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "depth/filters.h"
@@ -16,16 +17,15 @@ namespace {
 constexpr std::size_t kMostCached = 48;
 constexpr std::uint64_t kMegabyte = 1000 * 1000;
 
-// Stacks, small blocks, and fusion's portions.
-constexpr std::uint64_t kOnTop = 48 * kMegabyte;
+// The program and its libraries, stacks, small blocks, and fusion's portions.
+constexpr std::uint64_t kOnTop = 96 * kMegabyte;
 
 // Bytes of the large things, for the largest image.
 struct Sizes {
-  std::uint64_t resident;  // the scene, the program
-  std::uint64_t
-      decode;           // while an image is read: its file's pixels in colour, its file, the result
-  std::uint64_t image;  // WorkImage
-  std::uint64_t map;    // DepthMap: depth, normal, confidence
+  std::uint64_t scene;
+  std::uint64_t decode;    // while an image is read: its file, that file's pixels, the result
+  std::uint64_t image;     // WorkImage
+  std::uint64_t map;       // DepthMap: depth, normal, confidence
   std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
   std::uint64_t match;     // matching, the results included
   std::uint64_t adjust;
@@ -66,14 +66,15 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   const std::uint64_t sources = counts.matched - 1, neighbours = counts.adjusted - 1;
   const std::uint64_t colors = needs_colors(options) ? 3 : 0;
   Sizes sizes{};
-  sizes.resident = axial::resident_memory();
+  sizes.scene = axial::allocated_memory();
   sizes.decode = 4 * file_pixels + 4 * pixels;
   sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
   sizes.map = 20 * pixels;
   sizes.read_map = 44 * pixels;
   // Planes of this level and the one before, priors, the result and its filtered copies; a source's
   // pixels twice as words of 2 x 2 neighbours, its depths.
-  sizes.match = (32 + 8 + 8 + 60) * pixels + sources * 12 * pixels;
+  sizes.match = (32 + 8 + 8 + 60) * pixels +
+                sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
   // Rays, the result; what a neighbour sees.
   sizes.adjust = (24 + 20) * pixels + neighbours * 12 * pixels;
   sizes.fused = (20 + colors) * pixels;
@@ -142,7 +143,7 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
   const Sizes sizes = measure(project, options, counts);
   const std::uint64_t cap =
       options.max_memory > 0 ? options.max_memory * kMegabyte : axial::available_memory() / 10 * 7;
-  const std::uint64_t fixed = sizes.resident + kOnTop;
+  const std::uint64_t fixed = sizes.scene + kOnTop;
   const std::uint64_t least = fixed + least_for(sizes, counts, 1);
   if (cap < least)
     axial::fail("--max-memory {}: {} MB are too little, this scene needs {}", options.max_memory,

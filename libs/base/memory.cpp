@@ -78,6 +78,11 @@ std::uint64_t resident_memory() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
+std::uint64_t allocated_memory() {
+  const auto all = ::mallinfo2();
+  return all.uordblks + all.hblkhd;
+}
+
 void return_freed_memory() {
   ::malloc_trim(0);
 }

@@ -12,8 +12,12 @@ namespace axial {
 // the system does not say.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
-// Bytes of this process that are in memory now.
+// Bytes of this process that are in memory now, its programs and libraries included. Differs by
+// some pages from run to run.
 std::uint64_t resident_memory();
+
+// Bytes that this process has allocated and not freed: the same in every run that did the same.
+std::uint64_t allocated_memory();
 
 // Gives back to the system what this process has freed and the C library keeps for later, in every
 // thread its own. For the end of a stage, whose successor needs blocks of other sizes.

@@ -93,6 +93,21 @@ TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
   EXPECT_LT(resident_memory(), before + kBytes / 2);
 }
 
+TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
+#endif
+  const std::uint64_t before = allocated_memory();
+  for (const std::size_t bytes : {std::size_t{1} << 10, std::size_t{64} << 20}) {
+    {
+      const std::vector<char> block(bytes);
+      EXPECT_GE(allocated_memory(), before + bytes);
+      EXPECT_LT(allocated_memory(), before + bytes + bytes / 2);
+    }
+    EXPECT_EQ(allocated_memory(), before);
+  }
+}
+
 // Many small blocks, every other one of which stays: the C library would keep the rest.
 TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
 #ifdef __SANITIZE_ADDRESS__
