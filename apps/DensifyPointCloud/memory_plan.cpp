@@ -73,7 +73,7 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.read_map = 44 * pixels;
   // Planes of this level and the one before, priors, the result and its filtered copies; a source's
   // pixels twice as words of 2 x 2 neighbours, its depths.
-  sizes.match = (32 + 8 + 8 + 60) * pixels +
+  sizes.match = (36 + 9 + 8 + 60) * pixels +
                 sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
   // Rays, the result; what a neighbour sees.
   sizes.adjust = (24 + 20) * pixels + neighbours * 12 * pixels;

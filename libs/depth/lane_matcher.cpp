@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "base/error.h"
 #include "refractive/flat_port_camera.h"
@@ -105,39 +106,20 @@ lanes::LanePixel lane_pixel(const ReferencePixel& pixel) {
           &pixel.patch};
 }
 
-void set_plane(lanes::LanePlanes& planes, std::size_t k, const PlaneHypothesis& plane) {
-  planes.depth[k] = plane.depth;
-  planes.nx[k] = plane.normal.x();
-  planes.ny[k] = plane.normal.y();
-  planes.nz[k] = plane.normal.z();
-}
-
-// One batch of pairs under construction, and where their scores go.
-struct Batch {
+lanes::LanePlanes lane_planes(std::span<const PlaneHypothesis> from) {
   lanes::LanePlanes planes;
-  lanes::LanePairs pairs;
-  std::array<std::size_t, kLanes> target;
-  std::size_t plane_count = 0;
-  std::size_t pair_count = 0;
-
-  void run(const lanes::Scorer& scorer, const lanes::LanePixel& pixel,
-           std::span<const SurfacePoint> neighbours, std::span<ViewScore> scores) {
-    for (std::size_t k = pair_count; k < kLanes; ++k) {
-      pairs.plane[k] = pairs.plane[0];
-      pairs.view[k] = pairs.view[0];
-    }
-    pairs.count = pair_count;
-    lanes::LaneScores result;
-    scorer.score(pixel, planes, pairs, neighbours, result);
-    for (std::size_t k = 0; k < pair_count; ++k)
-      scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
-    plane_count = pair_count = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    planes.depth[k] = from[k].depth;
+    planes.nx[k] = from[k].normal.x();
+    planes.ny[k] = from[k].normal.y();
+    planes.nz[k] = from[k].normal.z();
   }
-};
+  return planes;
+}
 
 }  // namespace
 
-template <class Camera>
+template <InLanes Camera>
 LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
                                  std::span<const SourceView<Camera>> sources,
                                  const PatchMatchOptions& options, lanes::InstructionSet set)
@@ -151,31 +133,37 @@ LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
   }
 }
 
-template <class Camera>
+template <InLanes Camera>
 void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
                                 std::span<const PlaneHypothesis> planes,
-                                std::span<const std::uint8_t> views,
+                                std::span<const ScorePair> pairs,
                                 std::span<const SurfacePoint> neighbours,
                                 std::span<ViewScore> scores) const {
   const lanes::LanePixel lane = lane_pixel(pixel);
+  const lanes::LanePlanes all = lane_planes(planes);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    Batch batch;
-    for (std::size_t p = 0; p < planes.size(); ++p) {
-      bool placed = false;
-      for (std::size_t k = 0; k < views.size(); ++k) {
-        if (views[k] / kLanes != g) continue;
-        if (batch.pair_count == kLanes) {
-          batch.run(*groups_[g].scorer, lane, neighbours, scores);
-          placed = false;
-        }
-        if (!placed) set_plane(batch.planes, batch.plane_count++, planes[p]);
-        placed = true;
-        batch.pairs.plane[batch.pair_count] = static_cast<std::int32_t>(batch.plane_count - 1);
-        batch.pairs.view[batch.pair_count] = static_cast<std::int32_t>(views[k] % kLanes);
-        batch.target[batch.pair_count++] = p * views.size() + k;
+    lanes::LanePairs batch;
+    std::array<std::size_t, kLanes> target;
+    std::size_t count = 0;
+    const auto run = [&] {
+      for (std::size_t k = count; k < kLanes; ++k) {
+        batch.plane[k] = batch.plane[0];
+        batch.view[k] = batch.view[0];
       }
+      batch.count = std::exchange(count, 0);
+      lanes::LaneScores result;
+      groups_[g].scorer->score(lane, all, batch, neighbours, result);
+      for (std::size_t k = 0; k < batch.count; ++k)
+        scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
+    };
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (pairs[i].view / kLanes != g) continue;
+      batch.plane[count] = pairs[i].plane;
+      batch.view[count] = pairs[i].view % kLanes;
+      target[count++] = i;
+      if (count == kLanes) run();
     }
-    if (batch.pair_count > 0) batch.run(*groups_[g].scorer, lane, neighbours, scores);
+    if (count > 0) run();
   }
 }
 

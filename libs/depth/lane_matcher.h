@@ -12,7 +12,13 @@
 
 namespace axial::depth {
 
+// A camera that can be dealt to lanes, number by number.
 template <class Camera>
+concept InLanes = requires(Camera camera) {
+  camera.each_field([](auto&) {});
+};
+
+template <InLanes Camera>
 class LaneMatcher {
  public:
   // Images and depth maps of the sources are copied. Error if they have 2^31 pixels or more
@@ -24,9 +30,9 @@ class LaneMatcher {
   std::size_t views() const { return views_; }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
 
-  // As Matcher::score.
+  // As Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<const SurfacePoint> neighbours,
+             std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<ViewScore> scores) const;
 
  private:

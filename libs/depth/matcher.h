@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores plane hypotheses of one reference view against its source views, for any camera and any
-// warp, one pair at a time. LaneMatcher does the same for sixteen at once; this one is its
+// warp, one pair at a time. LaneMatcher does the same for a register of them; this one is its
 // reference and serves the paper's own methods.
 #pragma once
 
@@ -29,7 +29,11 @@ struct SourceView {
   const cv::Mat1f* depth = nullptr;  // of the source view itself; null: photometric only
 };
 
-// Of one hypothesis in one source view.
+// One of the hypotheses that are asked about in one of the source views.
+struct ScorePair {
+  std::uint8_t plane, view;
+};
+
 struct ViewScore {
   float cost;        // photometric, geometric and prior, 0 to kMaxCost
   float motion;      // of the patch's centre with depth [px/m]; 0 if unseen
@@ -49,58 +53,53 @@ class Matcher {
   std::size_t views() const { return sources_.size(); }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
 
-  // scores[p * views.size() + k]: hypothesis planes[p] in source view views[k]. `neighbours`: the
+  // scores[i]: of pairs[i], planes[pairs[i].plane] in source view pairs[i].view. `neighbours`: the
   // surface around the pixel, for the smoothness factors.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<const SurfacePoint> neighbours,
+             std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<ViewScore> scores) const {
-    std::size_t i = 0;
-    for (const PlaneHypothesis& plane : planes) {
-      const PatchDerivative patch = patch_derivative(pixel.ray, pixel.jacobian, plane);
-      const float smoothness =
-          depth::smoothness<float>(patch.point, plane.normal, neighbours, options_.smoothness);
-      for (const std::uint8_t view : views) {
-        scores[i] = score_view(pixel, plane, patch, view);
-        scores[i++].smoothness = smoothness;
+    PatchDerivative patch;
+    float smoothness = 1;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const PlaneHypothesis& plane = planes[pairs[i].plane];
+      if (i == 0 || pairs[i].plane != pairs[i - 1].plane) {
+        patch = patch_derivative(pixel.ray, pixel.jacobian, plane);
+        smoothness =
+            depth::smoothness<float>(patch.point, plane.normal, neighbours, options_.smoothness);
       }
+      const SourceView<Camera>& source = sources_[pairs[i].view];
+      scores[i] = {cost(pixel, plane, patch, source), motion(pixel, patch, source), smoothness};
     }
   }
 
-  ViewScore score_view(const ReferencePixel& pixel, const PlaneHypothesis& plane,
-                       const PatchDerivative& patch, std::size_t view) const {
-    const SourceView<Camera>& source = sources_[view];
+ private:
+  float cost(const ReferencePixel& pixel, const PlaneHypothesis& plane,
+             const PatchDerivative& patch, const SourceView<Camera>& source) const {
     const auto map = Warp::between(pixels_.camera(), pixel.at(), plane, patch, source.camera,
                                    source.from_reference);
-    return {cost_of(pixel, plane, patch, source, map), motion_of(pixel, patch, source), 1.0f};
-  }
-
- private:
-  float cost_of(const ReferencePixel& pixel, const PlaneHypothesis& plane,
-                const PatchDerivative& patch, const SourceView<Camera>& source,
-                const typename Warp::Map& map) const {
     float correlation = kNoCorrelation;
     if (map.visible) {
       TexelPositions at;
       Warp::texels(map, pixel.at(), at);
       correlation = zncc_(pixel.patch, *source.image, at);
     }
-    float cost = correlation == kNoCorrelation ? kOutsideCost : 1.0f - correlation;
+    float sum = correlation == kNoCorrelation ? kOutsideCost : 1.0f - correlation;
     if (source.depth)
-      cost += options_.geometric_weight *
-              (map.visible ? inconsistency(pixels_.camera(), pixel.at(),
-                                           source.from_reference.apply(patch.point), map.centre,
-                                           source.camera, source.from_reference, *source.depth,
-                                           options_.geometric_limit)
-                           : options_.geometric_limit);
+      sum += options_.geometric_weight *
+             (map.visible ? inconsistency(pixels_.camera(), pixel.at(),
+                                          source.from_reference.apply(patch.point), map.centre,
+                                          source.camera, source.from_reference, *source.depth,
+                                          options_.geometric_limit)
+                          : options_.geometric_limit);
     if (pixel.prior_weight > 0) {
       const float off = std::abs(plane.depth - pixel.prior_depth) / pixel.prior_depth;
-      cost += pixel.prior_weight * (std::min(off, 0.5f) - cost);
+      sum += pixel.prior_weight * (std::min(off, 0.5f) - sum);
     }
-    return std::min(cost, kMaxCost);
+    return std::min(sum, kMaxCost);
   }
 
-  float motion_of(const ReferencePixel& pixel, const PatchDerivative& patch,
-                  const SourceView<Camera>& source) const {
+  float motion(const ReferencePixel& pixel, const PatchDerivative& patch,
+               const SourceView<Camera>& source) const {
     refractive::Matrix23<float> jacobian;
     const auto image = source.camera.project(source.from_reference.apply(patch.point), &jacobian);
     if (!image.visible) return 0;

@@ -2,13 +2,12 @@
 #include "depth/patch.h"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace axial::depth {
 
 PatchSampler::PatchSampler(const PatchMatchOptions& options) {
   for (std::size_t i = 0; i < color_weight_.size(); ++i) {
-    const float difference = static_cast<float>(i) / 255.0f;
+    const float difference = (static_cast<float>(i) - 255.0f) / 255.0f;
     color_weight_[i] =
         std::exp(-difference * difference / (2 * options.sigma_color * options.sigma_color));
   }
@@ -19,36 +18,42 @@ PatchSampler::PatchSampler(const PatchMatchOptions& options) {
   }
 }
 
-ReferencePatch PatchSampler::gather(const cv::Mat1b& image, int x, int y) const {
-  ReferencePatch patch;
-  std::array<float, kTexels> intensity;
-  const int centre = image(y, x);
-  float weight_sum = 0;
-  float mean = 0;
+void PatchSampler::gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const {
+  constexpr int kSide = 2 * kPatchRadius / kPatchStep + 1;
+  std::array<float, kTexels> grey;
+  // A sum for every column: one sum would wait for itself at each texel.
+  std::array<float, kSide> weights{}, weighted{}, squares{};
+  const float* color_weight = color_weight_.data() + 255 - image(y, x);
   std::size_t k = 0;
-  for (int dy = -kPatchRadius; dy <= kPatchRadius; dy += kPatchStep) {
-    const std::uint8_t* row = image.ptr<std::uint8_t>(y + dy) + x;
-    for (int dx = -kPatchRadius; dx <= kPatchRadius; dx += kPatchStep, ++k) {
-      const int value = row[dx];
-      const float weight =
-          color_weight_[static_cast<std::size_t>(std::abs(value - centre))] * space_weight_[k];
-      intensity[k] = static_cast<float>(value) * (1.0f / 255.0f);
+  for (int j = 0; j < kSide; ++j) {
+    const std::uint8_t* row =
+        image.ptr<std::uint8_t>(y - kPatchRadius + j * kPatchStep) + x - kPatchRadius;
+    for (std::size_t i = 0; i < kSide; ++i, ++k) {
+      const std::uint8_t value = row[i * kPatchStep];
+      const float weight = color_weight[value] * space_weight_[k];
+      grey[k] = value;
       patch.weight[k] = weight;
-      weight_sum += weight;
-      mean += weight * intensity[k];
+      weights[i] += weight;
+      weighted[i] += weight * grey[k];
     }
   }
-  mean /= weight_sum;
-  patch.mean = mean * 255.0f;
-  const float inverse_sum = 1.0f / weight_sum;
-  for (k = 0; k < kTexels; ++k) {
-    const float deviation = intensity[k] - mean;
-    patch.weight[k] *= inverse_sum;
-    patch.deviation[k] = patch.weight[k] * deviation;
-    patch.variance += patch.deviation[k] * deviation;
+  const auto sum = [](const std::array<float, kSide>& a) {
+    return ((a[0] + a[1]) + (a[2] + a[3])) + a[4];
+  };
+  const float weight_sum = sum(weights);
+  const float inverse = 1.0f / weight_sum;
+  patch.mean = sum(weighted) * inverse;
+  for (std::size_t first = 0; first < kTexels; first += kSide) {
+    for (std::size_t i = 0; i < kSide; ++i) {
+      const float deviation = (grey[first + i] - patch.mean) * (1.0f / 255.0f);
+      patch.weight[first + i] *= inverse;
+      patch.deviation[first + i] = patch.weight[first + i] * deviation;
+      squares[i] += patch.deviation[first + i] * deviation;
+    }
   }
+  for (k = kTexels; k < kPaddedTexels; ++k) patch.weight[k] = patch.deviation[k] = 0;
+  patch.variance = sum(squares);
   patch.texture = patch.variance * weight_sum;
-  return patch;
 }
 
 }  // namespace axial::depth

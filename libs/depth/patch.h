@@ -35,11 +35,12 @@ class PatchSampler {
  public:
   explicit PatchSampler(const PatchMatchOptions& options);
 
-  // Intensities count from 0 to 1. Precondition: the window around (x, y) lies inside the image.
-  ReferencePatch gather(const cv::Mat1b& image, int x, int y) const;
+  // Deviations count intensities from 0 to 1. Precondition: the window around (x, y) lies inside
+  // the image.
+  void gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
 
  private:
-  std::array<float, 256> color_weight_;
+  std::array<float, 511> color_weight_;  // of differences from -255 on
   std::array<float, kTexels> space_weight_;
 };
 

@@ -76,9 +76,7 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
       sweep.trial_pairs = options.later_pairs;
     }
   };
-  constexpr bool kInLanes = std::is_same_v<Warp, AffineWarp> &&
-                            !std::is_same_v<Camera, refractive::LineSearchCamera<float>>;
-  if constexpr (kInLanes)
+  if constexpr (std::is_same_v<Warp, AffineWarp> && InLanes<Camera>)
     run_all(LaneMatcher<Camera>(level.images[0], cameras[0], sources, options));
   else
     run_all(Matcher<Camera, Warp>(level.images[0], cameras[0], sources, options));
@@ -143,6 +141,7 @@ LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const D
             to.plane = {depth, from.plane.normal};
             to.point = ray.at(depth);
             to.cost = from.cost;
+            to.views = from.views;
             state.prior(y, x) = depth;
           }
         }
@@ -209,9 +208,14 @@ cv::Mat1b mask_at(const MatchInput& input, const CameraModel& camera) {
   return mask;
 }
 
-void check(const MatchInput& input) {
+void check(const MatchInput& input, const PatchMatchOptions& options) {
   if (input.sources.empty() || input.sources.size() > kMaxSources)
     fail("a reference view needs 1 to {} source views, not {}", kMaxSources, input.sources.size());
+  const int pairs = std::max({options.first_pairs, options.later_pairs, options.last_pairs});
+  if (2 * pairs > static_cast<int>(kMaxCandidates) ||
+      options.restart_trials > static_cast<int>(kMaxCandidates))
+    fail("{} pairs of trials and {} restarts at a pixel: at most {} planes are scored at once",
+         pairs, options.restart_trials, kMaxCandidates);
 }
 
 constexpr std::uint32_t kSweepsPerLevel = 64;  // even, so that every level starts forwards
@@ -219,7 +223,7 @@ constexpr std::uint32_t kSweepsPerLevel = 64;  // even, so that every level star
 }  // namespace
 
 DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& options) {
-  check(input);
+  check(input, options);
   const std::vector<Eigen::Vector3f> points = points_in_camera(input);
   const DepthRange range = depth_range(input.reference->camera, points);
   std::optional<PlaneMap> coarser;
@@ -239,6 +243,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     sweep.prior = state.prior.empty() ? nullptr : &state.prior;
     sweep.mask = state.mask.empty() ? nullptr : &state.mask;
     sweep.first = true;
+    sweep.all_views = halvings > 0;
     sweep.trial_pairs = options.first_pairs;
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);
@@ -249,7 +254,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
 DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
                           std::span<const DepthMap* const> source_maps, int pass, bool last,
                           const PatchMatchOptions& options) {
-  check(input);
+  check(input, options);
   const Level level = make_level(input, 0);
   PlaneMap planes = to_planes(current);
   const cv::Mat1b mask = mask_at(input, level.cameras[0]);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace axial::depth {
@@ -14,10 +16,17 @@ struct PlaneHypothesis {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
 };
 
+inline constexpr std::uint8_t kNoView = 255;
+
+// The two source views that see a plane best, best first; the same one twice where there is but
+// one, kNoView where that is not known.
+using BestViews = std::array<std::uint8_t, 2>;
+
 struct PlanePixel {
   PlaneHypothesis plane;
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // origin + depth * direction
   float cost = 2;                                   // aggregated, 0 (perfect) to 2
+  BestViews views{kNoView, kNoView};
 };
 
 struct PlaneMap {

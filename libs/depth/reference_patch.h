@@ -15,11 +15,11 @@ inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the rest has
 
 // The reference window gathered once per pixel and reused for every hypothesis and source view.
 struct ReferencePatch {
-  alignas(32) std::array<float, kPaddedTexels> weight{};     // bilateral, sums to 1
-  alignas(32) std::array<float, kPaddedTexels> deviation{};  // weight * (intensity - mean)
-  float mean = 0;      // weighted mean of the intensities, 0 to 255: keeps the source's sums small
-  float variance = 0;  // sum of weight * (intensity - mean)^2, weights summing to 1
-  float texture = 0;   // the same with weights of at most 1: what OpenMVS's threshold means
+  alignas(32) std::array<float, kPaddedTexels> weight;     // bilateral, sums to 1
+  alignas(32) std::array<float, kPaddedTexels> deviation;  // weight * (intensity - mean)
+  float mean;      // weighted mean of the intensities, 0 to 255: keeps the source's sums small
+  float variance;  // sum of weight * (intensity - mean)^2, weights summing to 1
+  float texture;   // the same with weights of at most 1: what OpenMVS's threshold means
 };
 
 inline constexpr float kOutsideCost = 1.2f;  // of a patch that leaves the source image

@@ -40,7 +40,7 @@ class PixelSampler {
     pixel.x = x;
     pixel.y = y;
     pixel.ray = camera_.ray({static_cast<float>(x), static_cast<float>(y)}, pixel.jacobian);
-    pixel.patch = sampler_.gather(image_, x, y);
+    sampler_.gather(image_, x, y, pixel.patch);
     return pixel;
   }
 

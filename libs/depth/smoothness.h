@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <span>
 
 #include "refractive/axial_ray.h"
@@ -13,7 +14,7 @@ namespace axial::depth {
 struct SmoothnessOptions {
   float depth_sigma = 0.02f;  // relative distance of the neighbour to the plane
   float depth_bonus = 0.07f;
-  float normal_sigma = 13 * 3.14159265f / 180;  // [rad]
+  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;  // [rad]
   float normal_bonus = 0.0672f;
 };
 

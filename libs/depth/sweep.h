@@ -3,10 +3,19 @@
 // backwards), so that a good hypothesis runs through a whole strip; strips are independent of each
 // other, because across a strip's edge they read the state from before the sweep. Same bytes for
 // any thread count.
+//
+// A visit scores the pixel's own plane in at most four views, and the planes of the two neighbours
+// that were visited before it in the two views which see these best: eight scores however many
+// views there are, one AVX2 register. On coarse levels, where there is little to do and little
+// known, every plane is scored in every view.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "base/parallel.h"
 #include "depth/matcher.h"
@@ -17,6 +26,7 @@ namespace axial::depth {
 
 inline constexpr int kStripHeight = 32;
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
+inline constexpr std::size_t kOwnViews = 4;       // for a pixel's own plane
 
 // Mean of the two smallest costs; the second only counts below kOutsideCost.
 inline float aggregate(float smallest, float second) {
@@ -35,6 +45,7 @@ struct SweepInput {
   const cv::Mat1b* mask = nullptr;  // non-zero: work on this pixel
   int trial_pairs = 0;              // trials around the best hypothesis, at most 4 pairs
   bool first = false;               // fill pixels without a hypothesis at random
+  bool all_views = false;           // score all planes in all views
 };
 
 template <class Matcher>
@@ -85,7 +96,7 @@ class Sweep {
   }
 
   struct Neighbourhood {
-    std::array<SurfacePoint, 4> points{};
+    std::array<SurfacePoint, 4> points;
     std::size_t count = 0;
 
     std::span<const SurfacePoint> all() const { return {points.data(), count}; }
@@ -123,9 +134,9 @@ class Sweep {
   // A hypothesis with its cost and the views that see it best.
   struct Best {
     PlaneHypothesis plane;
-    float cost = kMaxCost;
-    std::array<std::uint8_t, 2> views{};  // best first
-    float motion = 0;                     // in the best view [px/m]
+    float cost = std::numeric_limits<float>::max();
+    BestViews views{kNoView, kNoView};
+    float motion = 0;  // in the best view [px/m]
   };
 
   // What every hypothesis of one pixel is judged by.
@@ -156,28 +167,70 @@ class Sweep {
 
     const Neighbourhood around = neighbourhood(strip, x, y);
     const Visit at{pixel, around};
+    const PlanePixel none;
+    const bool beside = x + step >= 0 && x + step < map_.width;
+    const bool above = y + step >= 0 && y + step < map_.height;
+    const std::array<const PlanePixel*, 2> before{beside ? &neighbour(strip, x + step, y) : &none,
+                                                  above ? &neighbour(strip, x, y + step) : &none};
+    const Views own = own_views(x, y, current, before);
     Candidates candidates;
-    candidates.add(current.plane);
-    if (x + step >= 0 && x + step < map_.width)
-      propagate(pixel, neighbour(strip, x + step, y), candidates);
-    if (y + step >= 0 && y + step < map_.height)
-      propagate(pixel, neighbour(strip, x, y + step), candidates);
+    candidates.add(current.plane, own.all());
+    for (const PlanePixel* from : before) propagate(pixel, *from, own, candidates);
     Best best;
     keep_best(at, candidates, best);
     refine(at, random, best);
-    current = {best.plane, pixel.ray.at(best.plane.depth), best.cost};
+    current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views};
   }
 
-  struct Candidates {
-    std::array<PlaneHypothesis, kMaxCandidates> planes;
+  struct Views {
+    std::array<std::uint8_t, kMaxSources> views;
     std::size_t count = 0;
 
-    void add(const PlaneHypothesis& plane) { planes[count++] = plane; }
-    std::span<const PlaneHypothesis> all() const { return {planes.data(), count}; }
+    std::span<const std::uint8_t> all() const { return {views.data(), count}; }
+
+    void add(std::uint8_t view) {
+      const auto end = views.begin() + static_cast<std::ptrdiff_t>(count);
+      if (view != kNoView && std::find(views.begin(), end, view) == end) views[count++] = view;
+    }
   };
 
+  // All views if they are few; else those that see the pixel and then its neighbours best, and
+  // others in turn, lest a view that was hidden from the plane before stay so.
+  Views own_views(int x, int y, const PlanePixel& current,
+                  std::span<const PlanePixel* const> before) const {
+    Views own;
+    const std::size_t views = matcher_.views();
+    const std::size_t wanted = input_.all_views ? views : std::min(views, kOwnViews);
+    if (wanted < views) {
+      for (const std::uint8_t view : current.views) own.add(view);
+      for (const PlanePixel* from : before) own.add(from->views[0]);
+    }
+    std::size_t turn = static_cast<std::size_t>(x + y) + input_.sweep;
+    for (; own.count < wanted; ++turn) own.add(all_views_[turn % views]);
+    return own;
+  }
+
+  // Planes, and the views that each is scored in.
+  struct Candidates {
+    std::array<PlaneHypothesis, kMaxCandidates> planes;
+    std::array<ScorePair, kMaxCandidates * kMaxSources> pairs;
+    std::size_t count = 0, pair_count = 0;
+
+    void add(const PlaneHypothesis& plane, std::span<const std::uint8_t> views) {
+      for (const std::uint8_t view : views)
+        pairs[pair_count++] = {static_cast<std::uint8_t>(count), view};
+      planes[count++] = plane;
+    }
+    std::span<const PlaneHypothesis> all() const { return {planes.data(), count}; }
+    std::span<const ScorePair> all_pairs() const { return {pairs.data(), pair_count}; }
+  };
+
+  static std::span<const std::uint8_t> distinct(const BestViews& views) {
+    return {views.data(), views[0] == views[1] ? 1u : 2u};
+  }
+
   // Eq. (8): where this pixel's ray meets the neighbour's plane. Nothing if that is no news.
-  void propagate(const ReferencePixel& pixel, const PlanePixel& from,
+  void propagate(const ReferencePixel& pixel, const PlanePixel& from, const Views& own,
                  Candidates& candidates) const {
     if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return;
     const float along = from.plane.normal.dot(pixel.ray.direction);
@@ -189,59 +242,67 @@ class Sweep {
       if (std::abs(depth - other.depth) < 1e-5f * depth &&
           plane.normal.dot(other.normal) > 0.99999f)
         return;
-    candidates.add(plane);
+    const bool known = from.views[0] != kNoView && !input_.all_views;
+    candidates.add(plane, known ? distinct(from.views) : own.all());
   }
 
-  // Scores the candidates in all views and keeps the best, if it is better than `best`.
+  // Scores the candidates and keeps the best, if it is better than `best`.
   void keep_best(const Visit& at, const Candidates& candidates, Best& best) const {
-    const std::size_t views = matcher_.views();
     std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
-    matcher_.score(at.pixel, candidates.all(), {all_views_.data(), views}, at.around.all(), scores);
-    for (std::size_t p = 0; p < candidates.count; ++p) {
-      const ViewScore* of = scores.data() + p * views;
-      std::size_t first = 0, second = views;
-      for (std::size_t k = 1; k < views; ++k) {
-        if (of[k].cost < of[first].cost) {
-          second = first;
-          first = k;
-        } else if (second == views || of[k].cost < of[second].cost) {
-          second = k;
-        }
+    const std::span<const ScorePair> pairs = candidates.all_pairs();
+    matcher_.score(at.pixel, candidates.all(), pairs, at.around.all(), scores);
+    std::size_t winner = pairs.size();  // its first pair
+    for (std::size_t i = 0; i < pairs.size();) {
+      constexpr float kNone = std::numeric_limits<float>::max();
+      float smallest = kNone, second = kNone;
+      const std::size_t begin = i;
+      for (; i < pairs.size() && pairs[i].plane == pairs[begin].plane; ++i) {
+        second = std::min(second, std::max(smallest, scores[i].cost));
+        smallest = std::min(smallest, scores[i].cost);
       }
-      const PlaneHypothesis& plane = candidates.planes[p];
-      float cost = second < views ? aggregate(of[first].cost, of[second].cost) : of[first].cost;
-      cost *= of[0].smoothness;
-      if (p > 0 && !(cost < best.cost)) continue;
-      if (second == views) second = first;
-      best = {plane, cost, {all_views_[first], all_views_[second]}, of[first].motion};
+      const float cost = aggregate(smallest, second) * scores[begin].smoothness;
+      if (!(cost < best.cost)) continue;
+      best.cost = cost;
+      winner = begin;
     }
+    if (winner == pairs.size()) return;
+    std::size_t first = winner, second = winner;
+    for (std::size_t i = winner + 1; i < pairs.size() && pairs[i].plane == pairs[winner].plane; ++i)
+      if (scores[i].cost < scores[first].cost)
+        second = std::exchange(first, i);
+      else if (second == first || scores[i].cost < scores[second].cost)
+        second = i;
+    best.plane = candidates.planes[pairs[winner].plane];
+    best.views = {pairs[first].view, pairs[second].view};
+    best.motion = scores[first].motion;
   }
 
   // Trials around the best plane, all scored at once in its two best views.
   void refine(const Visit& at, KeyedRandom& random, Best& best) const {
+    if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
+    if (input_.trial_pairs == 0) return;
     float scale = 1;
     if (best.cost <= options_.good_cost)
       scale = 0.25f;
     else if (best.cost <= options_.fair_cost)
       scale = 0.5f;
-    else if (best.cost >= options_.bad_cost && !restart(at, random, best))
-      return;
     const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
                                                          0.05f * best.plane.depth)
                                               : 0.003f * best.plane.depth;
     Candidates trials;
-    add_trials(at, best.plane, depth_range, scale, random, trials);
-    if (trials.count > 0) keep_best_trial(at, trials, best);
+    add_trials(at, best, depth_range, scale, random, trials);
+    keep_best(at, trials, best);
   }
 
   // Pairs of trials on either side of a plane, in turn along the ray and of the normal, ever
   // closer. A trial that moved both at once would seldom be better: near the optimum what one
   // gains the other loses.
-  void add_trials(const Visit& at, const PlaneHypothesis& plane, float depth_range, float scale,
+  void add_trials(const Visit& at, const Best& best, float depth_range, float scale,
                   KeyedRandom& random, Candidates& trials) const {
+    const PlaneHypothesis& plane = best.plane;
     const auto add = [&](float depth, const Eigen::Vector3f& normal) {
       if (in_range(depth) && normal.dot(at.pixel.ray.direction) < -0.05f)
-        trials.add({depth, normal});
+        trials.add({depth, normal}, distinct(best.views));
     };
     const Eigen::Vector3f u = plane.normal.unitOrthogonal();
     const Eigen::Vector3f v = plane.normal.cross(u);
@@ -262,32 +323,13 @@ class Sweep {
     }
   }
 
-  void keep_best_trial(const Visit& at, const Candidates& trials, Best& best) const {
-    const std::size_t views = best.views[0] == best.views[1] ? 1 : 2;
-    std::array<ViewScore, 2 * kMaxCandidates> scores;
-    matcher_.score(at.pixel, trials.all(), {best.views.data(), views}, at.around.all(), scores);
-    for (std::size_t p = 0; p < trials.count; ++p) {
-      const PlaneHypothesis& plane = trials.planes[p];
-      const ViewScore* of = scores.data() + p * views;
-      float cost = views == 1 ? of[0].cost
-                              : aggregate(std::min(of[0].cost, of[1].cost),
-                                          std::max(of[0].cost, of[1].cost));
-      cost *= of[0].smoothness;
-      if (cost < best.cost) {
-        best.plane = plane;
-        best.cost = cost;
-      }
-    }
-  }
-
-  // A hopeless pixel tries random planes, without the neighbours' say.
+  // A hopeless pixel tries random planes in all views, without the neighbours' say. False if it
+  // stays hopeless.
   bool restart(const Visit& at, KeyedRandom& random, Best& best) const {
     Candidates candidates;
     for (int trial = 0; trial < options_.restart_trials; ++trial)
-      candidates.add(random_plane(at.pixel, random));
-    Best other = best;
-    keep_best({at.pixel, Neighbourhood()}, candidates, other);
-    if (other.cost < best.cost) best = other;
+      candidates.add(random_plane(at.pixel, random), {all_views_.data(), matcher_.views()});
+    keep_best({at.pixel, Neighbourhood()}, candidates, best);
     return best.cost < options_.bad_cost;
   }
 

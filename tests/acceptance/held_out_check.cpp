@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -116,13 +117,12 @@ int run(char** argv) {
     const float along = normal.dot(pixel.ray.direction);
     if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b) < -0.2f)) continue;
     const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
-    const float cost =
-        matcher
-            .score_view(pixel, plane, depth::patch_derivative(pixel.ray, pixel.jacobian, plane), 0)
-            .cost;
+    constexpr std::array<depth::ScorePair, 1> kPair{{{0, 0}}};
+    std::array<depth::ViewScore, 1> score;
+    matcher.score(pixel, {&plane, 1}, kPair, {}, score);
     angles.push_back(std::acos(std::clamp(from_a.dot(from_b), -1.0f, 1.0f)) * 180.0f /
                      std::numbers::pi_v<float>);
-    if (cost < 0.4f) ++agree;
+    if (score[0].cost < 0.4f) ++agree;
   }
   const auto seen = static_cast<double>(angles.size());
   std::cout << fmt::format("seen {} agree {} fraction {:.4f} angle {:.0f}\n", angles.size(), agree,

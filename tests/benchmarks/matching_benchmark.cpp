@@ -37,10 +37,11 @@ class Counting {
   double scores() const { return static_cast<double>(scores_); }
 
   void score(const depth::ReferencePixel& pixel, std::span<const depth::PlaneHypothesis> planes,
-             std::span<const std::uint8_t> views, std::span<const depth::SurfacePoint> neighbours,
+             std::span<const depth::ScorePair> pairs,
+             std::span<const depth::SurfacePoint> neighbours,
              std::span<depth::ViewScore> scores) const {
-    scores_ += planes.size() * views.size();
-    matcher_.score(pixel, planes, views, neighbours, scores);
+    scores_ += pairs.size();
+    matcher_.score(pixel, planes, pairs, neighbours, scores);
   }
 
  private:

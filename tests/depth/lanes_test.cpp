@@ -86,7 +86,7 @@ struct Question {
   int x, y;
   float prior;
   std::vector<PlaneHypothesis> planes;
-  std::vector<std::uint8_t> views;
+  std::vector<ScorePair> pairs;
 };
 
 // Pixels, planes and views at random; some planes leave the images or lie behind cameras.
@@ -104,8 +104,11 @@ std::vector<Question> questions() {
       question.planes.push_back(
           {i % 10 ? 2.0f + 0.2f * unit(random) : 0.05f + std::abs(unit(random)),
            Eigen::Vector3f(0.5f * unit(random), 0.5f * unit(random), -1).normalized()});
-    for (unsigned v = 0; v < kViews; ++v)
-      if (random() % 3) question.views.push_back(static_cast<std::uint8_t>(v));
+    for (std::size_t p = 0; p < question.planes.size(); ++p)
+      for (unsigned v = 0; v < kViews; ++v)
+        if (random() % 3)
+          question.pairs.push_back({static_cast<std::uint8_t>(p), static_cast<std::uint8_t>(v)});
+    if (i % 2) std::shuffle(question.pairs.begin(), question.pairs.end(), random);
     all.push_back(question);
   }
   return all;
@@ -124,8 +127,8 @@ std::vector<ViewScore> answers(const Matcher& matcher) {
                           {plane.normal.x(), plane.normal.y(), plane.normal.z()}};
     };
     const std::array<SurfacePoint, 3> around{surface(0), surface(1), surface(2)};
-    std::vector<ViewScore> scores(question.planes.size() * question.views.size());
-    matcher.score(pixel, question.planes, question.views, around, scores);
+    std::vector<ViewScore> scores(question.pairs.size());
+    matcher.score(pixel, question.planes, question.pairs, around, scores);
     all.insert(all.end(), scores.begin(), scores.end());
   }
   return all;

@@ -11,7 +11,7 @@
 #include "refractive/affine_warp.h"
 #include "refractive/flat_port_camera.h"
 
-// Sixteen lanes fit registers only where no call lies between. Under the sanitizers that would be
+// Everything stays in registers only where no call lies between. Under the sanitizers that would be
 // one enormous function, which takes minutes to compile.
 #ifdef __SANITIZE_ADDRESS__
 #define AXIAL_FLATTEN

@@ -31,7 +31,15 @@ auto gather(const std::uint32_t* base, const typename Pack<Abi>::Ints& at) {
     return Ints([&](auto k) { return ints[at[k]]; });
 }
 
-// Operations on the 16-bit halves of 32-bit lanes.
+#ifdef __AVX2__
+// Selects the lower half of each of four lanes for both of its halves.
+inline __m128i lower_half_twice() {
+  return _mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13);
+}
+#endif
+
+// Operations on the 16-bit halves of 32-bit lanes. upper_halves: those of two registers in one.
+// fractions: of a 16.16 number, 15 bits, in both halves.
 #if defined(__AVX512BW__)
 inline __m512i upper_bytes(__m512i a) {
   return _mm512_srli_epi16(a, 8);
@@ -51,6 +59,12 @@ inline __m512i multiply_halves(__m512i a, __m512i b) {
 inline __m512i dot_halves(__m512i a, __m512i b) {
   return _mm512_madd_epi16(a, b);
 }
+inline __m512i upper_halves(__m512i upper, __m512i lower) {
+  return _mm512_mask_blend_epi16(0xAAAAAAAA, _mm512_srli_epi32(lower, 16), upper);
+}
+inline __m512i fractions(__m512i a) {
+  return _mm512_srli_epi16(_mm512_shuffle_epi8(a, _mm512_broadcast_i32x4(lower_half_twice())), 1);
+}
 #elif defined(__AVX2__)
 inline __m256i upper_bytes(__m256i a) {
   return _mm256_srli_epi16(a, 8);
@@ -69,6 +83,13 @@ inline __m256i multiply_halves(__m256i a, __m256i b) {
 }
 inline __m256i dot_halves(__m256i a, __m256i b) {
   return _mm256_madd_epi16(a, b);
+}
+inline __m256i upper_halves(__m256i upper, __m256i lower) {
+  return _mm256_blend_epi16(_mm256_srli_epi32(lower, 16), upper, 0xAA);
+}
+inline __m256i fractions(__m256i a) {
+  return _mm256_srli_epi16(_mm256_shuffle_epi8(a, _mm256_broadcastsi128_si256(lower_half_twice())),
+                           1);
 }
 #endif
 
@@ -123,17 +144,11 @@ class LaneSampler {
 #ifdef __AVX2__
     using namespace detail;
     const auto raw = [](const Ints& a) { return static_cast<Register>(a); };
-    const Ints lower(0xFFFF);
-    const Ints row_column = (y & ~lower) | ((x >> 16) & lower);
-    const Ints at = begin_ + Ints(dot_halves(raw(row_column), raw(width_)));
+    const Ints at = begin_ + Ints(dot_halves(upper_halves(raw(y), raw(x)), raw(width_)));
     const Register word = raw(gather<Abi>(words_, at));
 
-    const auto fraction = [&](const Ints& a) {  // in both halves
-      const Ints f = (a & lower) >> 1;
-      return f | (f << 16);
-    };
-    const Register fx = raw(fraction(x));
-    const Register fy = raw(fraction(y) ^ Ints(0x7FFF));  // of the upper row, of the lower row
+    const Register fx = fractions(raw(x));
+    const Register fy = raw(Ints(fractions(raw(y))) ^ Ints(0x7FFF));  // upper row's, lower row's
     const Register left = raw(Ints(word) & Ints(0x00FF00FF));
     const Register step = times_128(subtract_halves(upper_bytes(word), left));
     const Register rows = add_halves(times_128(left), multiply_halves(step, fx));

@@ -35,7 +35,9 @@ auto gather_floats(const float* base, const typename Pack<Abi>::Ints& at) {
 }  // namespace detail
 
 // Correlation in [-1, 1], or kNoCorrelation as ZnccFunction gives it, in the lanes up to `used`.
-// The bounds are tested at the window's corners: the warp is affine.
+// The bounds are tested at the window's corners: the warp is affine. Rounding the centre and the
+// steps to 1/65536 pixel moves no sample by more than 1e-3 pixels, and the border that is kept is a
+// whole one, so that all samples lie where LaneSampler takes them.
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
