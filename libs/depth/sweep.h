@@ -242,8 +242,12 @@ class Sweep {
       if (std::abs(depth - other.depth) < 1e-5f * depth &&
           plane.normal.dot(other.normal) > 0.99999f)
         return;
-    const bool known = from.views[0] != kNoView && !input_.all_views;
-    candidates.add(plane, known ? distinct(from.views) : own.all());
+    if (input_.all_views)
+      candidates.add(plane, own.all());
+    else if (from.views[0] == kNoView)
+      candidates.add(plane, own.all().first(std::min(own.count, from.views.size())));
+    else
+      candidates.add(plane, distinct(from.views));
   }
 
   // Scores the candidates and keeps the best, if it is better than `best`.

@@ -117,7 +117,7 @@ fs::path undistort(const fs::path& source, const std::string& name, const Import
   if (is_jpeg(target)) {
     write_jpeg(target, straight, kQuality);
   } else {
-    target.replace_extension(".png");
+    if (target.extension() != ".png") target += ".png";  // a.tif and a.bmp may lie side by side
     write_png(target, straight);
   }
   undistort_mask(source, target, camera.map);
