@@ -119,8 +119,9 @@ class FlatPortCamera {
 
   // Exact forward projection of X [camera frame]. Not visible: on the lens's side of the outer
   // plane, outside the widened image, beyond total reflection, or NaN; pixel and Jacobian are then
-  // finite and mean nothing.
-  Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const;
+  // finite and mean nothing. `origin`: where the ray through X begins, the virtual centre C_v.
+  Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
+                        Vector3<T>* origin = nullptr) const;
 
  private:
   // A pixel's direction in air is n + across, with `across` at right angles to the normal n.
@@ -187,25 +188,20 @@ AxialRay<T> FlatPortCamera<T>::ray(const Vector2<T>& pixel, AxialRayJacobian<T>&
 }
 
 template <class T>
-Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacobian) const {
-  using std::sqrt;
+Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacobian,
+                                         Vector3<T>* origin) const {
   const Vector3<T>& n = port_.normal;
   const T height = n.dot(X);
   Vector3<T> across = X - height * n;
   T z_water = height - optics_.outer();
-  const T rho2 = across.squaredNorm();
-  // The root has no derivative at zero; nothing below needs one there.
-  const Mask<T> on_axis = rho2 <= T(1e-30);
-  const T root = sqrt(select(on_axis, T(1), rho2));
-  T rho = select(on_axis, T(0), root);
-  const Mask<T> in_field = field_.contains(rho, z_water);
+  T rho2 = across.squaredNorm();
+  const Mask<T> in_field = field_.contains(rho2, z_water);
   // Outside, a harmless point on the axis keeps everything below finite.
   for (int k = 0; k < 3; ++k) across(k) = select(in_field, across(k), T(0));
   z_water = select(in_field, z_water, T(1));
-  rho = select(in_field, rho, T(0));
-  const T inv_rho = select(rho > T(0), T(T(1) / root), T(0));
-  const FlatPortRoot<T> at = solve_tangent(optics_, field_, rho, inv_rho, z_water);
-  const T& m = at.inv_secant;
+  rho2 = select(in_field, rho2, T(0));
+  const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
+  const T& m = at.m;
   const Vector3<T> bearing = n + m * across;
   const Mask<T> in_front = bearing.z() > T(1e-3);
   const T inv_z = T(1) / select(in_front, bearing.z(), T(1));
@@ -214,23 +210,25 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
   const Vector2<T> pixel(lens_.fx * x + lens_.cx, lens_.fy * y + lens_.cy);
 
   if (jacobian) {
-    // d(bearing)/dX = m (I - n n^T) + (m_r - m) e e^T - (t/q_w) m_r e n^T, each row of the lens's
-    // Jacobian times that.
+    // With a = `across` and m_r = dt/d(rho): d(bearing)/dX = m (I - n n^T) + (m_r - m)/rho^2 a a^T
+    // - (m m_r/q_w) a n^T, each row of the lens's Jacobian times that.
     const T m_r = T(1) / at.tangent;
-    const Vector3<T> e = across * inv_rho;
-    const T slope = at.t * at.inv_qw * m_r;
+    const T stretch = m_r * m * m * m * at.spread;
+    const T slope = m * m_r * at.inv_qw;
     for (int row = 0; row < 2; ++row) {
       const T f = (row == 0 ? lens_.fx : lens_.fy) * inv_z;
       const T fz = -f * (row == 0 ? x : y);
-      const T radial = f * e(row) + fz * e.z();
-      const T along_e = (m_r - m) * radial;
+      const T radial = f * across(row) + fz * across.z();
+      const T along_a = stretch * radial;
       const T along_n = -slope * radial - m * (f * n(row) + fz * n.z());
       const T straight = m * f;
-      (*jacobian)(row, 0) = along_e * e.x() + along_n * n.x() + (row == 0 ? straight : T(0));
-      (*jacobian)(row, 1) = along_e * e.y() + along_n * n.y() + (row == 1 ? straight : T(0));
-      (*jacobian)(row, 2) = along_e * e.z() + along_n * n.z() + m * fz;
+      (*jacobian)(row, 0) = along_a * across.x() + along_n * n.x() + (row == 0 ? straight : T(0));
+      (*jacobian)(row, 1) = along_a * across.y() + along_n * n.y() + (row == 1 ? straight : T(0));
+      (*jacobian)(row, 2) = along_a * across.z() + along_n * n.z() + m * fz;
     }
   }
+  // In water the ray rises q_w/t for every metre that it leaves the axis.
+  if (origin) *origin = (height - T(1) / (m * at.inv_qw)) * n;
   return {pixel, in_field && in_front && inside_widened_image(pixel)};
 }
 

@@ -81,7 +81,8 @@ class PinholeCamera {
   Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
 
   // Where X is not visible, pixel and Jacobian are finite and mean nothing.
-  Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
+  Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
+                        Vector3<T>* origin = nullptr) const {
     using std::abs;
     // False for NaN; the bounds keep pixel and Jacobian within single precision.
     const T widest = T(1e6) * X.z();
@@ -90,6 +91,7 @@ class PinholeCamera {
     const Vector3<T> safe(select(visible, X.x(), T(0)), select(visible, X.y(), T(0)),
                           select(visible, X.z(), T(1)));
     if (jacobian) *jacobian = lens_.pixel_jacobian(safe);
+    if (origin) *origin = {T(0), T(0), T(0)};
     return {lens_.pixel(safe), visible};
   }
 

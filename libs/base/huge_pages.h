@@ -6,7 +6,8 @@
 
 #include <sys/mman.h>
 
-#include <cstdlib>
+#include <cstddef>
+#include <cstdint>
 #include <new>
 
 namespace axial {
@@ -25,24 +26,38 @@ struct HugePageAllocator {
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall) return static_cast<T*>(::operator new(bytes));
-    const std::size_t pages = (bytes + kPage - 1) / kPage * kPage;
-    void* block = std::aligned_alloc(kPage, pages);
-    if (!block) throw std::bad_alloc();
-    // A refusal costs speed and nothing else.
-    ::madvise(block, pages, MADV_HUGEPAGE);
-    return static_cast<T*>(block);
+    return static_cast<T*>(map(rounded(bytes)));
   }
 
   void deallocate(T* block, std::size_t count) {
-    if (count * sizeof(T) < kSmall)
+    const std::size_t bytes = count * sizeof(T);
+    if (bytes < kSmall)
       ::operator delete(block);
     else
-      std::free(block);
+      ::munmap(block, rounded(bytes));
   }
 
   template <class U>
   bool operator==(const HugePageAllocator<U>&) const {
     return true;
+  }
+
+ private:
+  static std::size_t rounded(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
+
+  // From the system and not from the heap, which such blocks would leave full of holes.
+  static void* map(std::size_t bytes) {
+    void* room =
+        ::mmap(nullptr, bytes + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (room == MAP_FAILED) throw std::bad_alloc();
+    auto* begin = static_cast<std::byte*>(room);
+    const std::size_t past = reinterpret_cast<std::uintptr_t>(begin) % kPage;
+    const std::size_t before = past > 0 ? kPage - past : 0;
+    if (before > 0) ::munmap(begin, before);
+    if (before < kPage) ::munmap(begin + before + bytes, kPage - before);
+    // A refusal costs speed and nothing else.
+    ::madvise(begin + before, bytes, MADV_HUGEPAGE);
+    return begin + before;
   }
 };
 

@@ -23,8 +23,14 @@ double largest_round_trip_error(unsigned seed, int width, int height) {
       const auto X = random_point(random, camera, pixel);
       if (!X) continue;
       ++tested;
-      const Projection<T> image = camera.project(*X);
+      Vector3<T> origin;
+      const Projection<T> image = camera.project(*X, nullptr, &origin);
       EXPECT_TRUE(image.visible) << pixel.transpose();
+      // Relative to how far away the point is: that is what the error of a direction is made of.
+      const Vector3<T> begin = camera.ray(pixel).origin;
+      const double off = static_cast<double>((origin - begin).norm() / (*X - begin).norm());
+      const double tolerance = std::is_same_v<T, float> ? 2e-4 : 1e-11;
+      EXPECT_LT(off, tolerance) << pixel.transpose();
       largest = std::max(largest, static_cast<double>((image.pixel - pixel).norm()));
     }
   }

@@ -68,14 +68,15 @@ class LaneScorer final : public Scorer {
     const Vector point = views.rotation * surface + views.translation;
 
     refractive::Matrix23<T> jacobian;
-    const refractive::Projection<T> image = views.camera.project(point, &jacobian);
+    Vector origin;
+    const refractive::Projection<T> image = views.camera.project(point, &jacobian, &origin);
     const refractive::Matrix2<T> warp = refractive::warp_derivative(
         jacobian, views.rotation,
         refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal));
 
     const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, image, warp);
     T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
-    if (!tables_.depths.empty()) cost += inconsistency(pixel, of_view, views, point, image);
+    if (!tables_.depths.empty()) cost += inconsistency(pixel, of_view, views, point, image, origin);
     if (pixel.prior_weight > 0) {
       const T off = abs(planes.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
       cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
@@ -132,13 +133,14 @@ class LaneScorer final : public Scorer {
 
   // The term of geometric_check.h, times its weight.
   T inconsistency(const LanePixel& pixel, const Lookup<Abi>& of_view, const Views& views,
-                  const Vector& point, const refractive::Projection<T>& image) const {
+                  const Vector& point, const refractive::Projection<T>& image,
+                  const Vector& origin) const {
     const T limit(tables_.geometric_limit);
-    const refractive::AxialRay<T> ray = views.camera.ray(image.pixel);
-    const Vector along = point - ray.origin;
+    const Vector along = point - origin;  // the ray of image.pixel, because that is exact
     const T expected = sqrt(along.dot(along));
     const T found = lane_depth_near(tables_.depths.data(), views.image, image, expected);
-    const Vector back = views.rotation.transpose() * (ray.at(found) - views.translation);
+    const Vector seen = origin + along * (found / expected);
+    const Vector back = views.rotation.transpose() * (seen - views.translation);
     const refractive::Projection<T> backward = reference_.project(back);
     const T du = backward.pixel.x() - T(pixel.at[0]);
     const T dv = backward.pixel.y() - T(pixel.at[1]);
