@@ -2,7 +2,10 @@
 // What a projection costs by each method, over the image's size.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 
 #include "experiments/charts.h"
 #include "experiments/experiment.h"
@@ -33,6 +36,15 @@ int image_height(int megapixels) {
   return static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 3 / 4)));
 }
 
+// "" where the system does not say.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      return line.substr(std::min(line.find(':') + 2, line.size()));
+  return "";
+}
+
 Json measure(int width, int height, Order order, const TimingOptions& options) {
   Json methods = Json::object();
   for (const MethodTime& time : time_projections({}, width, height, order, options))
@@ -41,6 +53,7 @@ Json measure(int width, int height, Order order, const TimingOptions& options) {
                             {"mean_error", time.mean_error},
                             {"points", time.points},
                             {"missed", time.missed}};
+  methods["processor"] = processor();
   return methods;
 }
 
@@ -99,7 +112,8 @@ std::string table(const Json& results) {
       rows.push_back(row);
     }
   }
-  return markdown_table(rows);
+  const Json& any = result_of(results, part_name(kOrders[0], kMegapixels[0]));
+  return markdown_table(rows) + "\nProcessor: " + any.at("processor").get<std::string>() + "\n";
 }
 
 std::vector<Document> documents(const Json& results) {
