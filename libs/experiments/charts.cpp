@@ -43,7 +43,7 @@ struct Axis {
     for (const double m : {5.0, 2.0, 1.0})
       if (m * power >= rough) step = m * power;
     for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
-      ticks.push_back(k * step);
+      ticks.push_back(k * step + 0.0);  // no -0
     return ticks;
   }
 };
@@ -124,13 +124,16 @@ cv::Mat3b colored(const MapPanel& panel, double highest) {
   cv::Mat3b bgr;
   cv::applyColorMap(scaled, bgr, cv::COLORMAP_VIRIDIS);
   bgr.setTo(cv::Scalar(190, 190, 190), values < 0);
+  // As large as they are drawn: not every viewer knows that pixels should stay squares.
+  const int factor = std::max(1, 200 / width);
+  cv::resize(bgr, bgr, {}, factor, factor, cv::INTER_NEAREST);
   return bgr;
 }
 
 void draw_scale(Svg& svg, const Rectangle& where, double highest, const std::string& unit) {
-  MapPanel bar{"", 1, {}};
-  for (int k = 255; k >= 0; --k) bar.values.push_back(k * highest / 255);
-  svg.picture(where, cv::repeat(colored(bar, highest), 1, 16));
+  MapPanel bar{"", 20, {}};
+  for (int k = 255; k >= 0; --k) bar.values.insert(bar.values.end(), bar.width, k * highest / 255);
+  svg.picture(where, colored(bar, highest));
   const Axis axis{0, highest, where.y + where.height, where.y};
   for (const double tick : axis.ticks())
     svg.text(where.x + where.width + 5, axis.at(tick) + 4, fmt::format("{:g}", tick),
@@ -167,7 +170,7 @@ std::string draw_maps(const std::string& title, const std::vector<MapPanel>& pan
   for (std::size_t k = 0; k < panels.size(); ++k) {
     const double x = kGap + (kSide + kGap) * static_cast<double>(k % columns);
     const double y = kTitleHeight + (kSide + kHead) * static_cast<double>(k / columns);
-    svg.text(x, y + 18, panels[k].title);
+    svg.text(x, y + 18, panels[k].title, Anchor::kStart, "small");
     svg.picture({x, y + kHead, kSide, kSide}, colored(panels[k], highest));
   }
   draw_scale(svg, {right + 4, kTitleHeight + kHead, 16, bottom - kTitleHeight - kHead}, highest,

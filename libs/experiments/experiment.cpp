@@ -21,6 +21,12 @@ std::string series_title(const std::string& series) {
   fail("'{}' is no parameter of the simulations", series);
 }
 
+std::string value_title(const std::string& series, double value) {
+  if (series == "distance_mm") return fmt::format("distance {:g} mm", value);
+  const std::string title = series_title(series);
+  return fmt::format("{} {:g}\u00b0", title.substr(0, title.find(" [")), value);
+}
+
 Json to_json(const CameraSetup& setup) {
   return {{"fov_degrees", setup.fov_degrees}, {"distance", setup.distance},
           {"thickness", setup.thickness},     {"tilt_degrees", setup.tilt_degrees},

@@ -47,7 +47,8 @@ struct Series {
   std::vector<double> values;
 };
 
-std::string series_title(const std::string& series);  // "interface distance [mm]"
+std::string series_title(const std::string& series);               // "interface distance [mm]"
+std::string value_title(const std::string& series, double value);  // "distance 20 mm"
 
 // Name of the part of one value, "setup1_fov_degrees_100": the default, which is in every series,
 // is one part, "setup1_default".

@@ -2,6 +2,8 @@
 // The paper's figure 2: how far Algorithm 1 misses, and the exact projection beside it.
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "experiments/charts.h"
 #include "experiments/experiment.h"
 #include "experiments/projection_error.h"
@@ -37,15 +39,21 @@ Part make_part(const Variation& variation, double step) {
           }};
 }
 
-// Share of all errors per bin, over the error in units of `unit` pixels.
+// Bins that are drawn as one: errors in float come in steps of a coordinate's last bit.
+constexpr std::size_t kDrawnBins = 10;
+
+// Density of the errors, in units of `unit` pixels.
 Line density(const std::string& name, const Json& method, double unit) {
   Line line{name, {}, {}};
+  const auto bins = method.at("bins").get<std::vector<double>>();
   const double width =
-      method.at("bins_upper").get<double>() / static_cast<double>(method.at("bins").size());
-  for (std::size_t k = 0; k < method.at("bins").size(); ++k) {
-    line.x.push_back((static_cast<double>(k) + 0.5) * width / unit);
-    line.y.push_back(method["bins"][k].get<double>() / method.at("count").get<double>() * unit /
-                     width);
+      kDrawnBins * method.at("bins_upper").get<double>() / static_cast<double>(bins.size()) / unit;
+  for (std::size_t k = 0; k + kDrawnBins <= bins.size(); k += kDrawnBins) {
+    const double sum =
+        std::accumulate(bins.begin() + static_cast<std::ptrdiff_t>(k),
+                        bins.begin() + static_cast<std::ptrdiff_t>(k + kDrawnBins), 0.0);
+    line.x.push_back((static_cast<double>(k / kDrawnBins) + 0.5) * width);
+    line.y.push_back(sum / method.at("count").get<double>() / width);
   }
   return line;
 }
@@ -60,11 +68,18 @@ LinePanel panel(const Json& results, const Series& one, const std::string& metho
                   false};
   for (const double value : one.values) {
     const Json& result = result_of(results, part_name(one.name, value, 1)).at(method);
-    panel.lines.push_back(density(fmt::format("{} {:g}, mean {} px", series_title(one.name), value,
-                                              significant(result.at("mean"))),
+    panel.lines.push_back(density(fmt::format("{}: mean {} px", value_title(one.name, value),
+                                              significant(result.at("mean"), 3)),
                                   result, unit));
   }
   return panel;
+}
+
+// "positions 0.1 px apart", all parts being alike.
+std::string sampling(const Json& results) {
+  const Json& inputs = results.at("parts").front().at("inputs");
+  return fmt::format("{0} x {0} image, positions {1:g} px apart", inputs.at("size").get<int>(),
+                     inputs.at("step").get<double>());
 }
 
 std::string figure(const Json& results) {
@@ -73,7 +88,7 @@ std::string figure(const Json& results) {
     panels.push_back(panel(results, one, "line_search", 1, "error [px]"));
   for (const Series& one : series())
     panels.push_back(panel(results, one, "exact", 1e-6, "error [millionths of a pixel]"));
-  return draw_lines("Reprojection error, 1000 x 1000 image", panels, 3);
+  return draw_lines("Reprojection error, " + sampling(results), panels, 3);
 }
 
 std::string table(const Json& results) {
@@ -93,7 +108,7 @@ std::string table(const Json& results) {
                       of(exact, "mean"), of(exact, "p95"), of(exact, "largest")});
     }
   }
-  return markdown_table(rows);
+  return markdown_table(rows) + "\n(" + sampling(results) + ")\n";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace axial::experiments {
 namespace {
 
 constexpr int kSize = 10;
+constexpr int kBorder = 12;  // of both images: wide enough to hold all patches in the second
 constexpr std::array kShown{Warp::kPapers, Warp::kExactCentre, Warp::kScaled, Warp::kFirstOrder};
 constexpr std::array<const char*, 4> kTitles{"the paper's", "f_v = f, exact centre",
                                              "local virtual scale", "first-order exact"};
@@ -26,16 +27,16 @@ std::string part_name(int setup) {
 }
 
 Json measure(const StereoSetup& setup) {
-  const WarpStudy study(setup, kSize + 2 * kPatchReach, kSize);
+  const WarpStudy study(setup, kSize + 2 * kBorder, kSize);
   Json maps = Json::object();
-  for (const Warp warp : kShown) maps[warp_name(warp)] = exploded_error_map(study, warp);
+  for (const Warp warp : kShown) maps[warp_name(warp)] = exploded_error_map(study, warp, kBorder);
   return {{"texels_across", kSize * kPatchSide}, {"errors", maps}};
 }
 
 Part make_part(int number) {
   const StereoSetup setup{number, {}, 0};
   return {part_name(number),
-          {{"version", 1}, {"setup", to_json(setup)}, {"size", kSize}, {"border", kPatchReach}},
+          {{"version", 2}, {"setup", to_json(setup)}, {"size", kSize}, {"border", kBorder}},
           [setup] { return measure(setup); }};
 }
 

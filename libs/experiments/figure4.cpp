@@ -90,7 +90,7 @@ std::string maps_figure(const Json& results, int setup, Warp warp) {
   for (const Series& one : series()) {
     for (const double value : one.values) {
       const Json& result = value_result(results, one, value, setup, "_100px");
-      MapPanel panel{fmt::format("{} {:g}: {} px", series_title(one.name), value,
+      MapPanel panel{fmt::format("{}: mean {} px", value_title(one.name, value),
                                  significant(result.at("warps").at(warp_name(warp)).at("mean"))),
                      kPapersSize,
                      {}};
@@ -159,7 +159,8 @@ std::string means_table(const Json& results, const char* size) {
 
 // Which term dominates.
 std::string terms_table(const Json& results, const char* size) {
-  const Row header{"warp alone [px]",
+  const Row header{"patches",
+                   "warp alone [px]",
                    "rounding alone, nearest pixel [px]",
                    "rounding alone, Algorithm 1 [px]",
                    "patches with more rounding than warp",
@@ -170,7 +171,8 @@ std::string terms_table(const Json& results, const char* size) {
     const auto percent = [&](const char* key) {
       return fmt::format("{:.0f} %", 100 * result.at(key).get<double>());
     };
-    return Row{significant(warps.at("exact_centre").at("mean")),
+    return Row{fmt::format("{}", result.at("centres").get<int>()),
+               significant(warps.at("exact_centre").at("mean")),
                significant(warps.at("rounded").at("mean_at_centre")),
                significant(warps.at("papers").at("mean_at_centre")),
                percent("rounding_over_warp"),
@@ -200,7 +202,7 @@ Experiment figure4(bool quick) {
   for (const int setup : {1, 2}) {
     for (const Variation& variation : variations(series(), setup)) {
       experiment.parts.push_back(papers_part(variation));
-      experiment.parts.push_back(real_part(variation, quick ? 61 : 5));
+      experiment.parts.push_back(real_part(variation, quick ? 61 : 7));
     }
   }
   return experiment;

@@ -26,12 +26,12 @@ Vector2<double> texel(const Vector2<double>& centre, std::size_t k) {
 }
 
 // Centres in one direction.
-std::size_t centres_along(int size) {
-  return static_cast<std::size_t>(std::max(0, size - 2 * kPatchReach));
+std::size_t centres_along(int size, int border = kPatchReach) {
+  return static_cast<std::size_t>(std::max(0, size - 2 * border));
 }
 
-Vector2<double> centre_at(std::size_t column, std::size_t row) {
-  return {static_cast<double>(column) + kPatchReach, static_cast<double>(row) + kPatchReach};
+Vector2<double> centre_at(std::size_t column, std::size_t row, int border = kPatchReach) {
+  return {static_cast<double>(column) + border, static_cast<double>(row) + border};
 }
 
 }  // namespace
@@ -183,13 +183,13 @@ std::vector<double> patch_error_map(const WarpStudy& study, Warp warp) {
   return map;
 }
 
-std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp) {
-  const std::size_t side = centres_along(study.size());
+std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border) {
+  const std::size_t side = centres_along(study.size(), border);
   const auto cell = static_cast<std::size_t>(kPatchSide);
   std::vector<double> map(side * side * kPatchTexels, -1);
   parallel_for(side, [&](std::size_t row) {
     for (std::size_t column = 0; column < side; ++column) {
-      const auto patch = study.errors(centre_at(column, row));
+      const auto patch = study.errors(centre_at(column, row, border));
       for (std::size_t k = 0; patch && k < kPatchTexels; ++k)
         map[(row * cell + k / cell) * side * cell + column * cell + k % cell] = (*patch)[warp][k];
     }

@@ -90,7 +90,8 @@ StudyStatistics study_statistics(const WarpStudy& study, int step);
 // none.
 std::vector<double> patch_error_map(const WarpStudy& study, Warp warp);
 
-// e_H of every texel of every centre, patches side by side: kPatchSide times as wide; -1: none.
-std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp);
+// e_H of every texel of every centre from `border` to size - 1 - border, patches side by side:
+// kPatchSide times as wide; -1: none.
+std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border = kPatchReach);
 
 }  // namespace axial::experiments

@@ -78,13 +78,13 @@ std::vector<Method> make_methods(const CameraSetup& setup, int width, int height
   return methods;
 }
 
-// Pixels anywhere in the image, or runs of a thousand neighbours along rows anywhere in it, each
+// Pixels anywhere in the image, or runs of a hundred neighbours along rows anywhere in it, each
 // seen 1 to 5 m away.
 std::vector<Sample> make_samples(const CameraSetup& setup, int width, int height, Order order,
                                  int count) {
   const FlatPortCamera<double> camera(make_lens(setup, width, height), make_port(setup), width,
                                       height);
-  constexpr std::uint64_t kRun = 1000;
+  constexpr std::uint64_t kRun = 100;
   const auto drawn = [](std::uint64_t number) {
     return static_cast<double>(unit_float(scramble(number)));
   };

@@ -61,7 +61,7 @@ Part make_part(Order order, int megapixels, const TimingOptions& options) {
   const int height = image_height(megapixels);
   const int width = static_cast<int>(std::lround(height * 4.0 / 3));
   return {part_name(order, megapixels),
-          {{"version", 1},
+          {{"version", 2},
            {"camera", to_json(CameraSetup{})},
            {"width", width},
            {"height", height},

@@ -92,7 +92,7 @@ void Svg::picture(const Rectangle& r, const cv::Mat3b& bgr) {
   cv::imencode(".png", bgr, png);
   body_ += fmt::format(
       "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
-      "href=\"data:image/png;base64,{}\"/>\n",
+      "preserveAspectRatio=\"none\" href=\"data:image/png;base64,{}\"/>\n",
       r.x, r.y, r.width, r.height, base64(png));
 }
 

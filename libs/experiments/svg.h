@@ -27,7 +27,7 @@ class Svg {
   void polyline(const std::vector<cv::Point2d>& points, std::string_view color);
   void circle(double x, double y, std::string_view color, std::string_view tip);
   void box(const Rectangle& where, std::string_view color);
-  // Pixels stay squares.
+  // Stretched to fill the rectangle.
   void picture(const Rectangle& where, const cv::Mat3b& bgr);
 
   std::string str() const;

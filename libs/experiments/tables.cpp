@@ -22,9 +22,13 @@ std::string markdown_table(const std::vector<std::vector<std::string>>& rows) {
 
 std::string significant(double value, int digits) {
   if (value == 0 || !std::isfinite(value)) return fmt::format("{:g}", value);
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - digits + 1);
+  const auto last_digit = [&](double x) {
+    return static_cast<int>(std::floor(std::log10(std::abs(x)))) - digits + 1;
+  };
+  const double unit = std::pow(10, last_digit(value));
   const double rounded = std::round(value / unit) * unit;
-  const int decimals = static_cast<int>(std::lround(-std::log10(unit)));
+  // 9.996 has become 10.00: a digit longer.
+  const int decimals = -last_digit(rounded * (1 + 1e-12));
   return fmt::format("{:.{}f}", rounded, std::max(0, decimals));
 }
 

@@ -74,9 +74,10 @@ class Quick(unittest.TestCase):
 
     def test_exploded_patches(self):
         for name, part in self.results("figure3").items():
+            self.assertGreater(max(part["errors"]["papers"]), 0.5, name)
             for warp, errors in part["errors"].items():
                 self.assertEqual(len(errors), 50 * 50, name)
-                self.assertGreater(sum(error >= 0 for error in errors), 25 * 50, warp)
+                self.assertGreaterEqual(min(errors), 0, warp)
             middles = [part["errors"]["first_order"][50 * row + column]
                        for row in range(2, 50, 5) for column in range(2, 50, 5)]
             self.assertLess(max(middles), 1e-9)

@@ -104,9 +104,10 @@ TEST(WarpStudy, AgreesWithTracedLight) {
   }
 }
 
-// Without refraction a virtual camera is the camera itself, wherever it is looked up.
+// Without refraction a virtual camera is the camera itself, wherever it is looked up. (Without tilt:
+// it is aligned with the port, and with f_v = f then has another scale.)
 TEST(WarpStudy, HasNoErrorWithoutRefraction) {
-  const StereoSetup setup{2, {.tilt_degrees = 7, .n_glass = 1, .n_water = 1}, 30};
+  const StereoSetup setup{2, {.n_glass = 1, .n_water = 1}, 30};
   const StudyStatistics result = study_statistics(WarpStudy(setup, 108, 100), 3);
   EXPECT_GT(result.centres, 500);
   for (const Warp warp :
@@ -163,7 +164,9 @@ TEST(WarpStudy, GivesDesignsTable) {
     EXPECT_GT(result.centres, 100);
     EXPECT_LE(result[Warp::kFirstOrder].mean, 0.005) << row.series << row.value;
     EXPECT_LT(result[Warp::kPerTexel].mean, 1e-3);
-    if (row.papers > 0) EXPECT_NEAR(result[Warp::kRounded].mean, row.papers, 0.1 * row.papers);
+    if (row.papers > 0) {
+      EXPECT_NEAR(result[Warp::kRounded].mean, row.papers, 0.1 * row.papers);
+    }
   }
 }
 
@@ -186,7 +189,8 @@ TEST(Maps, HoldThePatchesTheySay) {
       seen += patch.has_value();
     }
   }
-  EXPECT_GT(seen, 50);
+  EXPECT_GT(seen, 30);
+  EXPECT_LT(seen, 100);
 }
 
 TEST(StudyStatistics, AreTheMeansOfTheMapForAnyNumberOfThreads) {

@@ -62,8 +62,9 @@ void expect_same_search(const CameraSetup& setup) {
                                                      make_port(setup), width, height);
   const TableSearch<double, Cell> search(library.exact(), width, height);
   int same = 0, all = 0;
-  for (double v = -0.3; v < height - 0.6; v += 3.7) {
-    for (double u = -0.3; u < width - 0.6; u += 3.3) {
+  // Never at a pixel's centre, where alpha and beta are equal but for rounding.
+  for (double v = -0.35; v < height - 0.6; v += 3.7) {
+    for (double u = -0.35; u < width - 0.6; u += 3.3) {
       const Vector3<double> X = library.ray({u, v}).at(1 + 0.01 * u);
       const auto expected = library.project(X);
       const auto found = search.project(X);
