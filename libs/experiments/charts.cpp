@@ -124,8 +124,8 @@ cv::Mat3b colored(const MapPanel& panel, double highest) {
   cv::Mat3b bgr;
   cv::applyColorMap(scaled, bgr, cv::COLORMAP_VIRIDIS);
   bgr.setTo(cv::Scalar(190, 190, 190), values < 0);
-  // As large as they are drawn: not every viewer knows that pixels should stay squares.
-  const int factor = std::max(1, 200 / width);
+  // Few pixels as large as they are drawn: not every viewer knows that they should stay squares.
+  const int factor = width < 100 ? std::max(1, 200 / width) : 1;
   cv::resize(bgr, bgr, {}, factor, factor, cv::INTER_NEAREST);
   return bgr;
 }
