@@ -104,8 +104,8 @@ TEST(WarpStudy, AgreesWithTracedLight) {
   }
 }
 
-// Without refraction a virtual camera is the camera itself, wherever it is looked up. (Without tilt:
-// it is aligned with the port, and with f_v = f then has another scale.)
+// Without refraction a virtual camera is the camera itself, wherever it is looked up. (Without
+// tilt: it is aligned with the port, and with f_v = f then has another scale.)
 TEST(WarpStudy, HasNoErrorWithoutRefraction) {
   const StereoSetup setup{2, {.n_glass = 1, .n_water = 1}, 30};
   const StudyStatistics result = study_statistics(WarpStudy(setup, 108, 100), 3);
