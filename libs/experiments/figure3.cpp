@@ -13,7 +13,7 @@ namespace axial::experiments {
 namespace {
 
 constexpr int kSize = 10;
-constexpr int kBorder = 12;  // of both images: wide enough to hold all patches in the second
+constexpr int kBorder = 12;  // of both images: wide enough to hold most patches in the second
 constexpr std::array kShown{Warp::kPapers, Warp::kExactCentre, Warp::kScaled, Warp::kFirstOrder};
 constexpr std::array<const char*, 4> kTitles{"the paper's", "f_v = f, exact centre",
                                              "local virtual scale", "first-order exact"};
