@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include "base/error.h"
+
+namespace axial {
+namespace po = boost::program_options;
+
+ProgramOptions describe(Arguments& a) {
+  ProgramOptions program;
+  program.name = "ReproducePaper";
+  program.description =
+      "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
+      "with EXPERIMENT figure2, runtime, figure3, figure4 or all";
+  program.visible.add_options()("output,o", po::value(&a.output),
+                                "folder of the results (required); finished parts found there are "
+                                "not computed again")(
+      "quick", po::value(&a.quick)->default_value(false)->implicit_value(true),
+      "fewer samples: a look in a minute or two")(
+      "page", po::value(&a.page), "Markdown page to bring up to date with the results");
+  // The name that parse_options knows the positional argument by.
+  program.hidden.add_options()("input-file", po::value(&a.experiment), "the experiment");
+  return program;
+}
+
+std::vector<experiments::Experiment> chosen_experiments(const Arguments& a) {
+  if (a.output.empty()) fail("no output folder given (-o DIR)");
+  std::vector<experiments::Experiment> all = experiments::all_experiments(a.quick);
+  if (a.experiment == "all") return all;
+  std::string names;
+  for (experiments::Experiment& experiment : all) {
+    if (experiment.name == a.experiment) return {std::move(experiment)};
+    names += experiment.name + ", ";
+  }
+  fail("'{}' is no experiment: must be {}or all", a.experiment, names);
+}
+
+}  // namespace axial

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The distribution of very many errors: counts in equal bins, and what bins cannot tell.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace axial::experiments {
+
+class Distribution {
+ public:
+  // `bins` equal bins over [0, upper).
+  Distribution(double upper, std::size_t bins) : upper_(upper), counts_(bins, 0) {}
+
+  void add(double error) {
+    ++count_;
+    sum_ += error;
+    if (error > largest_) largest_ = error;
+    const double bin = error / upper_ * static_cast<double>(counts_.size());
+    if (bin < static_cast<double>(counts_.size()))
+      ++counts_[static_cast<std::size_t>(bin)];
+    else
+      ++beyond_;
+  }
+
+  // Adds all of `other`, which has the same bins.
+  void merge(const Distribution& other);
+
+  std::int64_t count() const { return count_; }
+  double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
+  double largest() const { return largest_; }
+  // The error that the share `q` of all errors does not exceed, linear within its bin; `largest()`
+  // if that lies beyond the bins.
+  double quantile(double q) const;
+
+  double upper() const { return upper_; }
+  const std::vector<std::int64_t>& counts() const { return counts_; }
+  std::int64_t beyond() const { return beyond_; }
+
+ private:
+  double upper_;
+  std::vector<std::int64_t> counts_;
+  std::int64_t beyond_ = 0, count_ = 0;
+  double sum_ = 0, largest_ = 0;
+};
+
+}  // namespace axial::experiments

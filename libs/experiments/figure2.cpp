@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The paper's figure 2: how far Algorithm 1 misses, and the exact projection beside it.
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "experiments/charts.h"
+#include "experiments/experiment.h"
+#include "experiments/projection_error.h"
+#include "experiments/tables.h"
+
+namespace axial::experiments {
+namespace {
+
+constexpr int kSize = 1000;
+
+std::vector<Series> series() {
+  return {{"fov_degrees", {50, 80, 100, 120}},
+          {"distance_mm", {2, 20, 50, 100}},
+          {"tilt_degrees", {0, 5, 10, 20}}};
+}
+
+Json to_json(const RoundTrips& trips) {
+  const Distribution& errors = trips.errors;
+  return {{"mean", errors.mean()},         {"median", errors.quantile(0.5)},
+          {"p95", errors.quantile(0.95)},  {"largest", errors.largest()},
+          {"count", errors.count()},       {"missed", trips.missed},
+          {"bins_upper", errors.upper()},  {"bins", errors.counts()},
+          {"beyond_bins", errors.beyond()}};
+}
+
+Part make_part(const Variation& variation, double step) {
+  const CameraSetup camera = variation.setup.camera;
+  return {part_name(variation.series, variation.value, 1),
+          {{"version", 1}, {"camera", to_json(camera)}, {"size", kSize}, {"step", step}},
+          [camera, step]() -> Json {
+            const ProjectionErrors errors = projection_errors(camera, kSize, step);
+            return {{"line_search", to_json(errors.line_search)}, {"exact", to_json(errors.exact)}};
+          }};
+}
+
+// Bins that are drawn as one: errors in float come in steps of a coordinate's last bit.
+constexpr std::size_t kDrawnBins = 10;
+
+// Density of the errors, in units of `unit` pixels.
+Line density(const std::string& name, const Json& method, double unit) {
+  Line line{name, {}, {}};
+  const auto bins = method.at("bins").get<std::vector<double>>();
+  const double width =
+      kDrawnBins * method.at("bins_upper").get<double>() / static_cast<double>(bins.size()) / unit;
+  for (std::size_t k = 0; k + kDrawnBins <= bins.size(); k += kDrawnBins) {
+    const double sum =
+        std::accumulate(bins.begin() + static_cast<std::ptrdiff_t>(k),
+                        bins.begin() + static_cast<std::ptrdiff_t>(k + kDrawnBins), 0.0);
+    line.x.push_back((static_cast<double>(k / kDrawnBins) + 0.5) * width);
+    line.y.push_back(sum / method.at("count").get<double>() / width);
+  }
+  return line;
+}
+
+LinePanel panel(const Json& results, const Series& one, const std::string& method, double unit,
+                const std::string& x_title) {
+  LinePanel panel{method == "exact" ? "exact projection, float" : "Algorithm 1",
+                  x_title,
+                  "density",
+                  {},
+                  false,
+                  false};
+  for (const double value : one.values) {
+    const Json& result = result_of(results, part_name(one.name, value, 1)).at(method);
+    panel.lines.push_back(density(fmt::format("{}: mean {} px", value_title(one.name, value),
+                                              significant(result.at("mean"), 3)),
+                                  result, unit));
+  }
+  return panel;
+}
+
+// "positions 0.1 px apart", all parts being alike.
+std::string sampling(const Json& results) {
+  const Json& inputs = results.at("parts").front().at("inputs");
+  return fmt::format("{0} x {0} image, positions {1:g} px apart", inputs.at("size").get<int>(),
+                     inputs.at("step").get<double>());
+}
+
+std::string figure(const Json& results) {
+  std::vector<LinePanel> panels;
+  for (const Series& one : series())
+    panels.push_back(panel(results, one, "line_search", 1, "error [px]"));
+  for (const Series& one : series())
+    panels.push_back(panel(results, one, "exact", 1e-6, "error [millionths of a pixel]"));
+  return draw_lines("Reprojection error, " + sampling(results), panels, 3);
+}
+
+std::string table(const Json& results) {
+  std::vector<std::vector<std::string>> rows{{"varied", "value", "Algorithm 1: mean [px]", "median",
+                                              "95 %", "largest", "exact, float: mean [px]", "95 %",
+                                              "largest"}};
+  for (const Series& one : series()) {
+    for (const double value : one.values) {
+      const Json& result = result_of(results, part_name(one.name, value, 1));
+      const Json& papers = result.at("line_search");
+      const Json& exact = result.at("exact");
+      const auto of = [](const Json& method, const char* key) {
+        return significant(method.at(key));
+      };
+      rows.push_back({series_title(one.name), fmt::format("{:g}", value), of(papers, "mean"),
+                      of(papers, "median"), of(papers, "p95"), of(papers, "largest"),
+                      of(exact, "mean"), of(exact, "p95"), of(exact, "largest")});
+    }
+  }
+  return markdown_table(rows) + "\n(" + sampling(results) + ")\n";
+}
+
+}  // namespace
+
+Experiment figure2(bool quick) {
+  Experiment experiment{"figure2", {}, [](const Json& results) -> std::vector<Document> {
+                          return {{"figure2.svg", figure(results)}, {"figure2.md", table(results)}};
+                        }};
+  // Coarse steps still meet every tenth of a pixel.
+  for (const Variation& variation : variations(series(), 1))
+    experiment.parts.push_back(make_part(variation, quick ? 1.7 : 0.1));
+  return experiment;
+}
+
+}  // namespace axial::experiments

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The paper's virtual camera with the locally correct scale in place of f_v = f: a 2x2 matrix,
+// since behind a flat port a pixel is not as wide as it is high.
+#pragma once
+
+#include <Eigen/LU>
+
+#include "refractive/virtual_camera.h"
+
+namespace axial::experiments {
+
+template <class T>
+struct ScaledVirtualCamera {
+  refractive::Vector3<T> centre;          // C_v in the frame of the real camera
+  refractive::Matrix3<T> rotation;        // virtual_from_camera
+  refractive::Matrix3<T> pixel_from_ray;  // K with `scale` for its upper left 2x2
+};
+
+// With y = (x/z, y/z) of the ray in the virtual camera's frame, the scale is d(pixel)/dy, from the
+// derivative of the ray by the pixel; c_v as in eq. 3.
+template <class Camera, class T = typename Camera::Scalar>
+ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
+                                             const refractive::Vector2<T>& pixel) {
+  refractive::AxialRayJacobian<T> jacobian;
+  const refractive::AxialRay<T> ray = camera.ray(pixel, jacobian);
+  const refractive::Matrix3<T> rotation = camera.rotation_to_axis();
+  const refractive::Vector3<T> d = rotation * ray.direction;
+  const refractive::Matrix32<T> dd = rotation * jacobian.direction;
+  const refractive::Vector2<T> y = d.template head<2>() / d.z();
+  const refractive::Matrix2<T> dy = (dd.template topRows<2>() - y * dd.row(2)) / d.z();
+  const refractive::Matrix2<T> scale = dy.inverse();
+  refractive::Matrix3<T> K = refractive::Matrix3<T>::Identity();
+  K.template topLeftCorner<2, 2>() = scale;
+  K.template topRightCorner<2, 1>() = pixel - scale * y;
+  return {ray.origin, rotation, K};
+}
+
+// Eq. 2 for such cameras; frames as in refractive::virtual_homography.
+template <class T>
+refractive::Matrix3<T> scaled_homography(const ScaledVirtualCamera<T>& reference,
+                                         const ScaledVirtualCamera<T>& source,
+                                         const refractive::Matrix3<T>& R,
+                                         const refractive::Vector3<T>& C,
+                                         const refractive::Vector3<T>& X,
+                                         const refractive::Vector3<T>& n) {
+  using Matrix3 = refractive::Matrix3<T>;
+  const Matrix3 rotation = source.rotation * R * reference.rotation.transpose();
+  const refractive::Vector3<T> centre =
+      reference.rotation * (C + R.transpose() * source.centre - reference.centre);
+  const refractive::Vector3<T> n_v = reference.rotation * n;
+  const T plane = n.dot(X - reference.centre);
+  const Matrix3 euclidean =
+      rotation * (Matrix3::Identity() - centre * n_v.transpose() * (T(1) / plane));
+  return source.pixel_from_ray * euclidean * reference.pixel_from_ray.inverse();
+}
+
+}  // namespace axial::experiments

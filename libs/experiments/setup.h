@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the paper's simulations vary: a camera behind a flat port, and a stereo pair of it before a
+// plane. The defaults are the paper's; it does not give the refractive indices.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "refractive/flat_port_camera.h"
+
+namespace axial::experiments {
+
+using refractive::FlatPort;
+using refractive::FlatPortCamera;
+using refractive::PinholeLens;
+using refractive::Vector2;
+using refractive::Vector3;
+
+struct CameraSetup {
+  double fov_degrees = 80;  // horizontal, in air
+  double distance = 0.02;   // d_a, camera centre to glass [m]
+  double thickness = 0.014;
+  double tilt_degrees = 0;  // of the port's normal, towards +x
+  double n_glass = 1.52;
+  double n_water = 1.333;
+};
+
+// An image of `width` x `height` pixels, of whose width the middle `fov_width` pixels span the
+// field of view (the rest is a border; 0: no border). Centred principal point.
+PinholeLens<double> make_lens(const CameraSetup& setup, int width, int height, int fov_width = 0);
+FlatPort<double> make_port(const CameraSetup& setup);
+
+// Two cameras with parallel axes, and a plane through the point 4 m before the first.
+struct StereoSetup {
+  int number = 1;  // 1: baseline of 1 m; 2: second camera at x = 0.5 m, z = -1 m
+  CameraSetup camera;
+  double plane_degrees = 0;  // the plane turned about y
+};
+
+Vector3<double> source_centre(const StereoSetup& setup);
+Vector3<double> plane_point(const StereoSetup& setup);
+Vector3<double> plane_normal(const StereoSetup& setup);
+
+// One value of one varied parameter; all others have their defaults.
+struct Variation {
+  std::string series;  // "fov_degrees", "distance_mm", "tilt_degrees", "plane_degrees"
+  double value;
+  StereoSetup setup;
+};
+
+// The default, under the name of the series.
+Variation vary(const std::string& series, double value, int stereo_number = 1);
+
+}  // namespace axial::experiments

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A drawing as an SVG that needs no other file.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace axial::experiments {
+
+struct Rectangle {
+  double x, y, width, height;
+};
+
+enum class Anchor { kStart, kMiddle, kEnd };
+
+class Svg {
+ public:
+  Svg(double width, double height);
+
+  // Kinds are the style sheet's: "title", "small", "grid", "axis".
+  void text(double x, double y, std::string_view content, Anchor anchor = Anchor::kStart,
+            std::string_view kind = "");
+  void upright_text(double x, double y, std::string_view content);  // read from below, centred
+  void line(double x1, double y1, double x2, double y2, std::string_view kind);
+  void polyline(const std::vector<cv::Point2d>& points, std::string_view color);
+  void circle(double x, double y, std::string_view color, std::string_view tip);
+  void box(const Rectangle& where, std::string_view color);
+  // Stretched to fill the rectangle.
+  void picture(const Rectangle& where, const cv::Mat3b& bgr);
+
+  std::string str() const;
+
+ private:
+  double width_, height_;
+  std::string body_;
+};
+
+}  // namespace axial::experiments

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Algorithm 1 over tables of other layouts than refractive/line_search.h has: how much memory a
+// pixel takes decides how long a search waits for it.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "refractive/line_search.h"
+
+namespace axial::experiments {
+
+// As the paper prints it: L(x) = {C_v, X_v, c_v}, all vectors, 8 numbers a pixel.
+template <class T>
+struct PlainCell {
+  refractive::Vector3<T> centre, direction;
+  refractive::Vector2<T> principal_point;
+
+  static PlainCell of(const FlatPortCamera<T>& camera, const Vector2<T>& pixel) {
+    const refractive::AxialRay<T> ray = camera.ray(pixel);
+    const refractive::VirtualCamera<T> at = refractive::virtual_camera(camera, pixel);
+    return {ray.origin, ray.direction, {at.lens.cx, at.lens.cy}};
+  }
+
+  // Whether Algorithm 1 goes forward: alpha < beta, both as it computes them.
+  bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
+    const refractive::Vector3<T> from_centre = X - centre;
+    return from_centre.dot(n) / from_centre.norm() < direction.dot(n);
+  }
+};
+
+// As little as Algorithm 1 can do with: the height of C_v on the axis and beta, 2 numbers a pixel.
+template <class T>
+struct TightCell {
+  T along, cosine;
+
+  static TightCell of(const FlatPortCamera<T>& camera, const Vector2<T>& pixel) {
+    const refractive::AxialRay<T> ray = camera.ray(pixel);
+    return {ray.origin.dot(camera.port().normal), ray.direction.dot(camera.port().normal)};
+  }
+
+  bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
+    const T height = X.dot(n);
+    const T above = height - along;
+    const T rho2 = X.squaredNorm() - height * height;
+    return above < cosine * std::sqrt(rho2 + above * above);
+  }
+};
+
+// Projects as LineSearchCamera does, by its own table of `Cell`s.
+template <class T, class Cell>
+class TableSearch {
+ public:
+  using Scalar = T;
+
+  TableSearch(const FlatPortCamera<T>& camera, int width, int height)
+      : camera_(camera), width_(width), height_(height) {
+    cells_.reserve(static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height + 2));
+    for (int v = -1; v <= height; ++v)
+      for (int u = -1; u <= width; ++u)
+        cells_.push_back(Cell::of(camera, Vector2<T>(static_cast<T>(u), static_cast<T>(v))));
+  }
+
+  refractive::Projection<T> project(const Vector3<T>& X) const {
+    const Vector3<T>& n = camera_.port().normal;
+    const refractive::Projection<T> none{Vector2<T>(T(0), T(0)), false};
+    if (!(X.dot(n) > camera_.optics().outer()) || !(X.z() > T(0))) return none;
+    const Vector2<T> x_p = camera_.lens().pixel(X);
+    const Vector2<T> step = refractive::refraction_line(camera_.lens(), n, X);
+    const Vector2<T> high(static_cast<T>(width_), static_cast<T>(height_));
+    const auto line = refractive::clip_ray<T>(x_p, step, Vector2<T>(T(-1), T(-1)), high);
+    if (!line) return none;
+    const Vector2<T> x = bisect(*line, X, n);
+    const bool inside =
+        x.minCoeff() >= T(-0.5) && x.x() <= high.x() - T(0.5) && x.y() <= high.y() - T(0.5);
+    return {x, inside};
+  }
+
+ private:
+  Vector2<T> bisect(refractive::Segment<T> line, const Vector3<T>& X, const Vector3<T>& n) const {
+    Vector2<T> t = T(0.5) * (line.end - line.start);
+    Vector2<T> x = line.start + t;
+    do {
+      if (cell(x).forward(X, n)) line.start = x;
+      t *= T(0.5);
+      x = line.start + t;
+    } while (t.squaredNorm() >= T(0.125));  // (sqrt(2)/4)^2
+    return x;
+  }
+
+  // Of the pixel nearest to x, which lies in [-1, width] x [-1, height].
+  const Cell& cell(const Vector2<T>& x) const {
+    const auto u = static_cast<std::size_t>(x.x() + T(1.5));
+    const auto v = static_cast<std::size_t>(x.y() + T(1.5));
+    return cells_[v * static_cast<std::size_t>(width_ + 2) + u];
+  }
+
+  FlatPortCamera<T> camera_;
+  int width_, height_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace axial::experiments

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ReproducePaper as its users meet it: all experiments quickly, judged by the numbers they write."""
+
+import base64
+import json
+import os
+import re
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+from programs import ProgramTest, files_below, main, read, run, write
+
+PROGRAM = "ReproducePaper"
+
+
+class Quick(unittest.TestCase):
+    """One run of everything, looked at from all sides."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.folder = cls.temporary.name
+        result = run(PROGRAM, "all", "-o", cls.folder, "--quick", "--max-threads", "1")
+        assert result.returncode == 0, result.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def results(self, experiment):
+        content = json.loads(read(os.path.join(self.folder, experiment + ".json")))
+        self.assertTrue(content["quick"])
+        return {name: part["result"] for name, part in content["parts"].items()}
+
+    def test_projection_errors(self):
+        parts = self.results("figure2")
+        self.assertEqual(len(parts), 10)
+        for name, part in parts.items():
+            self.assertGreater(part["line_search"]["mean"], 0.24, name)
+            self.assertLess(part["line_search"]["mean"], 0.29, name)
+            self.assertLess(part["exact"]["largest"], 1e-3, name)
+            for method in part.values():
+                self.assertGreater(method["count"], 300_000)
+                self.assertEqual(sum(method["bins"]) + method["beyond_bins"], method["count"])
+
+    def test_run_times_stand_beside_errors(self):
+        """Only their order: other programs may run on this machine."""
+        parts = self.results("runtime")
+        self.assertEqual(len(parts), 10)
+        for name, part in parts.items():
+            times = {method: time["nanoseconds"] for method, time in part.items()
+                     if method != "processor"}
+            self.assertLess(2 * times["exact"], times["line_search_compact"], name)
+            self.assertLess(2 * times["line_search_compact"], times["analytic"], name)
+            self.assertLess(part["exact"]["mean_error"], 1e-3)
+            self.assertGreater(part["line_search_compact"]["mean_error"], 0.2)
+
+    def test_patch_errors(self):
+        parts = self.results("figure4")
+        self.assertEqual(len(parts), 2 * 2 * 13)
+        for name, part in parts.items():
+            warps = {warp: values["mean"] for warp, values in part["warps"].items()}
+            self.assertGreater(part["centres"], 100, name)
+            self.assertLess(warps["per_texel"], 1e-3, name)
+            self.assertLess(warps["first_order"], warps["exact_centre"], name)
+            if name.endswith("2048px") and "fov" not in name:
+                self.assertLessEqual(warps["first_order"], 0.005, name)
+        for name, papers in (("setup1_default", 0.475), ("setup1_fov_degrees_100", 0.706),
+                             ("setup1_distance_mm_100", 0.462), ("setup1_tilt_degrees_6", 0.502),
+                             ("setup1_plane_degrees_40", 0.487), ("setup2_default", 0.254)):
+            mean = parts[name + "_2048px"]["warps"]["rounded"]["mean"]
+            self.assertAlmostEqual(mean, papers, delta=0.1 * papers, msg=name)
+
+    def test_exploded_patches(self):
+        for name, part in self.results("figure3").items():
+            self.assertGreater(max(part["errors"]["papers"]), 0.5, name)
+            for warp, errors in part["errors"].items():
+                self.assertEqual(len(errors), 50 * 50, name)
+                self.assertGreater(sum(error >= 0 for error in errors), 80 * 25, warp)
+            middles = [part["errors"]["first_order"][50 * row + column]
+                       for row in range(2, 50, 5) for column in range(2, 50, 5)]
+            self.assertLess(max(middles), 1e-9)
+
+    def test_figures_are_svg_that_need_no_other_file(self):
+        figures = [name for name in files_below(self.folder) if name.endswith(".svg")]
+        self.assertEqual(len(figures), 1 + 1 + 2 + 5)
+        for name in figures:
+            text = read(os.path.join(self.folder, name)).decode()
+            root = xml.etree.ElementTree.fromstring(text)
+            self.assertTrue(root.tag.endswith("svg"))
+            self.assertNotIn("nan", text.lower().split("base64")[0], name)
+            for link in re.findall(r'href="([^"]*)"', text):
+                self.assertTrue(link.startswith("data:image/png;base64,"))
+                png = base64.b64decode(link.split(",")[1], validate=True)
+                self.assertTrue(png.startswith(b"\x89PNG") and png.endswith(b"IEND\xaeB`\x82"))
+
+    def test_tables_hold_the_numbers_of_the_json(self):
+        table = read(os.path.join(self.folder, "figure2.md")).decode()
+        for part in self.results("figure2").values():
+            self.assertIn(f"| {part['line_search']['mean']:.3f} |", table)
+
+    def test_nothing_finished_is_computed_again(self):
+        """Times would never come out the same twice."""
+        before = {name: read(os.path.join(self.folder, name)) for name in files_below(self.folder)}
+        self.assertEqual(run(PROGRAM, "all", "-o", self.folder, "--quick").returncode, 0)
+        for name, content in before.items():
+            self.assertEqual(read(os.path.join(self.folder, name)), content, name)
+        self.assertEqual(files_below(self.folder), set(before))
+
+
+class Figure3(ProgramTest):
+    """The smallest experiment: parts, threads and pages."""
+
+    def part(self):
+        folder = self.path("a", "parts", "figure3")
+        return os.path.join(folder, sorted(os.listdir(folder))[0])
+
+    def all_bytes(self, folder):
+        return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))}
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        for folder, threads in (("a", 1), ("b", 3)):
+            self.succeeds(PROGRAM, "figure3", "-o", self.path(folder), "--max-threads", threads)
+        self.assertEqual(self.all_bytes("a"), self.all_bytes("b"))
+
+    def test_damaged_and_foreign_parts_are_computed_again(self):
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+        expected = self.all_bytes("a")
+        whole = json.loads(read(self.part()))
+        for wrong in (b"", b"{}", b"[1]", read(self.part())[:100],
+                      json.dumps({**whole, "inputs": {"version": 0}}).encode()):
+            write(self.part(), wrong)
+            self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+            self.assertEqual(self.all_bytes("a"), expected)
+
+    def test_figures_and_tables_are_drawn_from_the_kept_numbers(self):
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+        part = json.loads(read(self.part()))
+        errors = part["result"]["errors"]["papers"]
+        errors[errors.index(max(errors))] = 77.7
+        write(self.part(), json.dumps(part))
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+        self.assertIn("| 77.7 |", read(self.path("a", "figure3.md")).decode())
+
+    def test_a_page_is_brought_up_to_date(self):
+        page = self.path("docs", "page.md")
+        write(page, "before\n<!-- figure3.md -->\nold\n<!-- end -->\n"
+                    "![x](images/figure3_setup1.svg)\n<!-- other.md -->\nkept\n<!-- end -->\n")
+        os.mkdir(self.path("docs", "images"))
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"), "--page", page)
+        text = read(page).decode()
+        self.assertIn("before\n<!-- figure3.md -->\n\n| setup |", text)
+        self.assertNotIn("old", text)
+        self.assertIn("<!-- other.md -->\nkept\n<!-- end -->\n", text)
+        self.assertEqual(os.listdir(self.path("docs", "images")), ["figure3_setup1.svg"])
+        self.assertEqual(read(self.path("docs", "images", "figure3_setup1.svg")),
+                         read(self.path("a", "figure3_setup1.svg")))
+
+    def test_wrong_input(self):
+        self.refuses("'figure9' is no experiment", PROGRAM, "figure9", "-o", self.path("a"))
+        self.refuses("no output folder", PROGRAM, "figure3")
+        self.refuses("'figure4' belongs to no option", PROGRAM, "figure3", "figure4", "-o",
+                     self.path("a"))
+        self.refuses("cannot be created", PROGRAM, "figure3", "-o", "/proc/none")
+        write(self.path("file"), "")
+        self.refuses("cannot be created", PROGRAM, "figure3", "-o", self.path("file"))
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+        self.refuses("none.md", PROGRAM, "figure3", "-o", self.path("a"), "--page",
+                     self.path("none.md"))
+        write(self.path("page.md"), "<!-- figure3.md -->\n")
+        self.refuses("has no '<!-- end -->'", PROGRAM, "figure3", "-o", self.path("a"), "--page",
+                     self.path("page.md"))
+
+    def test_help_without_an_experiment(self):
+        result = run(PROGRAM)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("figure2, runtime, figure3, figure4 or all", result.stdout)
+
+
+main()
