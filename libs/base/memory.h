@@ -16,7 +16,8 @@ std::uint64_t available_memory(const std::filesystem::path& root = "/");
 // some pages from run to run.
 std::uint64_t resident_memory();
 
-// Bytes that this process has allocated and not freed: the same in every run that did the same.
+// Bytes that this process has allocated from the C library and not freed (huge_pages.h asks the
+// system itself): the same in every run that did the same.
 std::uint64_t allocated_memory();
 
 // Gives back to the system what this process has freed and the C library keeps for later, in every
