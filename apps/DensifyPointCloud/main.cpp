@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <signal.h>
 #include <spdlog/spdlog.h>
-
-#include <cerrno>
-#include <regex>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -46,19 +42,6 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
   }
 }
 
-// Depth maps that killed runs had not finished writing: their names hold the dead process's number.
-void remove_abandoned_depth_maps(const fs::path& folder) {
-  static const std::regex kTemporary(R"(depth\d+\..*?(\d{1,9})\.tmp.*)");
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    std::smatch found;
-    if (!std::regex_match(name, found, kTemporary)) continue;
-    std::error_code ignored;
-    if (::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH) fs::remove(entry.path(), ignored);
-  }
-}
-
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -66,7 +49,7 @@ int run(int argc, char** argv) {
 
   axial::require_writable(options.output);
   axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
-  remove_abandoned_depth_maps(options.parsed.common.working_folder);
+  axial::remove_abandoned(options.parsed.common.working_folder, "depth");
   const densify::Project project = densify::load_project(options);
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
   densify::ImageStore images(project, options, plan.cached_images);

@@ -2,11 +2,13 @@
 #include "base/atomic_file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <regex>
 
 #include "base/error.h"
 
@@ -105,6 +107,18 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
   in.read(bytes.data(), static_cast<std::streamsize>(size));
   if (!in) fail("{}: cannot be read to its end", path.string());
   return bytes;
+}
+
+void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix) {
+  const std::regex temporary(R"(.*?\.(\d{1,9})\.tmp.*)");  // temporary_beside
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    std::smatch found;
+    if (!name.starts_with(prefix) || !std::regex_match(name, found, temporary)) continue;
+    const bool dead = ::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH;
+    if (dead) std::filesystem::remove(entry.path(), ignored);
+  }
 }
 
 }  // namespace axial

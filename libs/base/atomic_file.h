@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace axial {
@@ -46,5 +47,9 @@ void require_writable(const std::filesystem::path& path);
 
 // The whole file. Error that names `path` if it cannot be read or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
+
+// Removes what killed processes left half-written in `folder`, of files whose names begin with
+// `prefix`. Names of temporaries hold the number of the process; those of living ones stay.
+void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix);
 
 }  // namespace axial
