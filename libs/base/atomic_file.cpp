@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
-#include <regex>
+#include <optional>
 
 #include "base/error.h"
 
@@ -21,6 +22,19 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   name.replace_extension();
   name += fmt::format(".{}.tmp{}", ::getpid(), extension);
   return path.parent_path() / name;
+}
+
+// The number of the process in a name that temporary_beside made; none in any other name.
+std::optional<pid_t> process_of_temporary(std::string_view name) {
+  const std::size_t mark = name.rfind(".tmp");
+  if (mark == std::string_view::npos || mark == 0) return std::nullopt;
+  const std::size_t dot = name.rfind('.', mark - 1);
+  if (dot == std::string_view::npos) return std::nullopt;
+  pid_t process = 0;
+  const char* const end = name.data() + mark;
+  const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, process);
+  if (error != std::errc() || stop != end || process <= 0) return std::nullopt;
+  return process;
 }
 
 // Libraries that write files by name do not all report a full disk at close; asking the kernel to
@@ -110,13 +124,12 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
 }
 
 void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix) {
-  const std::regex temporary(R"(.*?\.(\d{1,9})\.tmp.*)");  // temporary_beside
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    std::smatch found;
-    if (!name.starts_with(prefix) || !std::regex_match(name, found, temporary)) continue;
-    const bool dead = ::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH;
+    const std::optional<pid_t> process = process_of_temporary(name);
+    if (!name.starts_with(prefix) || !process) continue;
+    const bool dead = ::kill(*process, 0) != 0 && errno == ESRCH;
     if (dead) std::filesystem::remove(entry.path(), ignored);
   }
 }

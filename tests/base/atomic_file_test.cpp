@@ -4,9 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -104,6 +108,35 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
   }
   write_atomically(file, std::string(100000, 'x'));
   EXPECT_EQ(read_file(file).size(), 100000u);
+  fs::remove_all(folder);
+}
+
+// The number of a process that is no more.
+pid_t dead_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST(AtomicFile, RemovesOnlyTemporariesOfDeadProcesses) {
+  const fs::path folder = fresh_folder("abandoned");
+  const pid_t dead = dead_process();
+  const std::vector<std::string> abandoned = {fmt::format("depth0.{}.tmp.dmap", dead),
+                                              fmt::format("depth0.{0}.tmp.{0}.tmp.dmap", dead),
+                                              fmt::format("depth0.{}.tmp", dead)};
+  const std::vector<std::string> kept = {fmt::format("depth0.{}.tmp.dmap", ::getpid()),
+                                         fmt::format("other.{}.tmp.dmap", dead),
+                                         "depth0.dmap",
+                                         "depth0.tmp.dmap",
+                                         "depth0.x1.tmp.dmap",
+                                         "depth0.-1.tmp.dmap",
+                                         "depth0.99999999999.tmp.dmap"};
+  for (const std::string& name : abandoned) std::ofstream(folder / name) << "x";
+  for (const std::string& name : kept) std::ofstream(folder / name) << "x";
+  remove_abandoned(folder, "depth");
+  for (const std::string& name : abandoned) EXPECT_FALSE(fs::exists(folder / name)) << name;
+  for (const std::string& name : kept) EXPECT_TRUE(fs::exists(folder / name)) << name;
   fs::remove_all(folder);
 }
 
