@@ -10,7 +10,12 @@
 //     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
 //     Vector3<T>    exit_point(pixel)               where the pixel's light enters the scene medium
 //
-// and, to be matched in SIMD lanes, each_field(visit): all its numbers in a fixed order.
+// and, to be matched in SIMD lanes, each_field(visit): all its numbers in a fixed order, and
+//
+//     const Projector& projector()                  has each_field(visit), too
+//     Frame<T>         projector_frame()
+//     Image            projector().image(X)         of a point in that frame: its projection, how
+//                                                   it moves with the point, where its ray begins
 //
 // Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres at
 // integers.
@@ -50,6 +55,13 @@ template <class T>
 struct AxialRayJacobian {
   Matrix32<T> origin;
   Matrix32<T> direction;
+};
+
+// x' = rotation * x + translation.
+template <class T>
+struct Frame {
+  Matrix3<T> rotation;
+  Vector3<T> translation;
 };
 
 // The image of a point. `pixel` is finite even where `visible` is false, but means nothing there.

@@ -43,9 +43,10 @@ struct Medium {
   Medium() = default;
   explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)), inv_mu(T(1) / mu) {}
 
+  T q2(const T& s) const { return b + c * s; }
   T q(const T& s) const {
     using std::sqrt;
-    return sqrt(b + c * s);
+    return sqrt(q2(s));
   }
 };
 
@@ -61,6 +62,14 @@ struct FlatPortOptics {
         thickness(port.thickness),
         glass(port.n_glass / port.n_air),
         water(port.n_water / port.n_air) {}
+
+  // See FlatPortCamera.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(distance), visit(thickness);
+    for (Medium<T>* medium : {&glass, &water})
+      visit(medium->b), visit(medium->c), visit(medium->inv_mu);
+  }
 
   // Height of the outer (glass/water) plane on the axis.
   T outer() const { return distance + thickness; }

@@ -24,31 +24,56 @@ namespace axial::refractive {
 template <class T>
 struct FlatPortField {
   T offset, slope, inv_largest_tangent;
-  int halley_steps;  // for single precision: errors below 1e-4 px of a 1024 px wide image
+  T paraxial_offset, paraxial_slope;  // radius / t at the axis, as a function of z_water
+  int steps;  // of the solver, for single precision: errors below 1e-4 px of a 1024 px wide image
 
   FlatPortField() = default;
   FlatPortField(const FlatPortOptics<T>& optics, const T& tangent)
       : inv_largest_tangent(T(1) / tangent),
-        halley_steps(tangent < T(1.35) ? 1 : (tangent < T(7) ? 2 : 4)) {
+        paraxial_offset(optics.paraxial_secant(T(0))),
+        paraxial_slope(optics.water.inv_mu),
+        steps(tangent < T(1.15) ? 1 : (tangent < T(4.5) ? 2 : (tangent < T(7) ? 3 : 5))) {
     const T s = tangent * tangent;
     offset = tangent * (optics.distance + optics.thickness / optics.glass.q(s));
     slope = tangent / optics.water.q(s);
   }
 
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(offset), visit(slope), visit(inv_largest_tangent);
+    visit(paraxial_offset), visit(paraxial_slope);
+    visit(steps);
+  }
+
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
-  // False for NaN. The bounds on the height (a nanometre, a million kilometres) keep the squares
-  // and cubes of single precision within its range.
+  // False for NaN. The bounds on the height keep the squares and cubes of single precision within
+  // its range.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
-    return z_water > T(1e-9) && z_water < T(1e9) && rho2 <= edge * edge;
+    return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
   }
+
+  // The point itself if the field contains it, else one at its edge.
+  T nearest_height(const T& z_water) const {
+    const T risen = select(z_water > T(kLowest), z_water, T(kLowest));
+    return select(risen < T(kHighest), risen, T(kHighest));
+  }
+  T nearest_rho2(const T& rho2, const T& z_water) const {
+    const T edge = radius(z_water);
+    return select(rho2 < edge * edge, rho2, edge * edge);
+  }
+
+ private:
+  static constexpr float kLowest = 1e-9f, kHighest = 1e9f;  // a nanometre, a million kilometres
 };
 
-// F and its derivatives.
+// F and its derivatives. Written for a short chain of operations rather than for few: everything
+// that 1/q needs no root for is ready when the roots are.
 template <class T>
 struct FlatPortSlopes {
   T inv_qw;
+  T inv_qw_slope;  // its derivative by m
   T secant;        // (F + 1) / m, which is radius / t
   T tangent;       // dF/dm, which is d(radius)/dt
   T curvature;     // d2F/dm2
@@ -56,39 +81,36 @@ struct FlatPortSlopes {
   T spread_slope;  // d(spread)/dm
 
   FlatPortSlopes(const FlatPortOptics<T>& optics, const T& m, const T& rho2, const T& z_water) {
+    using std::sqrt;
     const T s = m * m * rho2;
-    const T q_g = optics.glass.q(s);
-    const T q_w = optics.water.q(s);
-    const T inv = T(1) / (q_g * q_w);  // one division for both
-    const T inv_qg = inv * q_w;
-    inv_qw = inv * q_g;
-    const T g = optics.thickness * inv_qg;
+    const T q2_g = optics.glass.q2(s);
+    const T q2_w = optics.water.q2(s);
+    const T inv = T(1) / (q2_g * q2_w);  // one division for both
+    const T g2 = inv * q2_w;
+    const T w2 = inv * q2_g;
+    const T g = optics.thickness * sqrt(g2);
+    inv_qw = sqrt(w2);
     const T w = z_water * inv_qw;
-    const T g2 = inv_qg * inv_qg;
-    const T w2 = inv_qw * inv_qw;
-    const T g3 = g * g2;
-    const T w3 = w * w2;
+    const T g_b = g2 * optics.glass.b, g_c = g2 * optics.glass.c;
+    const T w_b = w2 * optics.water.b, w_c = w2 * optics.water.c;
     secant = optics.distance + g + w;
-    tangent = optics.distance + g3 * optics.glass.b + w3 * optics.water.b;
-    spread = g3 * optics.glass.c + w3 * optics.water.c;
-    const T g5 = g3 * g2 * optics.glass.c;
-    const T w5 = w3 * w2 * optics.water.c;
+    tangent = optics.distance + g * g_b + w * w_b;
+    spread = g * g_c + w * w_c;
     const T twist = T(-3) * m * rho2;
-    curvature = twist * (g5 * optics.glass.b + w5 * optics.water.b);
-    spread_slope = twist * (g5 * optics.glass.c + w5 * optics.water.c);
+    curvature = twist * (g * (g_b * g_c) + w * (w_b * w_c));
+    spread_slope = twist * (g * (g_c * g_c) + w * (w_c * w_c));
+    inv_qw_slope = -(m * rho2) * w_c * inv_qw;
   }
 };
 
 // A guess of m: the inverse of a secant between the paraxial one, exact on the axis, and that of
 // the field's edge, where the root is known: the secant runs from one to the other like the square
 // of the radius. Two Halley steps from here are better than three from the paraxial guess (1e-5 px
-// against 4e-4 px for 110 degrees and 15 degrees of tilt), and one step is as good as three up to
-// 80 degrees without tilt (8e-5 px).
+// against 4e-4 px for 110 degrees and 15 degrees of tilt).
 template <class T>
-T initial_inverse_secant(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
-                         const T& rho2, const T& z_water) {
+T initial_inverse_secant(const FlatPortField<T>& field, const T& rho2, const T& z_water) {
   const T edge_radius = field.radius(z_water);
-  const T paraxial = optics.paraxial_secant(z_water);
+  const T paraxial = field.paraxial_offset + field.paraxial_slope * z_water;
   const T edge = edge_radius * field.inv_largest_tangent;
   const T edge2 = edge_radius * edge_radius;
   return edge2 / (paraxial * edge2 + (edge - paraxial) * rho2);
@@ -104,33 +126,36 @@ T halley_step(const FlatPortSlopes<T>& at, const T& m) {
 // The root and what the projection's derivative needs there.
 template <class T>
 struct FlatPortRoot {
-  T m;        // t / rho, in-air tangent over radius
-  T tangent;  // d(radius)/dt
-  T spread;   // (1/m - tangent) / t^2
+  T m;       // t / rho, in-air tangent over radius
+  T slope;   // dt/d(rho)
+  T spread;  // (1/m - 1/slope) / t^2
   T inv_qw;
 };
 
 namespace detail {
 
-// The slopes at the root are carried there from the last step's start, to first order: they only
-// matter to the Jacobian.
+// The last step is Chebyshev's: of third order like Halley's, and its only division is the one that
+// the derivative needs anyway. The slopes at the root are carried there from the step's start, to
+// first order: they only matter to the Jacobian.
 template <class T>
 FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  T m = initial_inverse_secant(optics, field, rho2, z_water);
-  for (int step = 1; step < field.halley_steps; ++step)
+  T m = initial_inverse_secant(field, rho2, z_water);
+  for (int step = 1; step < field.steps; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
   const FlatPortSlopes<T> at(optics, m, rho2, z_water);
-  const T down = halley_step(at, m);
-  const T water = optics.water.c * m * rho2 * at.inv_qw * at.inv_qw * at.inv_qw;  // -d(1/q_w)/dm
-  return {m - down, at.tangent - at.curvature * down, at.spread - at.spread_slope * down,
-          at.inv_qw + water * down};
+  const T slope = T(1) / at.tangent;
+  const T newton = (m * at.secant - T(1)) * slope;
+  const T bend = at.curvature * slope;  // of the tangent, relative, per step
+  const T down = newton + newton * newton * (T(0.5) * bend);
+  return {m - down, slope + slope * (bend * newton), at.spread - at.spread_slope * down,
+          at.inv_qw - at.inv_qw_slope * down};
 }
 
 template <class T>
 FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  T m = initial_inverse_secant(optics, field, rho2, z_water);
+  T m = initial_inverse_secant(field, rho2, z_water);
   for (int step = 0; step < 2; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
   // A Newton step of a concave function ends left of the root, the paraxial guess lies left of it
@@ -148,7 +173,7 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
   const FlatPortSlopes<T> near(optics, m, rho2, z_water);
   m = m - (m * near.secant - T(1)) / near.tangent;
   const FlatPortSlopes<T> at(optics, m, rho2, z_water);
-  return {m, at.tangent, at.spread, at.inv_qw};
+  return {m, T(1) / at.tangent, at.spread, at.inv_qw};
 }
 
 }  // namespace detail

@@ -28,15 +28,21 @@ struct PinholeLens {
     return {fx * bearing_in_camera.x() / bearing_in_camera.z() + cx,
             fy * bearing_in_camera.y() / bearing_in_camera.z() + cy};
   }
+};
 
-  // d(pixel)/d(direction) of `pixel()`.
-  Matrix23<T> pixel_jacobian(const Vector3<T>& b) const {
-    const T inv_z = T(1) / b.z();
-    Matrix23<T> jacobian;
-    jacobian << fx * inv_z, T(0), -fx * b.x() * inv_z * inv_z,  //
-        T(0), fy * inv_z, -fy * b.y() * inv_z * inv_z;
-    return jacobian;
+// A point's image and how it moves with the point.
+template <class T>
+struct PinholeImage {
+  Projection<T> projection;
+  T origin_height = T(0);  // the ray begins at the centre
+
+  // The pixel's motion [px] with a motion of the point [m], to first order.
+  Vector2<T> moved(const Vector3<T>& step) const {
+    return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
+
+  T x, y;              // the point divided by its z
+  T scale_u, scale_v;  // focal lengths divided by z
 };
 
 // A dry camera: all rays start at the centre. A point is visible when it is in front (z > 0) and
@@ -80,19 +86,37 @@ class PinholeCamera {
   // The last point of the light's path in the scene's medium, in the camera frame.
   Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
 
-  // Where X is not visible, pixel and Jacobian are finite and mean nothing.
+  // What projects, and its frame: the camera itself.
+  using Projector = PinholeCamera;
+  const Projector& projector() const { return *this; }
+  Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
+
+  // Where X is not visible, the pixel and its motions are finite and mean nothing.
+  PinholeImage<T> image(const Vector3<T>& X) const {
+    using std::abs;
+    PinholeImage<T> image;
+    // False for NaN; the bounds keep pixel and motions within single precision.
+    const T widest = T(1e6) * X.z();
+    image.projection.visible =
+        X.z() > T(1e-20) && X.z() < T(1e20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
+    const Mask<T>& visible = image.projection.visible;
+    const T inv_z = T(1) / select(visible, X.z(), T(1));
+    image.x = select(visible, X.x(), T(0)) * inv_z;
+    image.y = select(visible, X.y(), T(0)) * inv_z;
+    image.scale_u = lens_.fx * inv_z;
+    image.scale_v = lens_.fy * inv_z;
+    image.projection.pixel = {lens_.fx * image.x + lens_.cx, lens_.fy * image.y + lens_.cy};
+    return image;
+  }
+
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
-    using std::abs;
-    // False for NaN; the bounds keep pixel and Jacobian within single precision.
-    const T widest = T(1e6) * X.z();
-    const Mask<T> visible =
-        X.z() > T(1e-20) && X.z() < T(1e20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
-    const Vector3<T> safe(select(visible, X.x(), T(0)), select(visible, X.y(), T(0)),
-                          select(visible, X.z(), T(1)));
-    if (jacobian) *jacobian = lens_.pixel_jacobian(safe);
+    const PinholeImage<T> image = this->image(X);
+    if (jacobian)
+      *jacobian << image.scale_u, T(0), -image.scale_u * image.x,  //
+          T(0), image.scale_v, -image.scale_v * image.y;
     if (origin) *origin = {T(0), T(0), T(0)};
-    return {lens_.pixel(safe), visible};
+    return image.projection;
   }
 
  private:

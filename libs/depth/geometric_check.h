@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "depth/consistency.h"
 #include "depth/warp.h"
 
 namespace axial::depth {
@@ -41,18 +42,18 @@ inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float
 // consistent depth is stored at the point's image. `in_source`: the hypothesis' point in the source
 // view's frame, `seen_at`: its image there.
 template <class Camera>
-float inconsistency(const Camera& reference, const Eigen::Vector2f& pixel,
+float inconsistency(const refractive::AxialRay<float>& ray,
+                    const refractive::AxialRayJacobian<float>& jacobian, float depth,
                     const Eigen::Vector3f& in_source, const Eigen::Vector2f& seen_at,
                     const Camera& source, const RelativePose& from_reference,
                     const cv::Mat1f& source_depth, float limit) {
-  const auto ray = source.ray(seen_at);
-  const float expected = (in_source - ray.origin).norm();
+  const Eigen::Vector3f along = in_source - source.ray(seen_at).origin;
+  const float expected = along.norm();
   const float found = depth_near(source_depth, seen_at, expected, kSameSurface);
   if (!(found > 0)) return limit;
-  const auto backward = reference.project(from_reference.inverse(ray.at(found)));
-  if (!backward.visible) return limit;
-  const float error = (backward.pixel - pixel).norm();
-  return std::min(std::sqrt(error * (error + 2)), limit);
+  const Eigen::Vector3f shift =
+      from_reference.rotation.transpose() * (along * (found / expected - 1));
+  return inconsistency_term(shift_in_pixels(ray, jacobian, depth, shift), limit);
 }
 
 }  // namespace axial::depth

@@ -15,11 +15,11 @@ using lanes::kLanes;
 using refractive::FlatPortCamera;
 using refractive::PinholeCamera;
 
-template <class Camera>
-lanes::CameraFields fields_of(Camera camera) {
+template <class Fielded>
+lanes::CameraFields fields_of(Fielded from) {
   lanes::CameraFields fields;
   std::size_t k = 0;
-  camera.each_field([&](auto field) {
+  from.each_field([&](auto field) {
     if constexpr (std::is_same_v<decltype(field), int>)
       fields.steps = field;
     else
@@ -31,14 +31,17 @@ lanes::CameraFields fields_of(Camera camera) {
 template <class Camera>
 void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
               bool with_depths) {
-  const lanes::CameraFields fields = fields_of(source.camera);
-  for (std::size_t k = 0; k < fields.value.size(); ++k) tables.camera[k][view] = fields.value[k];
+  const lanes::CameraFields fields = fields_of(source.camera.projector());
+  const refractive::Frame<float> frame = source.camera.projector_frame();
+  const Eigen::Matrix3f rotation = frame.rotation * source.from_reference.rotation;
+  const Eigen::Vector3f translation =
+      frame.rotation * source.from_reference.translation + frame.translation;
+  for (std::size_t k = 0; k < fields.value.size(); ++k) tables.projector[k][view] = fields.value[k];
   tables.steps = std::max(tables.steps, fields.steps);
   for (std::size_t k = 0; k < 9; ++k)
-    tables.rotation[k][view] =
-        source.from_reference.rotation(static_cast<int>(k / 3), static_cast<int>(k % 3));
+    tables.rotation[k][view] = rotation(static_cast<int>(k / 3), static_cast<int>(k % 3));
   for (std::size_t k = 0; k < 3; ++k)
-    tables.translation[k][view] = source.from_reference.translation(static_cast<int>(k));
+    tables.translation[k][view] = translation(static_cast<int>(k));
 
   const QuadImage& image = *source.image;
   if (std::max(image.width(), image.height()) > lanes::kLargestSide)
@@ -82,8 +85,8 @@ std::unique_ptr<lanes::SceneTables> make_tables(const Camera& reference,
   if (with_depths) tables->depths.reserve(pixels);
   for (std::size_t view = 0; view < sources.size(); ++view)
     add_view(*tables, sources[view], view, with_depths);
-  tables->same_camera = std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
-    return fields_of(source.camera) == fields_of(sources[0].camera);
+  tables->same_projector = std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
+    return fields_of(source.camera.projector()) == fields_of(sources[0].camera.projector());
   });
   return tables;
 }
@@ -164,6 +167,22 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
       if (count == kLanes) run();
     }
     if (count > 0) run();
+  }
+}
+
+template <InLanes Camera>
+void LaneMatcher<Camera>::rays(int x, int y, RayTile& tile) const {
+  static_assert(kRayTile == kLanes);
+  if (groups_.empty()) return pixels_.rays(x, y, tile);
+  lanes::LaneRays rays;
+  groups_[0].scorer->rays(static_cast<float>(x), static_cast<float>(y), rays);
+  for (std::size_t k = 0; k < tile.size(); ++k) {
+    const auto vector = [&](std::size_t from) {
+      return Eigen::Vector3f(rays[from][k], rays[from + 1][k], rays[from + 2][k]);
+    };
+    tile[k].ray = {vector(0), vector(3)};
+    tile[k].jacobian.origin << vector(6), vector(9);
+    tile[k].jacobian.direction << vector(12), vector(15);
   }
 }
 

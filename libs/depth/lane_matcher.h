@@ -29,6 +29,8 @@ class LaneMatcher {
 
   std::size_t views() const { return views_; }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
+  // As PixelSampler::rays, but in lanes.
+  void rays(int x, int y, RayTile& tile) const;
 
   // As Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,

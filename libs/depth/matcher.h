@@ -52,6 +52,7 @@ class Matcher {
 
   std::size_t views() const { return sources_.size(); }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
+  void rays(int x, int y, RayTile& tile) const { pixels_.rays(x, y, tile); }
 
   // scores[i]: of pairs[i], planes[pairs[i].plane] in source view pairs[i].view. `neighbours`: the
   // surface around the pixel, for the smoothness factors.
@@ -86,7 +87,7 @@ class Matcher {
     float sum = correlation == kNoCorrelation ? kOutsideCost : 1.0f - correlation;
     if (source.depth)
       sum += options_.geometric_weight *
-             (map.visible ? inconsistency(pixels_.camera(), pixel.at(),
+             (map.visible ? inconsistency(pixel.ray, pixel.jacobian, plane.depth,
                                           source.from_reference.apply(patch.point), map.centre,
                                           source.camera, source.from_reference, *source.depth,
                                           options_.geometric_limit)

@@ -2,6 +2,7 @@
 // What a reference pixel brings to every hypothesis about it.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -11,10 +12,17 @@
 
 namespace axial::depth {
 
-struct ReferencePixel {
-  int x = 0, y = 0;
+struct PixelRay {
   refractive::AxialRay<float> ray;
   refractive::AxialRayJacobian<float> jacobian;
+};
+
+// Those of the pixels of a row from one on: computed together, in lanes where there are such.
+inline constexpr int kRayTile = 16;
+using RayTile = std::array<PixelRay, kRayTile>;
+
+struct ReferencePixel : PixelRay {
+  int x = 0, y = 0;
   ReferencePatch patch;
   float prior_depth = 0;   // from the coarser level; 0: none
   float prior_weight = 0;  // how little the texture says, 0 to 1
@@ -34,15 +42,27 @@ class PixelSampler {
 
   const Camera& camera() const { return camera_; }
 
-  // Precondition: the window around (x, y) lies inside the image.
-  ReferencePixel prepare(int x, int y) const {
+  PixelRay ray(int x, int y) const {
+    PixelRay pixel;
+    pixel.ray = camera_.ray({static_cast<float>(x), static_cast<float>(y)}, pixel.jacobian);
+    return pixel;
+  }
+
+  // Of the pixels from (x, y) on, inside the image or not.
+  void rays(int x, int y, RayTile& tile) const {
+    for (int k = 0; k < kRayTile; ++k) tile[static_cast<std::size_t>(k)] = ray(x + k, y);
+  }
+
+  // `ray`: the pixel's own. Precondition: the window around (x, y) lies inside the image.
+  ReferencePixel prepare(int x, int y, const PixelRay& ray) const {
     ReferencePixel pixel;
+    static_cast<PixelRay&>(pixel) = ray;
     pixel.x = x;
     pixel.y = y;
-    pixel.ray = camera_.ray({static_cast<float>(x), static_cast<float>(y)}, pixel.jacobian);
     sampler_.gather(image_, x, y, pixel.patch);
     return pixel;
   }
+  ReferencePixel prepare(int x, int y) const { return prepare(x, y, ray(x, y)); }
 
   // A depth known from elsewhere (0: none) that counts the more, the less the texture says.
   void set_prior(ReferencePixel& pixel, float depth) const {

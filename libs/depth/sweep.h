@@ -86,13 +86,30 @@ class Sweep {
   void run_strip(int strip) {
     const int top = strip * kStripHeight;
     const int bottom = std::min(top + kStripHeight, map_.height);
+    Rays rays;
     if (input_.sweep % 2 == 0) {
       for (int y = top; y < bottom; ++y)
-        for (int x = 0; x < map_.width; ++x) visit(strip, x, y, -1);
+        for (int x = 0; x < map_.width; ++x) visit(strip, x, y, -1, rays);
     } else {
       for (int y = bottom - 1; y >= top; --y)
-        for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1);
+        for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1, rays);
     }
+  }
+
+  // The rays of the tile of pixels that was visited last.
+  struct Rays {
+    int x = -1, y = -1;  // where it begins
+    RayTile tile;
+  };
+
+  const PixelRay& ray(int x, int y, Rays& rays) const {
+    const int begin = x - x % kRayTile;
+    if (begin != rays.x || y != rays.y) {
+      rays.x = begin;
+      rays.y = y;
+      matcher_.rays(begin, y, rays.tile);
+    }
+    return rays.tile[static_cast<std::size_t>(x - begin)];
   }
 
   struct Neighbourhood {
@@ -145,11 +162,11 @@ class Sweep {
     const Neighbourhood& around;
   };
 
-  void visit(int strip, int x, int y, int step) {
+  void visit(int strip, int x, int y, int step, Rays& rays) {
     PlanePixel& current = map_.at(x, y);
     if (!window_inside(x, y, map_.width, map_.height) || (input_.mask && !(*input_.mask)(y, x)))
       return clear(current);
-    ReferencePixel pixel = matcher_.pixels().prepare(x, y);
+    ReferencePixel pixel = matcher_.pixels().prepare(x, y, ray(x, y, rays));
     float prior = input_.prior ? (*input_.prior)(y, x) : 0.0f;
     if (pixel.patch.texture < options_.min_texture) {
       if (input_.textureless_prior) prior = (*input_.textureless_prior)(y, x);

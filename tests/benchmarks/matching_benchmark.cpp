@@ -34,6 +34,7 @@ class Counting {
 
   std::size_t views() const { return matcher_.views(); }
   const auto& pixels() const { return matcher_.pixels(); }
+  void rays(int x, int y, depth::RayTile& tile) const { matcher_.rays(x, y, tile); }
   double scores() const { return static_cast<double>(scores_); }
 
   void score(const depth::ReferencePixel& pixel, std::span<const depth::PlaneHypothesis> planes,

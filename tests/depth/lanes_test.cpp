@@ -164,6 +164,24 @@ TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {
   }
 }
 
+// With the same bytes, because both compute the same formula without fused operations.
+TYPED_TEST(Lanes, GiveTheRaysOfTheReferenceCamera) {
+  const Setup<TypeParam> setup(false);
+  for (const lanes::InstructionSet set : lanes::available_instruction_sets()) {
+    const LaneMatcher<TypeParam> matcher(setup.image, setup.reference, setup.sources, setup.options,
+                                         set);
+    RayTile expected, found;
+    matcher.pixels().rays(32, 17, expected);
+    matcher.rays(32, 17, found);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ASSERT_EQ(found[k].ray.origin, expected[k].ray.origin);
+      ASSERT_EQ(found[k].ray.direction, expected[k].ray.direction);
+      ASSERT_EQ(found[k].jacobian.origin, expected[k].jacobian.origin);
+      ASSERT_EQ(found[k].jacobian.direction, expected[k].jacobian.direction);
+    }
+  }
+}
+
 TYPED_TEST(Lanes, AgreeWithOnePairAtATime) {
   for (const bool geometric : {false, true}) {
     const Setup<TypeParam> setup(geometric);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "depth/consistency.h"
 #include "depth/lanes/lane_zncc.h"
 #include "depth/lanes/pack.h"
 #include "depth/lanes/scorer.h"
@@ -26,10 +27,12 @@ class LaneScorer final : public Scorer {
   using T = Pack<Abi>;
   using Vector = refractive::Vector3<T>;
   using Ints = typename T::Ints;
+  using Projector = typename Camera<T>::Projector;
+  using Image = decltype(std::declval<Projector>().image(std::declval<Vector>()));
 
   // A source view in every lane.
   struct Views {
-    Camera<T> camera;
+    Projector projector;
     refractive::Matrix3<T> rotation;
     Vector translation;
     LaneImages<Abi> image;
@@ -44,7 +47,7 @@ class LaneScorer final : public Scorer {
   explicit LaneScorer(const SceneTables& tables) : tables_(tables) {
     fill(reference_, tables.reference.steps,
          [&](std::size_t k) { return T(tables.reference.value[k]); });
-    fill(first_source_, tables.steps, [&](std::size_t k) { return T(tables.camera[k][0]); });
+    fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
   void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
@@ -53,7 +56,27 @@ class LaneScorer final : public Scorer {
       score_pack(pixel, planes, pairs, neighbours, first, scores);
   }
 
+  void rays(float x, float y, LaneRays& rays) const override {
+    for (std::size_t first = 0; first < kLanes; first += T::kWidth)
+      ray_pack(x + static_cast<float>(first), y, first, rays);
+  }
+
  private:
+  AXIAL_FLATTEN void ray_pack(float x, float y, std::size_t first, LaneRays& rays) const {
+    T u;
+    u.part = typename T::Part([&](auto k) { return x + static_cast<float>(k); });
+    refractive::AxialRayJacobian<T> jacobian;
+    const refractive::AxialRay<T> ray = reference_.ray({u, T(y)}, jacobian);
+    const std::array<Vector, 6> vectors{ray.origin,
+                                        ray.direction,
+                                        jacobian.origin.col(0),
+                                        jacobian.origin.col(1),
+                                        jacobian.direction.col(0),
+                                        jacobian.direction.col(1)};
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      vectors[k / 3](static_cast<Eigen::Index>(k % 3)).store(rays[k].data() + first);
+  }
+
   // The pairs from `first` on, as many as a pack holds.
   AXIAL_FLATTEN void score_pack(const LanePixel& pixel, const LanePlanes& lane_planes,
                                 const LanePairs& pairs, std::span<const SurfacePoint> neighbours,
@@ -67,31 +90,33 @@ class LaneScorer final : public Scorer {
         .store(scores.smoothness.data() + first);
     const Vector point = views.rotation * surface + views.translation;
 
-    refractive::Matrix23<T> jacobian;
-    Vector origin;
-    const refractive::Projection<T> image = views.camera.project(point, &jacobian, &origin);
-    const refractive::Matrix2<T> warp = refractive::warp_derivative(
-        jacobian, views.rotation,
-        refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal));
+    const refractive::Matrix32<T> slide =
+        views.rotation *
+        refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal);
+    const Image image = views.projector.image(point);
+    refractive::Matrix2<T> warp;  // refractive::warp_derivative
+    for (int k = 0; k < 2; ++k) warp.col(k) = image.moved(slide.col(k));
 
-    const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, image, warp);
+    const refractive::Projection<T>& centre = image.projection;
+    const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, centre, warp);
     T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
-    if (!tables_.depths.empty()) cost += inconsistency(pixel, of_view, views, point, image, origin);
+    if (!tables_.depths.empty())
+      cost += inconsistency(pixel, ray, planes.depth, of_view, views, point, image);
     if (pixel.prior_weight > 0) {
       const T off = abs(planes.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
       cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
     }
     min(cost, T(kMaxCost)).store(scores.cost.data() + first);
-    const refractive::Vector2<T> motion = jacobian * (views.rotation * ray.direction);
-    select(image.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data() + first);
+    const refractive::Vector2<T> motion = image.moved(views.rotation * ray.direction);
+    select(centre.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data() + first);
   }
 
   static Vector vector(const std::array<float, 3>& v) { return {T(v[0]), T(v[1]), T(v[2])}; }
 
-  template <class Field>
-  static void fill(Camera<T>& camera, int steps, Field&& value) {
+  template <class Fielded, class Field>
+  static void fill(Fielded& to, int steps, Field&& value) {
     std::size_t k = 0;
-    camera.each_field([&](auto& field) {
+    to.each_field([&](auto& field) {
       if constexpr (std::is_same_v<std::decay_t<decltype(field)>, int>)
         field = steps;
       else
@@ -115,11 +140,11 @@ class LaneScorer final : public Scorer {
 
   Views deal_views(const Lookup<Abi>& of, const std::int32_t* view) const {
     Views views;
-    if (tables_.same_camera)
-      views.camera = first_source_;
+    if (tables_.same_projector)
+      views.projector = first_projector_;
     else
-      fill(views.camera, tables_.steps,
-           [&](std::size_t k) { return of(tables_.camera[k].data()); });
+      fill(views.projector, tables_.steps,
+           [&](std::size_t k) { return of(tables_.projector[k].data()); });
     for (int i = 0; i < 9; ++i)
       views.rotation(i / 3, i % 3) = of(tables_.rotation[static_cast<std::size_t>(i)].data());
     for (int i = 0; i < 3; ++i)
@@ -131,28 +156,25 @@ class LaneScorer final : public Scorer {
     return views;
   }
 
-  // The term of geometric_check.h, times its weight.
-  T inconsistency(const LanePixel& pixel, const Lookup<Abi>& of_view, const Views& views,
-                  const Vector& point, const refractive::Projection<T>& image,
-                  const Vector& origin) const {
+  // inconsistency() of geometric_check.h, times its weight.
+  T inconsistency(const LanePixel& pixel, const refractive::AxialRay<T>& ray, const T& depth,
+                  const Lookup<Abi>& of_view, const Views& views, const Vector& point,
+                  const Image& image) const {
     const T limit(tables_.geometric_limit);
-    const Vector along = point - origin;  // the ray of image.pixel, because that is exact
+    // The ray of image.projection.pixel, because that is exact.
+    const Vector along(point.x(), point.y(), point.z() - image.origin_height);
     const T expected = sqrt(along.dot(along));
-    const T found = lane_depth_near(tables_.depths.data(), views.image, image, expected);
-    const Vector seen = origin + along * (found / expected);
-    const Vector back = views.rotation.transpose() * (seen - views.translation);
-    const refractive::Projection<T> backward = reference_.project(back);
-    const T du = backward.pixel.x() - T(pixel.at[0]);
-    const T dv = backward.pixel.y() - T(pixel.at[1]);
-    const T error = sqrt(du * du + dv * dv);
-    const T term = min(sqrt(error * (error + T(2))), limit);
+    const T found = lane_depth_near(tables_.depths.data(), views.image, image.projection, expected);
+    const Vector shift = views.rotation.transpose() * (along * (found / expected - T(1)));
+    const T term =
+        inconsistency_term(shift_in_pixels(ray, ray_jacobian(pixel), depth, shift), limit);
     const T has = of_view(tables_.has_depth.data());
-    return T(tables_.geometric_weight) * has *
-           select(found > T(0) && backward.visible, term, limit);
+    return T(tables_.geometric_weight) * has * select(found > T(0), term, limit);
   }
 
   const SceneTables& tables_;
-  Camera<T> reference_, first_source_;
+  Camera<T> reference_;
+  Projector first_projector_;
 };
 
 template <class Abi>

@@ -46,6 +46,10 @@ struct LanePixel {
   const ReferencePatch* patch;
 };
 
+// The rays of kLanes pixels of a row and their derivatives, component by component in the order of
+// LanePixel.
+struct LaneRays : std::array<LaneFloats, 18> {};
+
 struct LaneScores {
   LaneFloats cost;        // 0 to kMaxCost
   LaneFloats motion;      // of the patch's centre in the source view with depth [px/m]; 0

@@ -18,9 +18,9 @@ namespace axial::depth::lanes {
 
 enum class CameraKind { pinhole, flat_port };
 
-inline constexpr std::size_t kMaxCameraFields = 32;
+inline constexpr std::size_t kMaxCameraFields = 56;
 
-// The numbers of a camera as its each_field() visits them.
+// The numbers of a camera or its projector as its each_field() visits them.
 struct CameraFields {
   std::array<float, kMaxCameraFields> value{};
   int steps = 0;  // the one int among them
@@ -33,10 +33,10 @@ struct CameraFields {
 struct SceneTables {
   CameraKind kind = CameraKind::pinhole;
   CameraFields reference;
-  std::array<LaneFloats, kMaxCameraFields> camera{};
-  int steps = 0;             // largest of the source cameras'
-  bool same_camera = false;  // all source views have the first one's
-  // x_source = rotation * x_reference + translation; row-major.
+  std::array<LaneFloats, kMaxCameraFields> projector{};
+  int steps = 0;                // largest of the projectors'
+  bool same_projector = false;  // all source views have the first one's
+  // x_projector = rotation * x_reference + translation, in the source projector's frame; row-major.
   std::array<LaneFloats, 9> rotation{};
   std::array<LaneFloats, 3> translation{};
   // Quad words (zncc.h) of all source images in one run, and where each begins.
@@ -59,6 +59,8 @@ class Scorer {
   // Fills `scores` for every pair. `neighbours`: the surface around the pixel.
   virtual void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
                      std::span<const SurfacePoint> neighbours, LaneScores& scores) const = 0;
+  // Of the reference camera's pixels from (x, y) on.
+  virtual void rays(float x, float y, LaneRays& rays) const = 0;
 };
 
 enum class InstructionSet { scalar, baseline, avx2, avx512 };

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact forward projection through a flat port, in the port's frame: origin where the axis
+// meets the outer plane, z along the port's normal into the water, metres.
+#pragma once
+
+#include <cmath>
+
+#include "refractive/flat_port.h"
+#include "refractive/flat_port_solver.h"
+#include "refractive/pinhole_camera.h"
+
+namespace axial::refractive {
+
+// Rotation from the camera frame to the axis frame of a port with the given unit normal: the
+// smallest rotation that takes the normal to +z. Precondition normal.z > -1.
+template <class T>
+Matrix3<T> axis_from_camera(const Vector3<T>& n) {
+  const T k = T(1) / (T(1) + n.z());
+  Matrix3<T> rotation;
+  rotation << T(1) - k * n.x() * n.x(), -k * n.x() * n.y(), -n.x(),  //
+      -k * n.x() * n.y(), T(1) - k * n.y() * n.y(), -n.y(),          //
+      n.x(), n.y(), n.z();
+  return rotation;
+}
+
+// Tangent of the largest in-air incidence on the port over the image rectangle, widened by `margin`
+// pixels on every side; the corners decide, because the pixels within an incidence form a convex
+// set. Corners that look away from the port (tilt and field of view beyond 90 degrees) count as
+// `kGrazing`.
+template <class T>
+T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port, int width,
+                            int height, const T& margin) {
+  using std::sqrt;
+  const T kGrazing(50);  // 88.9 degrees
+  T largest = T(1e-3);
+  for (const T& u : {-margin, T(width - 1) + margin}) {
+    for (const T& v : {-margin, T(height - 1) + margin}) {
+      const Vector3<T> bearing = lens.bearing({u, v});
+      const T along = bearing.dot(port.normal);
+      if (!(along > T(0))) return kGrazing;
+      const Vector3<T> across = bearing - along * port.normal;
+      const T tangent2 = across.squaredNorm() / (along * along);
+      if (tangent2 > largest * largest) largest = sqrt(tangent2);
+    }
+  }
+  return largest < kGrazing ? largest : kGrazing;
+}
+
+// A point's image and how it moves with the point.
+template <class T>
+struct FlatPortImage {
+  Projection<T> projection;
+  T origin_height;  // of the virtual centre C_v, where the ray through the point begins
+
+  // The pixel's motion [px] with a motion of the point [m], to first order. The in-air direction is
+  // (m x, m y, 1): along the radius it grows by dt/d(rho) instead of m, and height turns it
+  // inwards.
+  Vector2<T> moved(const Vector3<T>& step) const {
+    const T radial = across.x() * step.x() + across.y() * step.y();
+    const T outwards = stretch * radial - sink * step.z();
+    return lens *
+           Vector2<T>(m * step.x() + outwards * across.x(), m * step.y() + outwards * across.y());
+  }
+
+  Vector2<T> across;   // the point's x and y
+  T m, stretch, sink;  // t/rho; (dt/d(rho) - t/rho) / rho^2; -(dt/dz) / rho
+  Matrix2<T> lens;     // d(pixel)/d(in-air direction)
+};
+
+template <class T>
+class FlatPortProjector {
+ public:
+  FlatPortProjector() = default;  // means nothing before each_field() has filled it
+
+  // Points are projected within the image of width x height, widened by `margin` pixels.
+  FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
+                    const T& margin)
+      : optics_(port),
+        field_(optics_, largest_incidence_tangent(lens, port, width, height, margin)),
+        cx_(lens.cx),
+        cy_(lens.cy),
+        lowest_(-margin),
+        highest_u_(T(width - 1) + margin),
+        highest_v_(T(height - 1) + margin) {
+    const Matrix3<T> axis = axis_from_camera(port.normal);
+    row_u_ = lens.fx * axis.col(0);
+    row_v_ = lens.fy * axis.col(1);
+    row_z_ = axis.col(2);
+  }
+
+  // See FlatPortCamera.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    optics_.each_field(visit);
+    field_.each_field(visit);
+    for (Vector3<T>* row : {&row_u_, &row_v_, &row_z_})
+      visit(row->x()), visit(row->y()), visit(row->z());
+    visit(cx_), visit(cy_);
+    visit(lowest_), visit(highest_u_), visit(highest_v_);
+  }
+
+  // The image of X [port's frame], visible as FlatPortCamera::project says.
+  FlatPortImage<T> image(const Vector3<T>& X) const {
+    FlatPortImage<T> image;
+    const T radius2 = X.x() * X.x() + X.y() * X.y();
+    const Mask<T> in_field = field_.contains(radius2, X.z());
+    // Everything below stays finite, wherever X is.
+    const T z_water = field_.nearest_height(X.z());
+    const T rho2 = field_.nearest_rho2(radius2, z_water);
+    image.across = {select(in_field, X.x(), T(0)), select(in_field, X.y(), T(0))};
+    const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
+
+    image.m = at.m;
+    image.stretch = at.slope * at.m * at.m * at.m * at.spread;
+    image.sink = at.m * at.slope * at.inv_qw;
+    // In water the ray rises q_w/t for every metre that it leaves the axis.
+    image.origin_height = z_water - T(1) / (at.m * at.inv_qw);
+
+    // The camera's axes times the in-air direction.
+    const auto along = [&](const Vector3<T>& row) {
+      return at.m * (row.x() * image.across.x() + row.y() * image.across.y()) + row.z();
+    };
+    const T depth = along(row_z_);
+    const Mask<T> in_front = depth > T(1e-3);
+    const T inv_depth = T(1) / select(in_front, depth, T(1));
+    const T u = along(row_u_) * inv_depth;
+    const T v = along(row_v_) * inv_depth;
+    image.lens << (row_u_.x() - u * row_z_.x()) * inv_depth,
+        (row_u_.y() - u * row_z_.y()) * inv_depth,  //
+        (row_v_.x() - v * row_z_.x()) * inv_depth, (row_v_.y() - v * row_z_.y()) * inv_depth;
+    image.projection.pixel = {u + cx_, v + cy_};
+    image.projection.visible = in_field && in_front && inside(image.projection.pixel);
+    return image;
+  }
+
+ private:
+  Mask<T> inside(const Vector2<T>& pixel) const {
+    return pixel.x() >= lowest_ && pixel.x() <= highest_u_ && pixel.y() >= lowest_ &&
+           pixel.y() <= highest_v_;
+  }
+
+  FlatPortOptics<T> optics_;
+  FlatPortField<T> field_;
+  Vector3<T> row_u_, row_v_, row_z_;  // the lens's focal lengths times the camera's axes
+  T cx_, cy_;
+  T lowest_, highest_u_, highest_v_;  // the widened image
+};
+
+}  // namespace axial::refractive
