@@ -103,7 +103,6 @@ lanes::LanePixel lane_pixel(const ReferencePixel& pixel) {
           floats(jacobian.origin.col(1)),
           floats(jacobian.direction.col(0)),
           floats(jacobian.direction.col(1)),
-          {static_cast<float>(pixel.x), static_cast<float>(pixel.y)},
           pixel.prior_depth,
           pixel.prior_weight,
           &pixel.patch};

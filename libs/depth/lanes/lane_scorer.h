@@ -94,7 +94,7 @@ class LaneScorer final : public Scorer {
         views.rotation *
         refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal);
     const Image image = views.projector.image(point);
-    refractive::Matrix2<T> warp;  // refractive::warp_derivative
+    refractive::Matrix2<T> warp;
     for (int k = 0; k < 2; ++k) warp.col(k) = image.moved(slide.col(k));
 
     const refractive::Projection<T>& centre = image.projection;

@@ -41,7 +41,6 @@ struct LanePairs {
 struct LanePixel {
   std::array<float, 3> origin, direction;
   std::array<float, 3> origin_u, origin_v, direction_u, direction_v;
-  std::array<float, 2> at;
   float prior_depth, prior_weight;
   const ReferencePatch* patch;
 };

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fixed number of steps that single precision takes, in double precision, so that rounding does
+// not hide what the steps leave.
+#include <gtest/gtest.h>
+
+#include "refractive/flat_port_solver.h"
+
+namespace axial::refractive {
+namespace {
+
+struct Case {
+  double largest_tangent, distance, thickness, n_glass;
+};
+
+class FixedSteps : public testing::TestWithParam<Case> {};
+
+// Just below the incidences at which one more step is taken, from a hair's breadth of water to very
+// much of it. Pixels: 512 of them reach the largest incidence.
+TEST_P(FixedSteps, LeaveLessThanTheyPromise) {
+  const Case& port = GetParam();
+  FlatPort<double> measured;
+  measured.distance = port.distance;
+  measured.thickness = port.thickness;
+  measured.n_glass = port.n_glass;
+  measured.n_water = 1.34;
+  const FlatPortOptics<double> optics(measured);
+  const FlatPortField<double> field(optics, port.largest_tangent);
+  for (const double z_water : {0.01, 0.1, 0.3, 1.0, 3.0, 100.0}) {
+    for (int k = 1; k < 100; ++k) {
+      const double rho = field.radius(z_water) * k / 100;
+      const auto found = detail::solve_in_fixed_steps(optics, field, rho * rho, z_water);
+      const auto exact = detail::solve_to_convergence(optics, field, rho * rho, z_water);
+      EXPECT_NEAR(found.m * rho, exact.m * rho, 1e-4 / 512 * port.largest_tangent);
+      EXPECT_NEAR(found.slope, exact.slope, 1e-4 * exact.slope);
+      EXPECT_NEAR(found.inv_qw, exact.inv_qw, 1e-4 * exact.inv_qw);
+      EXPECT_NEAR(found.spread, exact.spread, 1e-3 * exact.spread);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ports, FixedSteps,
+                         testing::Values(Case{1.149, 0.05, 0.01, 1.5}, Case{1.149, 0.01, 0.02, 1.5},
+                                         Case{1.149, 0.0, 0.005, 1.77}, Case{4.49, 0.05, 0.01, 1.5},
+                                         Case{6.99, 0.02, 0.02, 1.5}, Case{49.0, 0.05, 0.01, 1.5},
+                                         Case{0.5, 0.1, 0.0, 1.0}));
+
+}  // namespace
+}  // namespace axial::refractive
