@@ -14,7 +14,7 @@
 
 namespace axial::refractive {
 
-// `T` is float, double or an automatic-differentiation scalar. Float runs a fixed number of Halley
+// `T` is float, double or an automatic-differentiation scalar. Float runs a fixed number of
 // steps without branches; every other scalar iterates to convergence.
 template <class T>
 class FlatPortCamera {

@@ -25,9 +25,6 @@ struct RelativePose {
         translation((source.rotation * (reference.centre - source.centre)).cast<float>()) {}
 
   Eigen::Vector3f apply(const Eigen::Vector3f& x) const { return rotation * x + translation; }
-  Eigen::Vector3f inverse(const Eigen::Vector3f& x) const {
-    return rotation.transpose() * (x - translation);
-  }
 };
 
 // The hypothesis' surface point at the window's centre and its derivative by the reference pixel.

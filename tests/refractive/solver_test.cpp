@@ -14,8 +14,9 @@ struct Case {
 
 class FixedSteps : public testing::TestWithParam<Case> {};
 
-// Just below the incidences at which one more step is taken, from a hair's breadth of water to very
-// much of it. Pixels: 512 of them reach the largest incidence.
+// Just below the incidences at which one more step is taken, from a centimetre of water to very
+// much of it. Pixels: 512 of them reach the largest incidence. What only the Jacobian needs is
+// carried to first order: a part in a thousand of it moves no corner of a window by 0.01 px.
 TEST_P(FixedSteps, LeaveLessThanTheyPromise) {
   const Case& port = GetParam();
   FlatPort<double> measured;

@@ -15,8 +15,7 @@ inline constexpr float kGreyUnit = 128.0f * 32767.0f;  // of one grey level
 namespace detail {
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-// Eight plain loads: as good as the gather instruction where that is fast, and better where it is
-// microcode (AMD's, and Intel's since it was mended against leaks).
+// Eight plain loads: faster than the gather instruction on AMD's Zen 3, which runs it as microcode.
 inline __m256i gather_by_loads(const int* base, __m256i at) {
   const auto four_of = [&](std::uint64_t first, std::uint64_t second) {
     __m128i words = _mm_cvtsi32_si128(base[static_cast<std::uint32_t>(first)]);
