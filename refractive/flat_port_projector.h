@@ -111,7 +111,8 @@ class FlatPortProjector {
     const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
 
     image.m = at.m;
-    image.stretch = at.slope * at.m * at.m * at.m * at.spread;
+    // In this order every product stays within single precision.
+    image.stretch = (at.slope * at.m) * (at.m * at.spread) * at.m;
     image.sink = at.m * at.slope * at.inv_qw;
     // In water the ray rises q_w/t for every metre that it leaves the axis.
     image.origin_height = z_water - T(1) / (at.m * at.inv_qw);

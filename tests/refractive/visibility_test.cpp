@@ -94,6 +94,24 @@ TYPED_TEST(Visibility, NothingOnTheLensSideOfTheOuterPlane) {
   }
 }
 
+// Without distance and thickness the projection's terms grow like powers of the inverse height.
+TYPED_TEST(Visibility, NothingBehindATiltedPortAtTheLens) {
+  using T = TypeParam;
+  Random random(15);
+  for (int k = 0; k < 2000; ++k) {
+    View view = random_view(random);
+    view.port.distance = view.port.thickness = 0;
+    view.port.normal = tilted_normal(random.uniform(0, 60) * kDegree, random.uniform(0, 6));
+    Vector3<double> X = random.unit_vector() * random.log_uniform(1e-2, 20);
+    const double height = X.dot(view.port.normal);
+    X -= (height + std::abs(height) + 1e-3) * view.port.normal;
+    Matrix23<T> jacobian;
+    const Projection<T> image = view.camera<T>().project(X.cast<T>(), &jacobian);
+    EXPECT_FALSE(image.visible);
+    EXPECT_TRUE(image.pixel.allFinite() && jacobian.allFinite()) << X.transpose();
+  }
+}
+
 TYPED_TEST(Visibility, NothingBeyondTotalReflection) {
   using T = TypeParam;
   Random random(13);
