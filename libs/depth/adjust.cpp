@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "depth/filters.h"
+#include "depth/ray_caster.h"
 
 namespace axial::depth {
 namespace {
@@ -43,10 +44,11 @@ std::vector<Ray> rays_of(const DepthMap& map) {
   std::vector<Ray> rays(map.depth.total());
   std::visit(
       [&](const auto& camera) {
+        const RayCaster caster(camera);
         parallel_for(static_cast<std::size_t>(map.height()), [&](std::size_t y) {
-          for (std::size_t x = 0; x < width; ++x) {
-            rays[y * width + x] = camera.ray({static_cast<float>(x), static_cast<float>(y)});
-          }
+          each_ray_of_row(caster, static_cast<int>(y), map.width(), [&](int x, const Ray& ray) {
+            rays[y * width + static_cast<std::size_t>(x)] = ray;
+          });
         });
       },
       make_camera<float>(map.camera));

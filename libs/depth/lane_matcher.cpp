@@ -2,7 +2,6 @@
 #include "depth/lane_matcher.h"
 
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
@@ -14,19 +13,6 @@ namespace {
 using lanes::kLanes;
 using refractive::FlatPortCamera;
 using refractive::PinholeCamera;
-
-template <class Fielded>
-lanes::CameraFields fields_of(Fielded from) {
-  lanes::CameraFields fields;
-  std::size_t k = 0;
-  from.each_field([&](auto field) {
-    if constexpr (std::is_same_v<decltype(field), int>)
-      fields.steps = field;
-    else
-      fields.value.at(k++) = field;
-  });
-  return fields;
-}
 
 template <class Camera>
 void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
@@ -68,8 +54,7 @@ std::unique_ptr<lanes::SceneTables> make_tables(const Camera& reference,
                                                 std::span<const SourceView<Camera>> sources,
                                                 const PatchMatchOptions& options) {
   auto tables = std::make_unique<lanes::SceneTables>();
-  tables->kind = std::is_same_v<Camera, PinholeCamera<float>> ? lanes::CameraKind::pinhole
-                                                              : lanes::CameraKind::flat_port;
+  tables->kind = kLaneKind<Camera>;
   tables->reference = fields_of(reference);
   tables->smoothness = options.smoothness;
   tables->geometric_weight = options.geometric_weight;
@@ -125,7 +110,7 @@ template <InLanes Camera>
 LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
                                  std::span<const SourceView<Camera>> sources,
                                  const PatchMatchOptions& options, lanes::InstructionSet set)
-    : pixels_(image, camera, options), views_(sources.size()) {
+    : pixels_(image, camera, options), caster_(camera, set), views_(sources.size()) {
   for (std::size_t first = 0; first < sources.size(); first += kLanes) {
     Group group;
     group.tables = make_tables(
@@ -166,22 +151,6 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
       if (count == kLanes) run();
     }
     if (count > 0) run();
-  }
-}
-
-template <InLanes Camera>
-void LaneMatcher<Camera>::rays(int x, int y, RayTile& tile) const {
-  static_assert(kRayTile == kLanes);
-  if (groups_.empty()) return pixels_.rays(x, y, tile);
-  lanes::LaneRays rays;
-  groups_[0].scorer->rays(static_cast<float>(x), static_cast<float>(y), rays);
-  for (std::size_t k = 0; k < tile.size(); ++k) {
-    const auto vector = [&](std::size_t from) {
-      return Eigen::Vector3f(rays[from][k], rays[from + 1][k], rays[from + 2][k]);
-    };
-    tile[k].ray = {vector(0), vector(3)};
-    tile[k].jacobian.origin << vector(6), vector(9);
-    tile[k].jacobian.direction << vector(12), vector(15);
   }
 }
 

@@ -9,14 +9,9 @@
 
 #include "depth/lanes/scorer.h"
 #include "depth/matcher.h"
+#include "depth/ray_caster.h"
 
 namespace axial::depth {
-
-// A camera that can be dealt to lanes, number by number.
-template <class Camera>
-concept InLanes = requires(Camera camera) {
-  camera.each_field([](auto&) {});
-};
 
 template <InLanes Camera>
 class LaneMatcher {
@@ -29,8 +24,7 @@ class LaneMatcher {
 
   std::size_t views() const { return views_; }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
-  // As PixelSampler::rays, but in lanes.
-  void rays(int x, int y, RayTile& tile) const;
+  void rays(int x, int y, RayTile& tile) const { caster_.rays(x, y, tile); }
 
   // As Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
@@ -45,6 +39,7 @@ class LaneMatcher {
   };
 
   PixelSampler<Camera> pixels_;
+  RayCaster<Camera> caster_;
   std::size_t views_;
   std::vector<Group> groups_;
 };

@@ -13,6 +13,7 @@
 #include "depth/geometric_check.h"
 #include "depth/options.h"
 #include "depth/plane_map.h"
+#include "depth/ray_caster.h"
 #include "depth/reference_pixel.h"
 #include "depth/warp.h"
 #include "depth/zncc.h"
@@ -45,14 +46,15 @@ class Matcher {
  public:
   Matcher(const cv::Mat1b& image, Camera camera, std::vector<SourceView<Camera>> sources,
           const PatchMatchOptions& options)
-      : pixels_(image, std::move(camera), options),
+      : pixels_(image, camera, options),
+        caster_(std::move(camera)),
         sources_(std::move(sources)),
         options_(options),
         zncc_(fastest_zncc()) {}
 
   std::size_t views() const { return sources_.size(); }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
-  void rays(int x, int y, RayTile& tile) const { pixels_.rays(x, y, tile); }
+  void rays(int x, int y, RayTile& tile) const { caster_.rays(x, y, tile); }
 
   // scores[i]: of pairs[i], planes[pairs[i].plane] in source view pairs[i].view. `neighbours`: the
   // surface around the pixel, for the smoothness factors.
@@ -108,6 +110,7 @@ class Matcher {
   }
 
   PixelSampler<Camera> pixels_;
+  RayCaster<Camera> caster_;
   std::vector<SourceView<Camera>> sources_;
   PatchMatchOptions options_;
   ZnccFunction zncc_;

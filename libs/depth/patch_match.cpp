@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "depth/lane_matcher.h"
 #include "depth/matcher.h"
+#include "depth/ray_caster.h"
 #include "depth/sparse_init.h"
 #include "depth/sweep.h"
 #include "scene/camera_list.h"
@@ -127,24 +128,21 @@ LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const D
   LevelState state{PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
   std::visit(
       [&](const auto& camera) {
-        for (int y = 0; y < fine.height; ++y) {
-          for (int x = 0; x < fine.width; ++x) {
-            const PlanePixel& from =
-                coarse.at(std::min(x / 2, coarse.width - 1), std::min(y / 2, coarse.height - 1));
-            if (!(from.plane.depth > 0) || !(from.cost < keep_cost)) continue;
-            const auto ray = camera.ray({static_cast<float>(x), static_cast<float>(y)});
-            const float along = from.plane.normal.dot(ray.direction);
-            float depth = from.plane.depth;
-            if (along < -0.1f) depth = from.plane.normal.dot(from.point - ray.origin) / along;
-            depth = std::clamp(depth, range.min, range.max);
-            PlanePixel& to = state.planes.at(x, y);
-            to.plane = {depth, from.plane.normal};
-            to.point = ray.at(depth);
-            to.cost = from.cost;
-            to.views = from.views;
-            state.prior(y, x) = depth;
-          }
-        }
+        each_ray(camera, fine.width, fine.height, [&](int x, int y, const auto& ray) {
+          const PlanePixel& from =
+              coarse.at(std::min(x / 2, coarse.width - 1), std::min(y / 2, coarse.height - 1));
+          if (!(from.plane.depth > 0) || !(from.cost < keep_cost)) return;
+          const float along = from.plane.normal.dot(ray.direction);
+          float depth = from.plane.depth;
+          if (along < -0.1f) depth = from.plane.normal.dot(from.point - ray.origin) / along;
+          depth = std::clamp(depth, range.min, range.max);
+          PlanePixel& to = state.planes.at(x, y);
+          to.plane = {depth, from.plane.normal};
+          to.point = ray.at(depth);
+          to.cost = from.cost;
+          to.views = from.views;
+          state.prior(y, x) = depth;
+        });
       },
       make_camera<float>(fine));
   return state;
@@ -178,17 +176,15 @@ PlaneMap to_planes(const DepthMap& map) {
   PlaneMap planes(map.width(), map.height());
   std::visit(
       [&](const auto& camera) {
-        for (int y = 0; y < planes.height; ++y) {
-          for (int x = 0; x < planes.width; ++x) {
-            const float depth = map.depth(y, x);
-            if (!(depth > 0)) continue;
-            const cv::Vec3f& n = map.normal(y, x);
-            PlanePixel& pixel = planes.at(x, y);
-            pixel.plane = {depth, {n[0], n[1], n[2]}};
-            pixel.point = camera.ray({static_cast<float>(x), static_cast<float>(y)}).at(depth);
-            pixel.cost = 1.0f - map.confidence(y, x);
-          }
-        }
+        each_ray(camera, planes.width, planes.height, [&](int x, int y, const auto& ray) {
+          const float depth = map.depth(y, x);
+          if (!(depth > 0)) return;
+          const cv::Vec3f& n = map.normal(y, x);
+          PlanePixel& pixel = planes.at(x, y);
+          pixel.plane = {depth, {n[0], n[1], n[2]}};
+          pixel.point = ray.at(depth);
+          pixel.cost = 1.0f - map.confidence(y, x);
+        });
       },
       make_camera<float>(map.camera));
   return planes;

@@ -48,11 +48,6 @@ class PixelSampler {
     return pixel;
   }
 
-  // Of the pixels from (x, y) on, inside the image or not.
-  void rays(int x, int y, RayTile& tile) const {
-    for (int k = 0; k < kRayTile; ++k) tile[static_cast<std::size_t>(k)] = ray(x + k, y);
-  }
-
   // `ray`: the pixel's own. Precondition: the window around (x, y) lies inside the image.
   ReferencePixel prepare(int x, int y, const PixelRay& ray) const {
     ReferencePixel pixel;

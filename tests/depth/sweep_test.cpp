@@ -31,7 +31,7 @@ class FormulaMatcher {
  public:
   std::size_t views() const { return kViews; }
   const PixelSampler<Camera>& pixels() const { return pixels_; }
-  void rays(int x, int y, RayTile& tile) const { pixels_.rays(x, y, tile); }
+  void rays(int x, int y, RayTile& tile) const { RayCaster(pixels_.camera()).rays(x, y, tile); }
 
   void score(const ReferencePixel&, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint>,

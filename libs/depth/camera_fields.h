@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera or a projector as plain numbers, to be dealt to lanes.
+#pragma once
+
+#include <type_traits>
+
+#include "depth/lanes/scorer.h"
+#include "refractive/pinhole_camera.h"
+
+namespace axial::depth {
+
+// A camera that can be dealt to lanes, number by number.
+template <class Camera>
+concept InLanes = requires(Camera camera) {
+  camera.each_field([](auto&) {});
+};
+
+template <InLanes Camera>
+inline constexpr lanes::CameraKind kLaneKind =
+    std::is_same_v<Camera, refractive::PinholeCamera<float>> ? lanes::CameraKind::pinhole
+                                                             : lanes::CameraKind::flat_port;
+
+template <InLanes Fielded>
+lanes::CameraFields fields_of(Fielded from) {
+  lanes::CameraFields fields;
+  std::size_t k = 0;
+  from.each_field([&](auto field) {
+    if constexpr (std::is_same_v<decltype(field), int>)
+      fields.steps = field;
+    else
+      fields.value.at(k++) = field;
+  });
+  return fields;
+}
+
+}  // namespace axial::depth

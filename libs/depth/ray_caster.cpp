@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "depth/ray_caster.h"
+
+#include "refractive/flat_port_camera.h"
+
+namespace axial::depth {
+
+using refractive::FlatPortCamera;
+using refractive::PinholeCamera;
+
+template <InLanes Camera>
+RayCaster<Camera>::RayCaster(const Camera& camera, lanes::InstructionSet set) {
+  auto tables = std::make_unique<lanes::SceneTables>();
+  tables->kind = kLaneKind<Camera>;
+  tables->reference = fields_of(camera);
+  scorer_ = lanes::make_scorer(*tables, set);
+  tables_ = std::move(tables);
+}
+
+template <InLanes Camera>
+void RayCaster<Camera>::rays(int x, int y, RayTile& tile) const {
+  static_assert(kRayTile == lanes::kLanes);
+  lanes::LaneRays rays;
+  scorer_->rays(static_cast<float>(x), static_cast<float>(y), rays);
+  for (std::size_t k = 0; k < tile.size(); ++k) {
+    const auto vector = [&](std::size_t from) {
+      return Eigen::Vector3f(rays[from][k], rays[from + 1][k], rays[from + 2][k]);
+    };
+    tile[k].ray = {vector(0), vector(3)};
+    tile[k].jacobian.origin << vector(6), vector(9);
+    tile[k].jacobian.direction << vector(12), vector(15);
+  }
+}
+
+template class RayCaster<PinholeCamera<float>>;
+template class RayCaster<FlatPortCamera<float>>;
+
+}  // namespace axial::depth

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rays of a camera's pixels, a tile of a row at a time: in lanes for cameras that can be dealt
+// to them, else one by one.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "depth/camera_fields.h"
+#include "depth/reference_pixel.h"
+
+namespace axial::depth {
+
+template <class Camera>
+class RayCaster {
+ public:
+  explicit RayCaster(Camera camera) : camera_(std::move(camera)) {}
+
+  // Of the pixels from (x, y) on, inside the image or not.
+  void rays(int x, int y, RayTile& tile) const {
+    for (int k = 0; k < kRayTile; ++k) {
+      PixelRay& pixel = tile[static_cast<std::size_t>(k)];
+      pixel.ray = camera_.ray({static_cast<float>(x + k), static_cast<float>(y)}, pixel.jacobian);
+    }
+  }
+
+ private:
+  Camera camera_;
+};
+
+// With the bytes of the camera's own rays.
+template <InLanes Camera>
+class RayCaster<Camera> {
+ public:
+  explicit RayCaster(const Camera& camera,
+                     lanes::InstructionSet set = lanes::fastest_instruction_set());
+
+  void rays(int x, int y, RayTile& tile) const;
+
+ private:
+  std::unique_ptr<const lanes::SceneTables> tables_;
+  std::unique_ptr<const lanes::Scorer> scorer_;
+};
+
+// visit(x, ray) for the first `width` pixels of a row.
+template <class Camera, class Visit>
+void each_ray_of_row(const RayCaster<Camera>& caster, int y, int width, Visit&& visit) {
+  RayTile tile;
+  for (int x = 0; x < width; ++x) {
+    if (x % kRayTile == 0) caster.rays(x, y, tile);
+    visit(x, tile[static_cast<std::size_t>(x % kRayTile)].ray);
+  }
+}
+
+// visit(x, y, ray) for every pixel, in reading order.
+template <class Camera, class Visit>
+void each_ray(const Camera& camera, int width, int height, Visit&& visit) {
+  const RayCaster<Camera> caster(camera);
+  for (int y = 0; y < height; ++y)
+    each_ray_of_row(caster, y, width, [&](int x, const auto& ray) { visit(x, y, ray); });
+}
+
+}  // namespace axial::depth
