@@ -4,6 +4,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "refractive/differences.h"
 #include "refractive/views.h"
 
 namespace axial::refractive::testing {
@@ -11,39 +12,6 @@ namespace {
 
 using Jet2 = ceres::Jet<double, 2>;
 using Jet3 = ceres::Jet<double, 3>;
-constexpr double kRelative = 1e-6;
-
-template <class Jet, int N>
-Eigen::Matrix<Jet, N, 1> variables(const Eigen::Matrix<double, N, 1>& x) {
-  Eigen::Matrix<Jet, N, 1> jets;
-  for (int k = 0; k < N; ++k) jets(k) = Jet(x(k), k);
-  return jets;
-}
-
-template <class Jet, int N>
-auto derivatives(const Eigen::Matrix<Jet, N, 1>& jets) {
-  Eigen::Matrix<double, N, Jet::DIMENSION> jacobian;
-  for (int k = 0; k < N; ++k) jacobian.row(k) = jets(k).v.transpose();
-  return jacobian;
-}
-
-// Central differences of a function of a vector.
-template <int M, int N, class Function>
-Eigen::Matrix<double, M, N> differences(const Eigen::Matrix<double, N, 1>& x, double h,
-                                        Function f) {
-  Eigen::Matrix<double, M, N> jacobian;
-  for (int k = 0; k < N; ++k) {
-    const Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Unit(k) * h;
-    jacobian.col(k) = (f(x + step) - f(x - step)) / (2 * h);
-  }
-  return jacobian;
-}
-
-template <class A, class B>
-void expect_close(const A& a, const B& b, double scale) {
-  EXPECT_LE((a - b).norm(), kRelative * scale) << a << "\n\n" << b;
-}
-
 template <class Jet>
 FlatPortCamera<Jet> jet_camera(const View& view) {
   return view.camera<Jet>();

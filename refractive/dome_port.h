@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A dome port: a spherical shell of glass between the lens and the water, its centre C anywhere
+// near the camera's.
+//
+// A ray that keeps its plane through C keeps n times its distance from C, too (Bouguer). Let r be
+// the unit direction in air, k = |r x C| its distance from C, mu relative to air, and 1/i the
+// radius of a surface times mu on one of its sides: at each surface the ray turns, away from the
+// axis through the camera centre and C, by a difference of arc sines of k i, in all by
+//
+//     delta = asin(k i_1) - asin(k i_2) + asin(k i_3) - asin(k i_4)
+//
+//     i_1 = 1/r_in   i_2 = 1/(mu_g r_in)   i_3 = 1/(mu_g r_out)   i_4 = 1/(mu_w r_out).
+//
+// With S = sin(delta)/k and Q = cos(delta) + (r.C) S, the ray in water has the direction
+// D = Q r - S C, of unit length, and begins on the axis at C_v = (1 - 1/(mu_w Q)) C. S and
+// cos(delta) are smooth functions of k^2, square roots alone: nothing is singular on the axis, and
+// nothing where the dome is centred.
+#pragma once
+
+#include <cmath>
+
+#include "refractive/axial_ray.h"
+
+namespace axial::refractive {
+
+// The port as it is measured, in the camera frame. Requirements, checked where housings are read
+// and not here: |centre| < inner_radius, thickness >= 0, n_glass and n_water >= n_air > 0.
+template <class T>
+struct DomePort {
+  Vector3<T> centre{T(0), T(0), T(0)};  // of the spheres [m]
+  T inner_radius = T(1);                // of the inner (air/glass) sphere [m]
+  T thickness = T(0);                   // of the glass [m]
+  T n_air = T(1);
+  T n_glass = T(1);
+  T n_water = T(1);
+
+  template <class U>
+  DomePort<U> cast() const {
+    return {centre.template cast<U>(), static_cast<U>(inner_radius), static_cast<U>(thickness),
+            static_cast<U>(n_air),     static_cast<U>(n_glass),      static_cast<U>(n_water)};
+  }
+};
+
+// How much a ray at distance k from the centre turns, by k^2.
+template <class T>
+struct DomeTurn {
+  T sine;                      // S = sin(delta) / k
+  T cosine;                    // cos(delta)
+  T sine_slope, cosine_slope;  // their derivatives by k^2
+};
+
+// The port's physics: only radii, indices and the centre matter.
+template <class T>
+struct DomePortOptics {
+  Vector3<T> centre;
+  T centre2;  // |C|^2
+  T outer_radius;
+  T in_air, in_glass;      // i_1, i_2
+  T out_glass, out_water;  // i_3, i_4
+  T inv_mu;                // 1/mu_w
+
+  DomePortOptics() = default;
+  explicit DomePortOptics(const DomePort<T>& port)
+      : centre(port.centre),
+        centre2(port.centre.squaredNorm()),
+        outer_radius(port.inner_radius + port.thickness),
+        in_air(T(1) / port.inner_radius),
+        in_glass(port.n_air / (port.n_glass * port.inner_radius)),
+        out_glass(port.n_air / (port.n_glass * outer_radius)),
+        out_water(port.n_air / (port.n_water * outer_radius)),
+        inv_mu(port.n_air / port.n_water) {}
+
+  // See DomePortCamera.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(centre.x()), visit(centre.y()), visit(centre.z());
+    visit(centre2), visit(outer_radius);
+    visit(in_air), visit(in_glass), visit(out_glass), visit(out_water);
+    visit(inv_mu);
+  }
+
+  // S on the axis, where k is 0.
+  T axial_sine() const { return in_air - in_glass + out_glass - out_water; }
+
+  DomeTurn<T> turn(const T& k2) const {
+    const DomeTurn<T> inner = difference(in_air, in_glass, k2);
+    const DomeTurn<T> outer = difference(out_glass, out_water, k2);
+    DomeTurn<T> both;
+    both.sine = inner.sine * outer.cosine + inner.cosine * outer.sine;
+    both.cosine = inner.cosine * outer.cosine - k2 * inner.sine * outer.sine;
+    both.sine_slope = inner.sine_slope * outer.cosine + inner.sine * outer.cosine_slope +
+                      inner.cosine_slope * outer.sine + inner.cosine * outer.sine_slope;
+    both.cosine_slope = inner.cosine_slope * outer.cosine + inner.cosine * outer.cosine_slope -
+                        inner.sine * outer.sine -
+                        k2 * (inner.sine_slope * outer.sine + inner.sine * outer.sine_slope);
+    return both;
+  }
+
+ private:
+  // Of the angle asin(k a) - asin(k b).
+  static DomeTurn<T> difference(const T& a, const T& b, const T& k2) {
+    using std::sqrt;
+    const T cos_a = sqrt(T(1) - k2 * a * a);
+    const T cos_b = sqrt(T(1) - k2 * b * b);
+    const T half_inv = T(-0.5) / (cos_a * cos_b);
+    const T slope_a = a * a * cos_b * half_inv;
+    const T slope_b = b * b * cos_a * half_inv;
+    return {a * cos_b - b * cos_a, cos_a * cos_b + k2 * a * b, a * slope_b - b * slope_a,
+            slope_a * cos_b + cos_a * slope_b + a * b};
+  }
+};
+
+}  // namespace axial::refractive

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact forward projection through a dome port, camera frame, metres.
+//
+// The image of X lies in the plane through X and the axis, so its direction in air is
+//
+//     r = (d - zeta C) / N         with d = X/|X| and N = |d - zeta C|
+//
+// and the ray D = Q r - S C from C_v passes through X where
+//
+//     h(zeta) = zeta - (1 - 1/(mu_w Q)) / |X| + S N / Q = 0.
+//
+// zeta is small and nearly the same for all points of a distance: h is close to a straight line.
+#pragma once
+
+#include <cmath>
+
+#include "refractive/dome_port.h"
+#include "refractive/pinhole_camera.h"
+
+namespace axial::refractive {
+
+// A point's image and how it moves with the point.
+template <class T>
+struct DomePortImage {
+  Projection<T> projection;
+  T origin;  // the ray through the point begins at origin * C
+
+  // The pixel's motion [px] with a motion of the point [m], to first order.
+  Vector2<T> moved(const Vector3<T>& step) const {
+    const T along = towards.dot(step);
+    const Vector3<T> turn = inv_range * (step - along * towards);
+    const T zeta = zeta_by_cosine * centre.dot(turn) - zeta_by_inv_range * along;
+    const Vector3<T> bearing = turn - zeta * centre;
+    return {scale_u * (bearing.x() - x * bearing.z()), scale_v * (bearing.y() - y * bearing.z())};
+  }
+
+  Vector3<T> towards, centre;  // d and C
+  T inv_range;                 // 1/|X|
+  T zeta_by_cosine;            // d(zeta)/d(d.C)
+  T zeta_by_inv_range;         // d(zeta)/d(1/|X|) / |X|^2
+  T x, y;                      // the in-air direction divided by its z
+  T scale_u, scale_v;          // focal lengths divided by the z of d - zeta C
+};
+
+template <class T>
+class DomePortProjector {
+ public:
+  DomePortProjector() = default;  // means nothing before each_field() has filled it
+
+  // Points are projected within the image of width x height, widened by `margin` pixels.
+  DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
+                    const T& margin)
+      : optics_(port),
+        lens_(lens),
+        lowest_(-margin),
+        highest_u_(T(width - 1) + margin),
+        highest_v_(T(height - 1) + margin),
+        steps_(steps_for(optics_)) {}
+
+  // See DomePortCamera.
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    optics_.each_field(visit);
+    visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
+    visit(lowest_), visit(highest_u_), visit(highest_v_);
+    visit(steps_);
+  }
+
+  const DomePortOptics<T>& optics() const { return optics_; }
+
+  // The image of X, visible as DomePortCamera::project says.
+  DomePortImage<T> image(const Vector3<T>& X) const {
+    using std::sqrt;
+    const Vector3<T>& C = optics_.centre;
+    const T from_centre2 = (X - C).squaredNorm();
+    // False for NaN; the bound keeps squares within single precision.
+    const Mask<T> in_water = from_centre2 > optics_.outer_radius * optics_.outer_radius &&
+                             from_centre2 < T(kFarthest * kFarthest);
+    DomePortImage<T> image;
+    // Everything below stays finite, wherever X is.
+    const Vector3<T> safe{select(in_water, X.x(), T(0)), select(in_water, X.y(), T(0)),
+                          select(in_water, X.z(), T(1))};
+    image.inv_range = T(1) / sqrt(safe.squaredNorm());
+    image.towards = image.inv_range * safe;
+    image.centre = C;
+    const Root at = solve(image.towards.dot(C), image.inv_range);
+    image.zeta_by_cosine = at.zeta_by_cosine;
+    image.zeta_by_inv_range = at.zeta_by_inv_range * image.inv_range * image.inv_range;
+    image.origin = at.origin;
+
+    const Vector3<T> bearing = image.towards - at.zeta * C;
+    const Mask<T> in_front = bearing.z() > T(1e-3);
+    const T inv_depth = T(1) / select(in_front, bearing.z(), T(1));
+    image.x = bearing.x() * inv_depth;
+    image.y = bearing.y() * inv_depth;
+    image.scale_u = lens_.fx * inv_depth;
+    image.scale_v = lens_.fy * inv_depth;
+    image.projection.pixel = {lens_.fx * image.x + lens_.cx, lens_.fy * image.y + lens_.cy};
+    image.projection.visible = in_water && in_front && inside(image.projection.pixel);
+    return image;
+  }
+
+ private:
+  static constexpr float kFarthest = 1e9f;  // a million kilometres
+
+  struct Root {
+    T zeta, zeta_by_cosine, zeta_by_inv_range, origin;
+  };
+
+  // h and its derivatives by zeta and by c = d.C.
+  struct Slopes {
+    T h, by_zeta, by_cosine, inv_q;
+
+    Slopes(const DomePortOptics<T>& optics, const T& zeta, const T& c, const T& inv_range) {
+      using std::sqrt;
+      const T C2 = optics.centre2;
+      const T across = c - zeta * C2;
+      const T norm = sqrt(T(1) - zeta * (c + across));
+      const T inv_norm = T(1) / norm;
+      const T p = across * inv_norm;  // r.C
+      const T k2 = (C2 - c * c) * inv_norm * inv_norm;
+      const DomeTurn<T> turn = optics.turn(k2);
+      const T q = turn.cosine + p * turn.sine;
+      inv_q = T(1) / q;
+      const T ratio = turn.sine * norm * inv_q;
+      h = zeta - (T(1) - optics.inv_mu * inv_q) * inv_range + ratio;
+
+      // By either variable, from how it moves N, k^2 and p.
+      const auto slope = [&](const T& dnorm, const T& dk2, const T& dp) {
+        const T dsine = turn.sine_slope * dk2;
+        const T dq = turn.cosine_slope * dk2 + p * dsine + turn.sine * dp;
+        return (dsine * norm + turn.sine * dnorm -
+                dq * (ratio + optics.inv_mu * inv_q * inv_range)) *
+               inv_q;
+      };
+      const T norm_by_c = -zeta * inv_norm;
+      by_zeta = T(1) + slope(-p, T(2) * k2 * p * inv_norm, (p * p - C2) * inv_norm);
+      by_cosine = slope(norm_by_c, T(-2) * (c * inv_norm + k2 * norm_by_c) * inv_norm,
+                        (T(1) - p * norm_by_c) * inv_norm);
+    }
+  };
+
+  Root solve(const T& c, const T& inv_range) const {
+    T zeta = guess(c, inv_range);
+    if constexpr (kFixedSteps<T>) {
+      for (int step = 1; step < steps_; ++step) {
+        const Slopes at(optics_, zeta, c, inv_range);
+        zeta -= at.h / at.by_zeta;
+      }
+    } else {
+      for (int step = 0; step < 30; ++step) {
+        const Slopes at(optics_, zeta, c, inv_range);
+        const T next = zeta - at.h / at.by_zeta;
+        const bool still = !(next != zeta);
+        zeta = next;
+        if (still) break;
+      }
+    }
+    // The last step carries the derivatives of automatic-differentiation scalars, too.
+    const Slopes at(optics_, zeta, c, inv_range);
+    const T inv = T(1) / at.by_zeta;
+    return {zeta - at.h * inv, -at.by_cosine * inv, (T(1) - optics_.inv_mu * at.inv_q) * inv,
+            T(1) - optics_.inv_mu * at.inv_q};
+  }
+
+  // As if the ray ran near the axis.
+  T guess(const T& c, const T& inv_range) const {
+    const T sine = optics_.axial_sine();
+    const T inv_q = T(1) / (T(1) + c * sine);
+    return (T(1) - optics_.inv_mu * inv_q) * inv_range - sine * inv_q;
+  }
+
+  // Enough for errors below 1e-4 px of a 1024 px wide image.
+  static int steps_for(const DomePortOptics<T>& optics) {
+    const T decentring2 = optics.centre2 * optics.in_air * optics.in_air;
+    return decentring2 < T(0.01) ? 1 : (decentring2 < T(0.16) ? 2 : 4);
+  }
+
+  Mask<T> inside(const Vector2<T>& pixel) const {
+    return pixel.x() >= lowest_ && pixel.x() <= highest_u_ && pixel.y() >= lowest_ &&
+           pixel.y() <= highest_v_;
+  }
+
+  DomePortOptics<T> optics_;
+  PinholeLens<T> lens_;
+  T lowest_, highest_u_, highest_v_;  // the widened image
+  int steps_;
+};
+
+}  // namespace axial::refractive

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Automatic and numeric derivatives, to hold closed forms against.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+namespace axial::refractive::testing {
+
+inline constexpr double kRelative = 1e-6;
+
+template <class Jet, int N>
+Eigen::Matrix<Jet, N, 1> variables(const Eigen::Matrix<double, N, 1>& x) {
+  Eigen::Matrix<Jet, N, 1> jets;
+  for (int k = 0; k < N; ++k) jets(k) = Jet(x(k), k);
+  return jets;
+}
+
+template <class Jet, int N>
+auto derivatives(const Eigen::Matrix<Jet, N, 1>& jets) {
+  Eigen::Matrix<double, N, Jet::DIMENSION> jacobian;
+  for (int k = 0; k < N; ++k) jacobian.row(k) = jets(k).v.transpose();
+  return jacobian;
+}
+
+// Central differences of a function of a vector.
+template <int M, int N, class Function>
+Eigen::Matrix<double, M, N> differences(const Eigen::Matrix<double, N, 1>& x, double h,
+                                        Function f) {
+  Eigen::Matrix<double, M, N> jacobian;
+  for (int k = 0; k < N; ++k) {
+    const Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Unit(k) * h;
+    jacobian.col(k) = (f(x + step) - f(x - step)) / (2 * h);
+  }
+  return jacobian;
+}
+
+template <class A, class B>
+void expect_close(const A& a, const B& b, double scale) {
+  EXPECT_LE((a - b).norm(), kRelative * scale) << a << "\n\n" << b;
+}
+
+}  // namespace axial::refractive::testing
