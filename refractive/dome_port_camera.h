@@ -40,6 +40,9 @@ class DomePortCamera {
   const PinholeLens<T>& lens() const { return lens_; }
   const DomePortOptics<T>& optics() const { return projector_.optics(); }
 
+  // How virtual cameras are turned: as the lens is, because the axis may point anywhere.
+  Matrix3<T> rotation_to_axis() const { return Matrix3<T>::Identity(); }
+
   // The ray in water. Its origin is the virtual centre C_v on the axis. NaN in, NaN out.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     AxialRayJacobian<T> unused;
@@ -95,7 +98,7 @@ class DomePortCamera {
     const DomePortImage<T> image = projector_.image(X);
     if (jacobian)
       for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(Vector3<T>::Unit(k));
-    if (origin) *origin = image.origin * optics().centre;
+    if (origin) *origin = image.origin();
     return image.projection;
   }
 

@@ -23,7 +23,9 @@ namespace axial::refractive {
 template <class T>
 struct DomePortImage {
   Projection<T> projection;
-  T origin;  // the ray through the point begins at origin * C
+
+  // Where the ray through the point begins.
+  Vector3<T> origin() const { return origin_share * centre; }
 
   // The pixel's motion [px] with a motion of the point [m], to first order.
   Vector2<T> moved(const Vector3<T>& step) const {
@@ -35,6 +37,7 @@ struct DomePortImage {
   }
 
   Vector3<T> towards, centre;  // d and C
+  T origin_share;              // 1 - 1/(mu_w Q)
   T inv_range;                 // 1/|X|
   T zeta_by_cosine;            // d(zeta)/d(d.C)
   T zeta_by_inv_range;         // d(zeta)/d(1/|X|) / |X|^2
@@ -86,7 +89,7 @@ class DomePortProjector {
     const Root at = solve(image.towards.dot(C), image.inv_range);
     image.zeta_by_cosine = at.zeta_by_cosine;
     image.zeta_by_inv_range = at.zeta_by_inv_range * image.inv_range * image.inv_range;
-    image.origin = at.origin;
+    image.origin_share = at.origin_share;
 
     const Vector3<T> bearing = image.towards - at.zeta * C;
     const Mask<T> in_front = bearing.z() > T(1e-3);
@@ -104,7 +107,7 @@ class DomePortProjector {
   static constexpr float kFarthest = 1e9f;  // a million kilometres
 
   struct Root {
-    T zeta, zeta_by_cosine, zeta_by_inv_range, origin;
+    T zeta, zeta_by_cosine, zeta_by_inv_range, origin_share;
   };
 
   // h and its derivatives by zeta and by c = d.C.

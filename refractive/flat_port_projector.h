@@ -50,7 +50,10 @@ T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port,
 template <class T>
 struct FlatPortImage {
   Projection<T> projection;
-  T origin_height;  // of the virtual centre C_v, where the ray through the point begins
+  T origin_height;  // of the virtual centre C_v
+
+  // Where the ray through the point begins.
+  Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
   // The pixel's motion [px] with a motion of the point [m], to first order. The in-air direction is
   // (m x, m y, 1): along the radius it grows by dt/d(rho) instead of m, and height turns it

@@ -34,7 +34,9 @@ struct PinholeLens {
 template <class T>
 struct PinholeImage {
   Projection<T> projection;
-  T origin_height = T(0);  // the ray begins at the centre
+
+  // Where the ray through the point begins.
+  Vector3<T> origin() const { return {T(0), T(0), T(0)}; }
 
   // The pixel's motion [px] with a motion of the point [m], to first order.
   Vector2<T> moved(const Vector3<T>& step) const {

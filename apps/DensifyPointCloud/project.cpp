@@ -45,12 +45,16 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
   axial::io::attach_ports(scene, housing);
-  std::size_t wet = 0;
-  for (const axial::SceneImage& image : scene.images) wet += image.camera.port ? 1 : 0;
+  std::size_t wet = 0, flat = 0;
+  for (const axial::SceneImage& image : scene.images) {
+    const auto& port = image.camera.port;
+    wet += port ? 1 : 0;
+    flat += port && std::holds_alternative<axial::refractive::FlatPort<double>>(*port) ? 1 : 0;
+  }
   if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
-  if (wet < scene.images.size() && options.camera == CameraChoice::flat_port)
+  if (flat < scene.images.size() && options.camera == CameraChoice::flat_port)
     fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
-         wet, scene.images.size());
+         flat, scene.images.size());
   spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
                scene.images.size());
   if (wet == 0) return {};
@@ -138,16 +142,28 @@ void select_views(Project& project, const Options& options) {
     fail("{}: no image has neighbours to be matched with", options.input.string());
 }
 
+void add_numbers(axial::Fingerprint& print, std::initializer_list<double> values) {
+  for (const double value : values) print.add(value);
+}
+
+void add_port(axial::Fingerprint& print, const axial::refractive::FlatPort<double>& port) {
+  add_numbers(print, {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
+                      port.thickness, port.n_air, port.n_glass, port.n_water});
+}
+
+void add_port(axial::Fingerprint& print, const axial::refractive::DomePort<double>& port) {
+  print.add("dome");
+  add_numbers(print, {port.centre.x(), port.centre.y(), port.centre.z(), port.inner_radius,
+                      port.thickness, port.n_air, port.n_glass, port.n_water});
+}
+
 void add_camera(axial::Fingerprint& print, const axial::CameraModel& camera) {
   print.add(static_cast<std::uint64_t>(camera.width))
       .add(static_cast<std::uint64_t>(camera.height));
   print.add(camera.lens.fx).add(camera.lens.fy).add(camera.lens.cx).add(camera.lens.cy);
   print.add(std::uint64_t{camera.port.has_value()});
   if (!camera.port) return;
-  const auto& port = *camera.port;
-  for (const double value : {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
-                             port.thickness, port.n_air, port.n_glass, port.n_water})
-    print.add(value);
+  std::visit([&](const auto& port) { add_port(print, port); }, *camera.port);
 }
 
 void add_options(axial::Fingerprint& print, const Options& options) {

@@ -27,6 +27,11 @@ ProgramOptions describe(Arguments& a) {
       "port-distance", po::value(&a.port_distance), "camera centre to glass [m]")(
       "port-thickness", po::value(&a.port_thickness), "of the glass [m]")(
       "tilt-degrees", po::value(&a.tilt_degrees), "of the port against the optical axis")(
+      "dome-radius", po::value(&a.dome_radius),
+      "inner radius of a dome in place of the flat port [m]")(
+      "dome-x", po::value(&a.dome_x)->default_value(0), "camera centre to dome centre [m]")(
+      "dome-y", po::value(&a.dome_y)->default_value(0), "camera centre to dome centre [m]")(
+      "dome-z", po::value(&a.dome_z)->default_value(0), "camera centre to dome centre [m]")(
       "n-glass", po::value(&a.n_glass), "refractive index")("n-water", po::value(&a.n_water),
                                                             "refractive index")(
       "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
@@ -56,6 +61,13 @@ void apply_port_options(simulate::Port& port, const Arguments& a, const po::vari
   if (given(values, "port-distance")) port.distance = a.port_distance;
   if (given(values, "port-thickness")) port.thickness = a.port_thickness;
   if (given(values, "tilt-degrees")) port.normal = simulate::tilted_normal(a.tilt_degrees);
+  const bool dome = given(values, "dome-radius");
+  for (const char* of_flat : {"port-distance", "tilt-degrees"})
+    if (dome && given(values, of_flat))
+      fail("--{} is of a flat port, and --dome-radius makes a dome", of_flat);
+  for (const char* of_dome : {"dome-x", "dome-y", "dome-z"})
+    if (!dome && given(values, of_dome)) fail("--{} needs --dome-radius", of_dome);
+  if (dome) port.dome = simulate::Dome{{a.dome_x, a.dome_y, a.dome_z}, a.dome_radius};
   if (given(values, "n-glass")) port.n_glass = a.n_glass;
   if (given(values, "n-water")) port.n_water = a.n_water;
 }

@@ -14,6 +14,7 @@ struct Arguments {
   int samples = 0, jpeg_quality = 0;
   double noise = 0;
   bool truth = true, truth_only = false;
+  double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
 };
 

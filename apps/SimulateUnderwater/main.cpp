@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a synthetic scene with ground truth: images in air and behind a flat port under water.
+// Makes a synthetic scene with ground truth: images in air and behind a port under water.
 #include <spdlog/spdlog.h>
 
 #include "arguments.h"

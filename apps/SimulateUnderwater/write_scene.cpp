@@ -72,8 +72,13 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 
 void write_port(const std::filesystem::path& file, const simulate::Port& port) {
   io::Housing housing;
-  housing.ports["main"] = {port.normal, port.distance, port.thickness,
-                           port.n_air,  port.n_glass,  port.n_water};
+  if (port.dome)
+    housing.ports["main"] = refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
+                                                         port.thickness,    port.n_air,
+                                                         port.n_glass,      port.n_water};
+  else
+    housing.ports["main"] = refractive::FlatPort<double>{port.normal, port.distance, port.thickness,
+                                                         port.n_air,  port.n_glass,  port.n_water};
   housing.default_port = "main";
   io::write_housing(file, housing);
 }

@@ -5,6 +5,8 @@
 #include <type_traits>
 
 #include "depth/lanes/scorer.h"
+#include "refractive/dome_port_camera.h"
+#include "refractive/flat_port_camera.h"
 #include "refractive/pinhole_camera.h"
 
 namespace axial::depth {
@@ -16,9 +18,16 @@ concept InLanes = requires(Camera camera) {
 };
 
 template <InLanes Camera>
-inline constexpr lanes::CameraKind kLaneKind =
-    std::is_same_v<Camera, refractive::PinholeCamera<float>> ? lanes::CameraKind::pinhole
-                                                             : lanes::CameraKind::flat_port;
+inline constexpr lanes::CameraKind kLaneKind{};
+template <>
+inline constexpr lanes::CameraKind kLaneKind<refractive::PinholeCamera<float>> =
+    lanes::CameraKind::pinhole;
+template <>
+inline constexpr lanes::CameraKind kLaneKind<refractive::FlatPortCamera<float>> =
+    lanes::CameraKind::flat_port;
+template <>
+inline constexpr lanes::CameraKind kLaneKind<refractive::DomePortCamera<float>> =
+    lanes::CameraKind::dome_port;
 
 template <InLanes Fielded>
 lanes::CameraFields fields_of(Fielded from) {

@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "base/error.h"
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::depth {
 namespace {
 
 using lanes::kLanes;
+using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
 using refractive::PinholeCamera;
 
@@ -156,5 +158,6 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
 
 template class LaneMatcher<PinholeCamera<float>>;
 template class LaneMatcher<FlatPortCamera<float>>;
+template class LaneMatcher<DomePortCamera<float>>;
 
 }  // namespace axial::depth

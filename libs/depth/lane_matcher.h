@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matcher in SIMD lanes: exact projection and affine warp, for pinholes and flat ports.
+// The matcher in SIMD lanes: exact projection and affine warp, for pinholes and both kinds of port.
 #pragma once
 
 #include <memory>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "depth/ray_caster.h"
 
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::depth {
 
+using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
 using refractive::PinholeCamera;
 
@@ -34,5 +36,6 @@ void RayCaster<Camera>::rays(int x, int y, RayTile& tile) const {
 
 template class RayCaster<PinholeCamera<float>>;
 template class RayCaster<FlatPortCamera<float>>;
+template class RayCaster<DomePortCamera<float>>;
 
 }  // namespace axial::depth

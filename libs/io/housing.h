@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "refractive/flat_port.h"
+#include "refractive/port.h"
 #include "scene/scene.h"
 
 namespace axial::io {
 
 struct Housing {
-  std::map<std::string, refractive::FlatPort<double>> ports;
+  std::map<std::string, refractive::Port<double>> ports;
   std::string default_port = "none";             // "none": dry
   std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name
   std::map<std::string, std::string> images;     // image name -> port name
@@ -27,9 +27,9 @@ struct Housing {
 };
 
 // Error that names file, key and value: unknown keys, wrong types or units (an index below 1,
-// negative thickness, zero or backward normal, distance over 1 m), a port name that is not defined,
-// a version other than 1, a port type this build cannot do. A normal off unit length by more than
-// 1e-6 is normalised with a warning.
+// negative thickness, zero or backward normal, distance over 1 m, a dome centre outside the dome),
+// a port name that is not defined, a version other than 1, an unknown port type. A normal off unit
+// length by more than 1e-6 is normalised with a warning.
 Housing read_housing(const std::filesystem::path& path);
 
 void write_housing(const std::filesystem::path& path, const Housing& housing);

@@ -41,16 +41,21 @@ void require_length(double metres, const char* key, const std::string& where) {
     fail("{}.{} is {}, expected metres from 0 to 1", where, key, metres);
 }
 
+Eigen::Vector3d vector(const JsonPlace& place) {
+  const json& json = place.json;
+  if (!json.is_array() || json.size() != 3 ||
+      !std::ranges::all_of(json, [](const auto& value) { return value.is_number(); }))
+    fail("{} is {}, expected three numbers", place.where, json.dump());
+  return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+}
+
+json to_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 Eigen::Vector3d unit_normal(const JsonPlace& place) {
   const JsonPlace normal = place.at("normal");
-  if (!normal.json.is_array() || normal.json.size() != 3)
-    fail("{} is {}, expected three numbers", normal.where, normal.json.dump());
-  Eigen::Vector3d n;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!normal.json[i].is_number())
-      fail("{} is {}, expected three numbers", normal.where, normal.json.dump());
-    n[static_cast<Eigen::Index>(i)] = normal.json[i].get<double>();
-  }
+  const Eigen::Vector3d n = vector(normal);
   const double length = n.stableNorm();
   if (!(length > 1e-6 && std::isfinite(length)))
     fail("{} is {}, which is no direction", normal.where, normal.json.dump());
@@ -58,6 +63,90 @@ Eigen::Vector3d unit_normal(const JsonPlace& place) {
     spdlog::warn("{} has length {}: normalised", normal.where, length);
   // Left as it is where it is unit to rounding, so that writing what was read changes nothing.
   return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
+}
+
+// What both kinds have.
+
+template <class Port>
+void read_glass(const JsonPlace& place, Port& port) {
+  port.thickness = place.number("thickness_m");
+  port.n_air = place.has("n_air") ? place.number("n_air") : 1.0;
+  port.n_glass = place.number("n_glass");
+  port.n_water = place.number("n_water");
+}
+
+template <class Port>
+void write_glass(const Port& port, json& json) {
+  json["thickness_m"] = port.thickness;
+  json["n_air"] = port.n_air;
+  json["n_glass"] = port.n_glass;
+  json["n_water"] = port.n_water;
+}
+
+template <class Port>
+void check_glass(const Port& port, const std::string& where) {
+  require_length(port.thickness, "thickness_m", where);
+  require_index(port.n_air, "n_air", where);
+  require_index(port.n_glass, "n_glass", where);
+  require_index(port.n_water, "n_water", where);
+  if (port.n_glass < port.n_air || port.n_water < port.n_air)
+    fail("{}.n_air is {}, more than n_glass {} or n_water {}", where, port.n_air, port.n_glass,
+         port.n_water);
+}
+
+refractive::FlatPort<double> flat_from_json(const JsonPlace& place) {
+  place.require_object(
+      {"type", "distance_m", "thickness_m", "normal", "n_air", "n_glass", "n_water"});
+  refractive::FlatPort<double> port;
+  port.distance = place.number("distance_m");
+  read_glass(place, port);
+  if (place.has("normal")) port.normal = unit_normal(place);
+  return port;
+}
+
+refractive::DomePort<double> dome_from_json(const JsonPlace& place) {
+  place.require_object(
+      {"type", "center_m", "inner_radius_m", "thickness_m", "n_air", "n_glass", "n_water"});
+  refractive::DomePort<double> port;
+  if (place.has("center_m")) port.centre = vector(place.at("center_m"));
+  port.inner_radius = place.number("inner_radius_m");
+  read_glass(place, port);
+  return port;
+}
+
+json as_json(const refractive::FlatPort<double>& port) {
+  json json{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
+  write_glass(port, json);
+  return json;
+}
+
+json as_json(const refractive::DomePort<double>& port) {
+  json json{
+      {"type", "dome"}, {"center_m", to_json(port.centre)}, {"inner_radius_m", port.inner_radius}};
+  write_glass(port, json);
+  return json;
+}
+
+void check(const refractive::FlatPort<double>& port, const std::string& where) {
+  require_length(port.distance, "distance_m", where);
+  check_glass(port, where);
+  if (!(std::abs(port.normal.norm() - 1) < 1e-6))
+    fail("{}.normal has length {}, expected 1", where, port.normal.norm());
+  if (!(port.normal.z() > 0))
+    fail("{}.normal points backwards: z is {}, it must be positive (from the camera to the water)",
+         where, port.normal.z());
+}
+
+void check(const refractive::DomePort<double>& port, const std::string& where) {
+  require_length(port.inner_radius, "inner_radius_m", where);
+  check_glass(port, where);
+  // Beyond this the light of some pixel may graze the glass.
+  const double away = port.centre.stableNorm();
+  if (!(away < 0.9 * port.inner_radius))
+    fail(
+        "{}.center_m is {} m from the camera centre, expected less than 0.9 times inner_radius_m, "
+        "which is {}",
+        where, away, port.inner_radius);
 }
 
 }  // namespace
@@ -106,49 +195,26 @@ std::string JsonPlace::text(const char* key) const {
   return value.json.get<std::string>();
 }
 
-refractive::FlatPort<double> port_from_json(const JsonPlace& place) {
+refractive::Port<double> port_from_json(const JsonPlace& place) {
   if (!place.json.is_object()) fail("{} is no object in braces", place.where);
   const std::string type = place.text("type");
-  if (type == "dome")
-    fail("{}.type is 'dome': dome ports are not supported yet, only flat ones", place.where);
-  if (type != "flat") fail("{}.type is '{}', expected 'flat'", place.where, type);
-  place.require_object(
-      {"type", "distance_m", "thickness_m", "normal", "n_air", "n_glass", "n_water"});
-  refractive::FlatPort<double> port;
-  port.distance = place.number("distance_m");
-  port.thickness = place.number("thickness_m");
-  port.n_air = place.has("n_air") ? place.number("n_air") : 1.0;
-  port.n_glass = place.number("n_glass");
-  port.n_water = place.number("n_water");
-  if (place.has("normal")) port.normal = unit_normal(place);
+  if (type != "flat" && type != "dome")
+    fail("{}.type is '{}', expected 'flat' or 'dome'", place.where, type);
+  refractive::Port<double> port;
+  if (type == "flat")
+    port = flat_from_json(place);
+  else
+    port = dome_from_json(place);
   check_port(port, place.where);
   return port;
 }
 
-json port_to_json(const refractive::FlatPort<double>& port) {
-  return {{"type", "flat"},
-          {"distance_m", port.distance},
-          {"thickness_m", port.thickness},
-          {"normal", {port.normal.x(), port.normal.y(), port.normal.z()}},
-          {"n_air", port.n_air},
-          {"n_glass", port.n_glass},
-          {"n_water", port.n_water}};
+json port_to_json(const refractive::Port<double>& port) {
+  return std::visit([](const auto& kind) { return as_json(kind); }, port);
 }
 
-void check_port(const refractive::FlatPort<double>& port, const std::string& where) {
-  require_length(port.distance, "distance_m", where);
-  require_length(port.thickness, "thickness_m", where);
-  require_index(port.n_air, "n_air", where);
-  require_index(port.n_glass, "n_glass", where);
-  require_index(port.n_water, "n_water", where);
-  if (port.n_glass < port.n_air || port.n_water < port.n_air)
-    fail("{}.n_air is {}, more than n_glass {} or n_water {}", where, port.n_air, port.n_glass,
-         port.n_water);
-  if (!(std::abs(port.normal.norm() - 1) < 1e-6))
-    fail("{}.normal has length {}, expected 1", where, port.normal.norm());
-  if (!(port.normal.z() > 0))
-    fail("{}.normal points backwards: z is {}, it must be positive (from the camera to the water)",
-         where, port.normal.z());
+void check_port(const refractive::Port<double>& port, const std::string& where) {
+  std::visit([&](const auto& kind) { check(kind, where); }, port);
 }
 
 }  // namespace axial::io

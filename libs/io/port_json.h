@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "refractive/flat_port.h"
+#include "refractive/port.h"
 
 namespace axial::io {
 
@@ -30,12 +30,12 @@ struct JsonPlace {
   std::string text(const char* key) const;
 };
 
-// Reads a port object. Error for unknown keys, values no port has, and types other than "flat". A
-// normal off unit length by more than 1e-6 is normalised with a warning.
-refractive::FlatPort<double> port_from_json(const JsonPlace& place);
-nlohmann::json port_to_json(const refractive::FlatPort<double>& port);
+// Reads a port object. Error for unknown keys, values no port has, and types other than "flat" and
+// "dome". A normal off unit length by more than 1e-6 is normalised with a warning.
+refractive::Port<double> port_from_json(const JsonPlace& place);
+nlohmann::json port_to_json(const refractive::Port<double>& port);
 
 // Error that starts with `where` for values no port has.
-void check_port(const refractive::FlatPort<double>& port, const std::string& where);
+void check_port(const refractive::Port<double>& port, const std::string& where);
 
 }  // namespace axial::io

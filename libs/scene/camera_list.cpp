@@ -3,35 +3,54 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace axial {
 
 namespace {
 
-template <class Camera>
-std::vector<Camera> behind_ports(std::span<const CameraModel> models) {
+// `none`: for dry cameras.
+template <class Camera, class Port>
+std::vector<Camera> behind_ports(std::span<const CameraModel> models, const Port& none) {
   using T = typename Camera::Scalar;
   std::vector<Camera> cameras;
-  for (const CameraModel& model : models)
-    cameras.emplace_back(model.lens.cast<T>(),
-                         model.port.value_or(refractive::FlatPort<double>{}).cast<T>(), model.width,
-                         model.height);
+  for (const CameraModel& model : models) {
+    const Port& port = model.port ? std::get<Port>(*model.port) : none;
+    cameras.emplace_back(model.lens.cast<T>(), port.template cast<T>(), model.width, model.height);
+  }
   return cameras;
+}
+
+template <class Port>
+bool any_behind(std::span<const CameraModel> models) {
+  return std::ranges::any_of(models, [](const CameraModel& model) {
+    return model.port && std::holds_alternative<Port>(*model.port);
+  });
 }
 
 }  // namespace
 
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMethod method) {
-  const bool all_dry =
-      std::none_of(models.begin(), models.end(), [](const auto& model) { return model.port; });
-  if (all_dry) {
+  const bool flat = any_behind<refractive::FlatPort<double>>(models);
+  const bool dome = any_behind<refractive::DomePort<double>>(models);
+  if (flat && dome) fail("images behind a flat port cannot be matched with ones behind a dome");
+  if (!flat && !dome) {
     std::vector<refractive::PinholeCamera<T>> cameras;
     for (const CameraModel& model : models) cameras.emplace_back(model.lens.template cast<T>());
     return cameras;
   }
+  if (dome && method == ProjectionMethod::line_search)
+    fail(
+        "the line search is the paper's projection through flat ports: a dome has only the exact "
+        "one");
+  const refractive::FlatPort<double> no_port;
+  // Points inside a dome are not seen: it has to be smaller than any distance.
+  const refractive::DomePort<double> no_dome{{0, 0, 0}, 1e-4};
+  if (dome) return behind_ports<refractive::DomePortCamera<T>>(models, no_dome);
   if (method == ProjectionMethod::line_search)
-    return behind_ports<refractive::LineSearchCamera<T>>(models);
-  return behind_ports<refractive::FlatPortCamera<T>>(models);
+    return behind_ports<refractive::LineSearchCamera<T>>(models, no_port);
+  return behind_ports<refractive::FlatPortCamera<T>>(models, no_port);
 }
 
 template CameraList<float> make_camera_list<float>(std::span<const CameraModel>, ProjectionMethod);

@@ -18,12 +18,13 @@ enum class ProjectionMethod {
 };
 
 template <class T>
-using CameraList = std::variant<std::vector<refractive::PinholeCamera<T>>,
-                                std::vector<refractive::FlatPortCamera<T>>,
-                                std::vector<refractive::LineSearchCamera<T>>>;
+using CameraList = std::variant<
+    std::vector<refractive::PinholeCamera<T>>, std::vector<refractive::FlatPortCamera<T>>,
+    std::vector<refractive::DomePortCamera<T>>, std::vector<refractive::LineSearchCamera<T>>>;
 
 // All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
-// ones is a port of index 1, which is the pinhole exactly. Same order as `models`.
+// ones is a port of index 1, which is the pinhole exactly. Same order as `models`. Error: flat
+// ports and domes together, or the line search with a dome.
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models,
                                ProjectionMethod method = ProjectionMethod::exact);

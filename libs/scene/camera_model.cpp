@@ -13,11 +13,29 @@ CameraModel CameraModel::resized(int new_width, int new_height) const {
   return model;
 }
 
+namespace {
+
+// The camera behind a port of either kind.
+template <class T>
+struct BehindPort {
+  const CameraModel& model;
+
+  CameraVariant<T> operator()(const refractive::FlatPort<double>& port) const {
+    return refractive::FlatPortCamera<T>(model.lens.cast<T>(), port.cast<T>(), model.width,
+                                         model.height);
+  }
+  CameraVariant<T> operator()(const refractive::DomePort<double>& port) const {
+    return refractive::DomePortCamera<T>(model.lens.cast<T>(), port.cast<T>(), model.width,
+                                         model.height);
+  }
+};
+
+}  // namespace
+
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model) {
-  const auto lens = model.lens.cast<T>();
-  if (!model.port) return refractive::PinholeCamera<T>(lens);
-  return refractive::FlatPortCamera<T>(lens, model.port->cast<T>(), model.width, model.height);
+  if (!model.port) return refractive::PinholeCamera<T>(model.lens.cast<T>());
+  return std::visit(BehindPort<T>{model}, *model.port);
 }
 
 template CameraVariant<float> make_camera<float>(const CameraModel&);

@@ -6,8 +6,10 @@
 #include <optional>
 #include <variant>
 
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 #include "refractive/pinhole_camera.h"
+#include "refractive/port.h"
 
 namespace axial {
 
@@ -17,7 +19,7 @@ struct CameraModel {
   int width = 0;
   int height = 0;
   refractive::PinholeLens<double> lens{0, 0, 0, 0};
-  std::optional<refractive::FlatPort<double>> port;  // none: dry
+  std::optional<refractive::Port<double>> port;  // none: dry
 
   // The same camera for the image resized to new_width x new_height (independent factors per axis;
   // the corner of the image, at (-0.5, -0.5), stays fixed).
@@ -25,7 +27,8 @@ struct CameraModel {
 };
 
 template <class T>
-using CameraVariant = std::variant<refractive::PinholeCamera<T>, refractive::FlatPortCamera<T>>;
+using CameraVariant = std::variant<refractive::PinholeCamera<T>, refractive::FlatPortCamera<T>,
+                                   refractive::DomePortCamera<T>>;
 
 // T is float (matching) or double (geometry). Visit once per image or image pair, never per pixel.
 template <class T>

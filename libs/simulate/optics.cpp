@@ -17,7 +17,30 @@ struct PortPath {
   Eigen::Vector3d in_water;
 };
 
+// Where a ray from inside a sphere leaves it.
+Eigen::Vector3d leave_sphere(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+                             const Eigen::Vector3d& centre, double radius) {
+  const Eigen::Vector3d offset = from - centre;
+  const double along = offset.dot(direction);
+  return from +
+         (std::sqrt(along * along + radius * radius - offset.squaredNorm()) - along) * direction;
+}
+
+std::optional<PortPath> pass_dome(const Port& port, const Eigen::Vector3d& in_air) {
+  const Eigen::Vector3d& centre = port.dome->centre;
+  const double inner = port.dome->inner_radius;
+  const Eigen::Vector3d on_inner = leave_sphere(Eigen::Vector3d::Zero(), in_air, centre, inner);
+  const auto in_glass = refract(in_air, (on_inner - centre) / inner, port.n_air, port.n_glass);
+  if (!in_glass) return std::nullopt;
+  const double outer = inner + port.thickness;
+  const Eigen::Vector3d on_outer = leave_sphere(on_inner, *in_glass, centre, outer);
+  const auto in_water = refract(*in_glass, (on_outer - centre) / outer, port.n_glass, port.n_water);
+  if (!in_water) return std::nullopt;
+  return PortPath{on_outer, *in_water};
+}
+
 std::optional<PortPath> pass_port(const Port& port, const Eigen::Vector3d& in_air) {
+  if (port.dome) return pass_dome(port, in_air);
   const double rise = in_air.dot(port.normal);
   if (!(rise > 1e-6)) return std::nullopt;
   const Eigen::Vector3d on_inner = in_air * (port.distance / rise);
@@ -36,6 +59,14 @@ Eigen::Vector3d foot_on_axis(const PortPath& path, const Eigen::Vector3d& axis) 
   const double sin2 = axis.cross(path.in_water).squaredNorm();
   const double along = (axis.dot(path.exit) - c * path.in_water.dot(path.exit)) / sin2;
   return axis * along;
+}
+
+// Unit, on the side where the light goes. Zero for a centred dome: all of its rays pass the centre.
+Eigen::Vector3d axis_of(const Port& port, const Eigen::Vector3d& in_air) {
+  if (!port.dome) return port.normal;
+  if (port.dome->centre.norm() < 1e-9) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d axis = port.dome->centre.normalized();
+  return axis.dot(in_air) > 0 ? axis : Eigen::Vector3d(-axis);
 }
 
 }  // namespace
@@ -57,6 +88,11 @@ Eigen::Vector3d tilted_normal(double tilt_degrees) {
 void check_port(const Port& port, const Lens& lens) {
   if (!(port.distance >= 0 && port.distance <= 1))
     fail("port distance is {} m: must be between 0 and 1", port.distance);
+  if (port.dome && !(port.dome->inner_radius > 0 && port.dome->inner_radius <= 1))
+    fail("dome radius is {} m: must be above 0 and at most 1", port.dome->inner_radius);
+  if (port.dome && !(port.dome->centre.norm() < port.dome->inner_radius))
+    fail("the dome's centre is {} m from the camera, its radius is {}", port.dome->centre.norm(),
+         port.dome->inner_radius);
   if (!(port.thickness >= 0 && port.thickness <= 1))
     fail("port thickness is {} m: must be between 0 and 1", port.thickness);
   for (const double n : {port.n_air, port.n_glass, port.n_water})
@@ -83,15 +119,17 @@ std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u
   if (!port) return SceneRay{Eigen::Vector3d::Zero(), in_air, Eigen::Vector3d::Zero()};
   const auto path = pass_port(*port, in_air);
   if (!path) return std::nullopt;
+  const Eigen::Vector3d axis = axis_of(*port, in_air);
+  if (axis.isZero()) return SceneRay{path->exit, path->in_water, Eigen::Vector3d::Zero()};
   // A ray along the axis meets it everywhere; its neighbours' crossing is the limit, reached with
   // an error of the second order in the step.
   constexpr double kStep = 1e-4;
-  if (path->in_water.cross(port->normal).norm() >= kStep)
-    return SceneRay{path->exit, path->in_water, foot_on_axis(*path, port->normal)};
-  const Eigen::Vector3d aside = port->normal.unitOrthogonal();
-  const auto near = pass_port(*port, (port->normal + 2 * kStep * aside).normalized());
+  if (path->in_water.cross(axis).norm() >= kStep)
+    return SceneRay{path->exit, path->in_water, foot_on_axis(*path, axis)};
+  const Eigen::Vector3d aside = axis.unitOrthogonal();
+  const auto near = pass_port(*port, (axis + 2 * kStep * aside).normalized());
   if (!near) return std::nullopt;
-  return SceneRay{path->exit, path->in_water, foot_on_axis(*near, port->normal)};
+  return SceneRay{path->exit, path->in_water, foot_on_axis(*near, axis)};
 }
 
 SceneRay to_world(const View& view, const SceneRay& in_camera) {

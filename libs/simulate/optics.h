@@ -20,19 +20,27 @@ struct Lens {
 // 1 <= horizontal_fov_degrees <= 150.
 Lens make_lens(int width, int height, double horizontal_fov_degrees);
 
-// A flat port in the camera frame, metres. A dry camera is the absence of a port.
+// A dome's shape in the camera frame, metres.
+struct Dome {
+  Eigen::Vector3d centre{0, 0, 0};
+  double inner_radius = 0.05;
+};
+
+// A flat port in the camera frame, metres, or a dome. A dry camera is the absence of a port.
 struct Port {
   Eigen::Vector3d normal{0, 0, 1};  // unit, from the camera to the water
   double distance = 0;              // camera centre to the inner plane
   double thickness = 0;
   double n_air = 1, n_glass = 1, n_water = 1;
+  std::optional<Dome> dome = {};  // in place of the planes: normal and distance mean nothing
 };
 
 // Unit normal of a port tilted by the given angle, towards the right and bottom of the image.
 Eigen::Vector3d tilted_normal(double tilt_degrees);
 
-// Error that names the value: distance outside [0, 1] m, thickness outside [0, 1] m, an index below
-// 1 or above 4, a corner of the image whose light does not meet the port from inside.
+// Error that names the value: distance or radius outside [0, 1] m, thickness outside [0, 1] m, an index below
+// 1 or above 4, a camera outside its dome, a corner of the image whose light does not meet the port
+// from inside.
 void check_port(const Port& port, const Lens& lens);
 
 // x_in_camera = rotation * (x_in_world - centre).

@@ -25,7 +25,8 @@ Eigen::Vector3f sample_color(const RayScene& scene, const Shader& shader, const 
   const SceneRay ray = to_world(view, *in_camera);
   const auto hit = scene.first_hit(ray.start, ray.direction);
   if (!hit) return Eigen::Vector3f::Zero();
-  const double magnification = port ? port->n_water / port->n_air : 1.0;
+  // A dome shows the water as air would.
+  const double magnification = port && !port->dome ? port->n_water / port->n_air : 1.0;
   const double footprint = hit->distance / (lens.focal * magnification);
   return shader({ray.start + hit->distance * ray.direction, *hit, footprint});
 }

@@ -11,11 +11,13 @@
 
 #include "depth/lane_matcher.h"
 #include "depth/matcher.h"
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::depth {
 namespace {
 
+using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
 using refractive::PinholeCamera;
 using refractive::PinholeLens;
@@ -41,6 +43,17 @@ FlatPortCamera<float> make_camera_of(float focal, int index) {
   port.n_glass = 1.5f;
   port.n_water = 1.333f;
   if (index == 4) focal *= 0.3f;
+  return {PinholeLens<float>{focal, focal, 47.5f, 35.5f}, port, kWidth, kHeight};
+}
+
+template <>
+DomePortCamera<float> make_camera_of(float focal, int index) {
+  refractive::DomePort<float> port;
+  port.centre = Eigen::Vector3f(0.01f, -0.004f, 0.002f) * static_cast<float>(index % 4);
+  port.inner_radius = 0.05f + 0.002f * static_cast<float>(index);
+  port.thickness = 0.008f;
+  port.n_glass = 1.5f;
+  port.n_water = 1.333f;
   return {PinholeLens<float>{focal, focal, 47.5f, 35.5f}, port, kWidth, kHeight};
 }
 
@@ -140,7 +153,7 @@ std::uint32_t bits(float value) {
 
 template <class Camera>
 class Lanes : public testing::Test {};
-using Cameras = testing::Types<PinholeCamera<float>, FlatPortCamera<float>>;
+using Cameras = testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>>;
 TYPED_TEST_SUITE(Lanes, Cameras);
 
 TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {

@@ -35,6 +35,12 @@ CameraModel small_camera() {
   return camera;
 }
 
+enum class Kind { pinhole, flat_port, dome_port };
+
+refractive::DomePort<double> dome() {
+  return {{0.004, -0.003, -0.006}, 0.05, 0.008, 1, 1.49, 1.333};
+}
+
 refractive::FlatPort<double> thick_port() {
   refractive::FlatPort<double> port;
   port.normal =
@@ -46,14 +52,15 @@ refractive::FlatPort<double> thick_port() {
   return port;
 }
 
-Survey make_survey(bool refractive) {
+Survey make_survey(Kind kind) {
   Survey survey;
   const test::TexturedScene scene;
   for (int i = 0; i < 4; ++i) {
     MatchImage view;
     view.id = static_cast<std::uint32_t>(10 + i);
     view.camera = small_camera();
-    if (refractive) view.camera.port = thick_port();
+    if (kind == Kind::flat_port) view.camera.port = thick_port();
+    if (kind == Kind::dome_port) view.camera.port = dome();
     const double x = 0.25 * (i % 2) - 0.12;
     const double y = 0.2 * (i / 2) - 0.1;
     view.pose.centre = {x, y, 0.05 * i};
@@ -103,10 +110,13 @@ bool same_maps(const DepthMap& a, const DepthMap& b) {
          same_bytes(a.confidence, b.confidence);
 }
 
-class PatchMatchOn : public testing::TestWithParam<bool> {};
+class PatchMatchOn : public testing::TestWithParam<Kind> {};
 
-INSTANTIATE_TEST_SUITE_P(Cameras, PatchMatchOn, testing::Values(false, true),
-                         [](const auto& test) { return test.param ? "FlatPort" : "Pinhole"; });
+INSTANTIATE_TEST_SUITE_P(
+    Cameras, PatchMatchOn, testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port),
+    [](const auto& test) {
+      return std::array{"Pinhole", "FlatPort", "DomePort"}.at(static_cast<std::size_t>(test.param));
+    });
 
 TEST_P(PatchMatchOn, FindsTheSurface) {
   const Survey survey = make_survey(GetParam());
@@ -157,7 +167,7 @@ TEST_P(PatchMatchOn, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(PatchMatch, ThePinholeModelIsWrongUnderWater) {
-  Survey survey = make_survey(true);
+  Survey survey = make_survey(Kind::flat_port);
   for (MatchImage& view : survey.views) view.camera.port.reset();
   std::vector<const MatchImage*> sources;
   const DepthMap map = estimate_depth_map(survey.input(0, sources), {});
@@ -165,11 +175,12 @@ TEST(PatchMatch, ThePinholeModelIsWrongUnderWater) {
 }
 
 TEST(PatchMatch, APortOfIndexOneIsThePinhole) {
-  const Survey dry = make_survey(false);
+  const Survey dry = make_survey(Kind::pinhole);
   Survey wet = dry;
   for (MatchImage& view : wet.views) {
-    view.camera.port = thick_port();
-    view.camera.port->n_glass = view.camera.port->n_water = 1;
+    refractive::FlatPort<double> port = thick_port();
+    port.n_glass = port.n_water = 1;
+    view.camera.port = port;
   }
   std::vector<const MatchImage*> sources;
   const Errors a = compare(estimate_depth_map(dry.input(0, sources), {}), dry.truth[0]);
@@ -180,7 +191,7 @@ TEST(PatchMatch, APortOfIndexOneIsThePinhole) {
 }
 
 TEST(PatchMatch, ThePublishedMethodsFindTheSurfaceToo) {
-  const Survey survey = make_survey(true);
+  const Survey survey = make_survey(Kind::flat_port);
   std::vector<const MatchImage*> sources;
   MatchInput input = survey.input(0, sources);
   PatchMatchOptions options;
@@ -195,7 +206,7 @@ TEST(PatchMatch, ThePublishedMethodsFindTheSurfaceToo) {
 }
 
 TEST(PatchMatch, LeavesMaskedPixelsAlone) {
-  const Survey survey = make_survey(false);
+  const Survey survey = make_survey(Kind::pinhole);
   std::vector<const MatchImage*> sources;
   MatchInput input = survey.input(0, sources);
   cv::Mat1b mask(120, 160, std::uint8_t{1});
@@ -207,7 +218,7 @@ TEST(PatchMatch, LeavesMaskedPixelsAlone) {
 }
 
 TEST(PatchMatch, RefusesInputThatCannotBeMatched) {
-  const Survey survey = make_survey(false);
+  const Survey survey = make_survey(Kind::pinhole);
   std::vector<const MatchImage*> sources;
   MatchInput input = survey.input(0, sources);
   input.sparse_points = {};

@@ -120,7 +120,7 @@ TEST(ViewsOfModel, TakesLensPoseAndPort) {
   EXPECT_EQ(dry[0].camera.lens.cx, 319.5);  // COLMAP's centres are at one half
   EXPECT_FALSE(dry[0].camera.port.has_value());
   ASSERT_TRUE(wet[0].camera.port.has_value());
-  EXPECT_EQ(wet[0].camera.port->thickness, 0.018);
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(*wet[0].camera.port).thickness, 0.018);
   EXPECT_EQ(wet[0].pose.centre, Eigen::Vector3d(1, 2, 3));
 }
 

@@ -17,24 +17,28 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-CameraModel camera(bool port) {
+enum class Port { none, flat, dome };
+
+// A tilted thick port: the virtual centre lies centimetres off the camera's.
+refractive::FlatPort<double> flat_port() {
+  return {Eigen::Vector3d(0.2, -0.1, 1).normalized(), 0.05, 0.02, 1, 1.49, 1.34};
+}
+
+refractive::DomePort<double> dome_port() {
+  return {{0.01, -0.02, 0.005}, 0.06, 0.02, 1, 1.49, 1.34};
+}
+
+CameraModel camera(Port port) {
   CameraModel model;
   model.width = 9;
   model.height = 7;
   model.lens = {6, 6.5, 3.9, 3.1};  // about 75 degrees wide
-  if (port) {
-    // A tilted thick port: the virtual centre lies centimetres off the camera's.
-    model.port.emplace();
-    model.port->normal = Eigen::Vector3d(0.2, -0.1, 1).normalized();
-    model.port->distance = 0.05;
-    model.port->thickness = 0.02;
-    model.port->n_glass = 1.49;
-    model.port->n_water = 1.34;
-  }
+  if (port == Port::flat) model.port = flat_port();
+  if (port == Port::dome) model.port = dome_port();
   return model;
 }
 
-DepthMap depth_map(const fs::path& folder, bool port) {
+DepthMap depth_map(const fs::path& folder, Port port) {
   DepthMap map;
   map.image_path = (folder / "images" / "a.jpg").string();
   map.ids = {4, 2, 9};
@@ -69,7 +73,7 @@ class DmapTest : public testing::Test {
   // The error of the .dmap, by itself, with the bytes at `offset` replaced.
   template <class T>
   std::string error_with(std::size_t offset, T value) {
-    write_dmap(file_, depth_map(folder_, true), "x");
+    write_dmap(file_, depth_map(folder_, Port::flat), "x");
     std::string bytes = read_file(file_);
     EXPECT_LE(offset + sizeof value, bytes.size());
     std::memcpy(bytes.data() + offset, &value, sizeof value);
@@ -88,7 +92,7 @@ constexpr std::size_t kName = 30, kIds = kName + 12, kK = kIds + 4 + 3 * 4, kR =
                       kC = kR + 9 * 8, kDepth = kC + 3 * 8;
 
 TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
-  for (const bool port : {false, true}) {
+  for (const Port port : {Port::none, Port::flat, Port::dome}) {
     const DepthMap map = depth_map(folder_, port);
     write_dmap(file_, map, "fingerprint");
     const StoredDepthMap stored = read_dmap(file_);
@@ -100,9 +104,15 @@ TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
     EXPECT_EQ(stored.map.pose.rotation, map.pose.rotation);
     EXPECT_EQ(stored.map.pose.centre, map.pose.centre);
     EXPECT_EQ(stored.map.camera.lens.cx, map.camera.lens.cx);
-    ASSERT_EQ(stored.map.camera.port.has_value(), port);
-    if (port) {
-      EXPECT_LT((stored.map.camera.port->normal - map.camera.port->normal).norm(), 1e-15);
+    ASSERT_EQ(stored.map.camera.port.has_value(), port != Port::none);
+    if (port == Port::flat) {
+      const auto& kept = std::get<refractive::FlatPort<double>>(*stored.map.camera.port);
+      EXPECT_LT((kept.normal - flat_port().normal).norm(), 1e-15);
+    }
+    if (port == Port::dome) {
+      const auto& kept = std::get<refractive::DomePort<double>>(*stored.map.camera.port);
+      EXPECT_EQ(kept.centre, dome_port().centre);
+      EXPECT_EQ(kept.inner_radius, dome_port().inner_radius);
     }
     EXPECT_EQ(cv::norm(stored.map.normal, map.normal, cv::NORM_INF), 0);
     EXPECT_EQ(cv::norm(stored.map.confidence, map.confidence, cv::NORM_INF), 0);
@@ -120,10 +130,10 @@ TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
 // The file's depth is z in the real camera's frame, found here without the conversion under test:
 // the pixel's ray is followed for lambda and its end point looked at.
 TEST_F(DmapTest, StoresZDepthOfTheRealCamera) {
-  const DepthMap map = depth_map(folder_, true);
+  const DepthMap map = depth_map(folder_, Port::flat);
   write_dmap(file_, map, "");
   const std::string bytes = read_file(file_);
-  const refractive::FlatPortCamera<double> exact(map.camera.lens, *map.camera.port, 9, 7);
+  const refractive::FlatPortCamera<double> exact(map.camera.lens, flat_port(), 9, 7);
   for (int v = 0; v < 7; ++v)
     for (int u = 0; u < 9; ++u) {
       float z = 0;
@@ -142,7 +152,7 @@ TEST_F(DmapTest, StoresZDepthOfTheRealCamera) {
 }
 
 TEST_F(DmapTest, WritesTheHeaderOfTheFormat) {
-  const DepthMap map = depth_map(folder_, false);
+  const DepthMap map = depth_map(folder_, Port::none);
   write_dmap(file_, map, "");
   const std::string bytes = read_file(file_);
   EXPECT_EQ(bytes.substr(0, 4), std::string("DR\7\0", 4));
@@ -158,7 +168,7 @@ TEST_F(DmapTest, WritesTheHeaderOfTheFormat) {
 }
 
 TEST_F(DmapTest, CountsAsPinholeWithoutItsSideFile) {
-  const DepthMap map = depth_map(folder_, false);
+  const DepthMap map = depth_map(folder_, Port::none);
   write_dmap(file_, map, "x");
   fs::remove(side_);
   const StoredDepthMap stored = read_dmap(file_);
@@ -172,7 +182,7 @@ TEST_F(DmapTest, CountsAsPinholeWithoutItsSideFile) {
 
 // As OpenMVS may write it: half the image's resolution, depth only, and the views map.
 TEST_F(DmapTest, ReadsMapsSmallerThanTheImageAndSkipsViews) {
-  DepthMap map = depth_map(folder_, false);
+  DepthMap map = depth_map(folder_, Port::none);
   map.normal.release();
   map.confidence.release();
   write_dmap(file_, map, "");
@@ -213,7 +223,7 @@ TEST_F(DmapTest, NamesWhatIsWrong) {
 }
 
 TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
-  write_dmap(file_, depth_map(folder_, true), "x");
+  write_dmap(file_, depth_map(folder_, Port::flat), "x");
   const std::string side = read_file(side_);
   const auto message = [&](const std::string& from, const std::string& to) {
     std::string text = side;
@@ -231,11 +241,11 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
 
 TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
-  write_dmap(file_, depth_map(folder_, true), "abc");
+  write_dmap(file_, depth_map(folder_, Port::flat), "abc");
   EXPECT_EQ(dmap_made_from(file_), "abc");
   test::put(side_, "{");
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
-  write_dmap(file_, depth_map(folder_, true), "def");
+  write_dmap(file_, depth_map(folder_, Port::flat), "def");
   EXPECT_EQ(dmap_made_from(file_), "def");
   const std::string whole = read_file(file_);
   for (const std::string& other :
@@ -250,7 +260,7 @@ TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
 }
 
 TEST_F(DmapTest, RefusesAMapThatItsSideFileDoesNotDescribe) {
-  DepthMap map = depth_map(folder_, true);
+  DepthMap map = depth_map(folder_, Port::flat);
   write_dmap(file_, map, "x");
   const std::string side = read_file(side_);
   map.depth(3, 3) *= 1.01f;
@@ -260,20 +270,20 @@ TEST_F(DmapTest, RefusesAMapThatItsSideFileDoesNotDescribe) {
 }
 
 TEST_F(DmapTest, RefusesToWriteWhatCannotBeRead) {
-  DepthMap map = depth_map(folder_, true);
+  DepthMap map = depth_map(folder_, Port::flat);
   map.depth(2, 2) = -0.5f;
   EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("-0.5"));
-  map = depth_map(folder_, true);
+  map = depth_map(folder_, Port::flat);
   map.camera.width = 10;
   EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("9x7"));
-  map = depth_map(folder_, true);
+  map = depth_map(folder_, Port::flat);
   map.confidence.create(3, 3);
   EXPECT_THAT(error_of([&] { write_dmap(file_, map, ""); }), HasSubstr("another size"));
   EXPECT_FALSE(fs::exists(file_));
 }
 
 TEST_F(DmapTest, SurvivesWrongInput) {
-  write_dmap(file_, depth_map(folder_, true), "x");
+  write_dmap(file_, depth_map(folder_, Port::flat), "x");
   const std::string bytes = read_file(file_);
   const std::string side = read_file(side_);
   const auto reader = [](const fs::path& file) { read_dmap(file); };

@@ -31,6 +31,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+refractive::FlatPort<double>& flat(refractive::Port<double>& port) {
+  return std::get<refractive::FlatPort<double>>(port);
+}
+const refractive::FlatPort<double>& flat(const refractive::Port<double>& port) {
+  return std::get<refractive::FlatPort<double>>(port);
+}
+
 class HousingTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -56,13 +63,13 @@ class HousingTest : public testing::Test {
 TEST_F(HousingTest, ReadsTheExample) {
   const Housing housing = read(kExample);
   ASSERT_EQ(housing.ports.size(), 2u);
-  const auto& main = housing.ports.at("main");
+  const auto& main = flat(housing.ports.at("main"));
   EXPECT_EQ(main.distance, 0.02);
   EXPECT_EQ(main.thickness, 0.014);
   EXPECT_EQ(main.n_glass, 1.52);
   EXPECT_EQ(main.n_water, 1.333);
   EXPECT_EQ(main.normal, Eigen::Vector3d(0, 0, 1));
-  const auto& tilted = housing.ports.at("tilted");
+  const auto& tilted = flat(housing.ports.at("tilted"));
   EXPECT_EQ(tilted.n_air, 1);
   EXPECT_NEAR(tilted.normal.norm(), 1, 1e-15);
   EXPECT_NEAR(tilted.normal.x() / tilted.normal.z(), 0.3, 1e-15);
@@ -73,20 +80,52 @@ TEST_F(HousingTest, ReadsTheExample) {
 
 TEST_F(HousingTest, ReadsBackWhatItWrites) {
   Housing housing = read(kExample);
-  housing.ports["main"].normal = Eigen::Vector3d(0.01, -0.02, 1).normalized();
+  flat(housing.ports["main"]).normal = Eigen::Vector3d(0.01, -0.02, 1).normalized();
   write_housing(file_, housing);
   const Housing again = read_housing(file_);
   EXPECT_EQ(again.default_port, housing.default_port);
   EXPECT_EQ(again.cameras, housing.cameras);
   EXPECT_EQ(again.images, housing.images);
   for (const auto& [name, port] : housing.ports) {
-    EXPECT_EQ(again.ports.at(name).distance, port.distance);
-    EXPECT_EQ(again.ports.at(name).n_glass, port.n_glass);
-    EXPECT_LT((again.ports.at(name).normal - port.normal).norm(), 1e-15);
+    EXPECT_EQ(flat(again.ports.at(name)).distance, flat(port).distance);
+    EXPECT_EQ(flat(again.ports.at(name)).n_glass, flat(port).n_glass);
+    EXPECT_LT((flat(again.ports.at(name)).normal - flat(port).normal).norm(), 1e-15);
   }
   const std::string bytes = read_file(file_);
   write_housing(file_, again);
   EXPECT_EQ(read_file(file_), bytes);
+}
+
+constexpr const char* kDome = R"({ "version": 1, "default": "main", "ports": { "main":
+  { "type": "dome", "center_m": [0.001, 0, -0.002], "inner_radius_m": 0.05, "thickness_m": 0.007,
+    "n_glass": 1.49, "n_water": 1.34 } } })";
+
+TEST_F(HousingTest, ReadsAndWritesDomes) {
+  Housing housing = read(kDome);
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto& dome = std::get<refractive::DomePort<double>>(housing.ports.at("main"));
+    EXPECT_EQ(dome.centre, Eigen::Vector3d(0.001, 0, -0.002));
+    EXPECT_EQ(dome.inner_radius, 0.05);
+    EXPECT_EQ(dome.thickness, 0.007);
+    EXPECT_EQ(dome.n_air, 1);
+    EXPECT_EQ(dome.n_glass, 1.49);
+    EXPECT_EQ(dome.n_water, 1.34);
+    write_housing(file_, housing);
+    housing = read_housing(file_);
+  }
+}
+
+TEST_F(HousingTest, NamesKeyAndValueOfDomes) {
+  const auto error = [&](const std::string& from, const std::string& to) {
+    return error_of([&] { read(replaced(kDome, from, to)); });
+  };
+  EXPECT_THAT(error("0.05", "50"), HasSubstr("main.inner_radius_m is 50"));
+  EXPECT_THAT(error("-0.002]", "0.05]"), HasSubstr("main.center_m is 0.05"));
+  EXPECT_THAT(error("-0.002]", "null]"), HasSubstr("main.center_m"));
+  EXPECT_THAT(error("-0.002]", "1, 2]"), HasSubstr("three numbers"));
+  EXPECT_THAT(error("\"inner_radius_m\": 0.05,", ""), HasSubstr("'inner_radius_m' is missing"));
+  EXPECT_THAT(error("\"n_glass\"", "\"normal\""), HasSubstr("'normal'"));
+  EXPECT_THAT(error("1.34", "0.5"), HasSubstr("n_water is 0.5"));
 }
 
 TEST_F(HousingTest, NamesKeyAndValue) {
@@ -108,7 +147,7 @@ TEST_F(HousingTest, NamesKeyAndValue) {
   EXPECT_THAT(error("[0, 0, 1]", "[0, 1, 0]"), HasSubstr("backwards"));
   EXPECT_THAT(error("[0, 0, 1]", "[0, 0]"), HasSubstr("three numbers"));
   EXPECT_THAT(error("[0, 0, 1]", "[0, 0, 1e400]"), HasSubstr("JSON"));
-  EXPECT_THAT(error("\"type\": \"flat\"", "\"type\": \"dome\""), HasSubstr("not supported yet"));
+  EXPECT_THAT(error("\"type\": \"flat\"", "\"type\": \"dome\""), HasSubstr("distance_m"));
   EXPECT_THAT(error("\"type\": \"flat\"", "\"type\": \"cube\""), HasSubstr("cube"));
   EXPECT_THAT(error("\"default\": \"main\"", "\"default\": \"mian\""), HasSubstr("mian"));
   EXPECT_THAT(error("\"2\": \"tilted\"", "\"2\": \"x\""), HasSubstr("cameras.2 is 'x'"));
@@ -125,7 +164,7 @@ TEST_F(HousingTest, RefusesToWriteWhatCannotBeRead) {
   housing.default_port = "gone";
   EXPECT_THAT(error_of([&] { write_housing(file_, housing); }), HasSubstr("gone"));
   housing = read(kExample);
-  housing.ports["main"].thickness = -1;
+  flat(housing.ports["main"]).thickness = -1;
   EXPECT_THAT(error_of([&] { write_housing(file_, housing); }), HasSubstr("thickness_m is -1"));
   housing = read(kExample);
   housing.images["\xFF.jpg"] = "none";
@@ -154,7 +193,7 @@ TEST_F(HousingTest, AttachesPortsByTheLongestMatchingName) {
     EXPECT_EQ(scene.images[i].port_name, expected[i]) << i;
     EXPECT_EQ(scene.images[i].camera.port.has_value(), !expected[i].empty()) << i;
   }
-  EXPECT_EQ(scene.images[0].camera.port->n_water, 1.49);
+  EXPECT_EQ(flat(*scene.images[0].camera.port).n_water, 1.49);
 }
 
 TEST_F(HousingTest, DoesNotGuessAtCameraIds) {

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "support/error_of.h"
 
 namespace axial::test {
 
@@ -32,19 +33,6 @@ inline void put(const std::filesystem::path& path, std::string_view bytes) {
   std::ofstream out(path, std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   ASSERT_TRUE(out.flush()) << path;
-}
-
-// The message of the Error that `run` throws; empty, and a failure, if it throws none. Any other
-// exception ends the test.
-template <class Run>
-std::string error_of(Run run) {
-  try {
-    run();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error";
-  return {};
 }
 
 // True if `run` throws an Error of one line that names `file`.

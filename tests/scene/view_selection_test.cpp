@@ -63,9 +63,10 @@ TEST(ScoreNeighbours, ReproducesStoredScores) {
 RC_GTEST_PROP(ScoreNeighbours, APortOfAirChangesNothing, ()) {
   const double radius = *rc::gen::inRange(5, 40) / 100.0;
   CameraModel air = test::behind_port(test::dry_camera(), 1, 1);
-  air.port->distance = *rc::gen::inRange(0, 100) / 1000.0;
-  air.port->thickness = *rc::gen::inRange(0, 50) / 1000.0;
-  air.port->normal =
+  auto& port_of_air = std::get<refractive::FlatPort<double>>(*air.port);
+  port_of_air.distance = *rc::gen::inRange(0, 100) / 1000.0;
+  port_of_air.thickness = *rc::gen::inRange(0, 50) / 1000.0;
+  port_of_air.normal =
       Eigen::Vector3d(*rc::gen::inRange(-20, 20), *rc::gen::inRange(-20, 20), 100).normalized();
   Scene dry = make_scene(test::dry_camera(), 4, radius);
   Scene port = make_scene(air, 4, radius);

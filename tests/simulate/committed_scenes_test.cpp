@@ -89,7 +89,8 @@ void expect_same_image(const Remade& remade, const std::string& name, std::size_
 
 void expect_same_port(const Port& port, const std::string& name) {
   const io::Housing housing = io::read_housing(folder_of(name) / "housing.json");
-  const auto& stored = housing.ports.at(housing.default_port);
+  const auto& stored =
+      std::get<refractive::FlatPort<double>>(housing.ports.at(housing.default_port));
   EXPECT_LT((stored.normal - port.normal).norm(), 1e-12);
   EXPECT_EQ(stored.distance, port.distance);
   EXPECT_EQ(stored.thickness, port.thickness);

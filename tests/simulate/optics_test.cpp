@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
 namespace axial::simulate {
@@ -96,6 +97,40 @@ RC_GTEST_PROP(Optics, AgreesWithTheClosedForm, ()) {
   const double slant = traced->direction.cross(port.normal).norm();
   RC_ASSERT((closed.origin - traced->on_axis).norm() < (slant > 1e-3 ? 1e-11 : 1e-7));
   RC_ASSERT((camera.exit_point(pixel) - traced->start).norm() < 1e-13);
+}
+
+RC_GTEST_PROP(Optics, AgreesWithTheClosedFormOfDomes, ()) {
+  Port port = any_port();
+  const double radius = between(0.03, 0.12);
+  const Vector3d towards(between(-1, 1), between(-1, 1), between(-1, 1));
+  port.dome = Dome{between(0, 0.5) * radius * towards.normalized(), radius};
+  const Lens lens = any_lens();
+  check_port(port, lens);
+  const refractive::DomePortCamera<double> camera(
+      {lens.focal, lens.focal, lens.cx, lens.cy},
+      {port.dome->centre, radius, port.thickness, port.n_air, port.n_glass, port.n_water},
+      lens.width, lens.height);
+  const Eigen::Vector2d pixel(between(0, 1023), between(0, 767));
+  const auto traced = trace_pixel(lens, &port, pixel.x(), pixel.y());
+  RC_ASSERT(bool(traced));
+  const auto closed = camera.ray(pixel);
+  RC_ASSERT((closed.direction - traced->direction).norm() < 1e-13);
+  RC_ASSERT((camera.exit_point(pixel) - traced->start).norm() < 1e-13);
+  // See above for the crossing near the axis.
+  const double slant = traced->direction.cross(port.dome->centre.normalized()).norm();
+  RC_ASSERT((closed.origin - traced->on_axis).norm() < (slant > 1e-3 ? 1e-11 : 1e-7));
+}
+
+TEST(Optics, ACentredDomeBendsNothing) {
+  const Lens lens = make_lens(101, 51, 60);
+  Port port = kPaperPort;
+  port.dome = Dome{{0, 0, 0}, 0.05};
+  const auto ray = trace_pixel(lens, &port, 90, 3);
+  const auto dry = trace_pixel(lens, nullptr, 90, 3);
+  ASSERT_TRUE(ray);
+  EXPECT_LT((ray->direction - dry->direction).norm(), 1e-15);
+  EXPECT_EQ(ray->on_axis, Vector3d::Zero());
+  EXPECT_NEAR(ray->start.norm(), 0.05 + port.thickness, 1e-15);
 }
 
 TEST(Optics, WithoutPortTheRayStartsAtTheCentre) {

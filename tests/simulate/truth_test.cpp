@@ -100,6 +100,12 @@ TEST(Truth, AgreesWithBruteForceUnderWater) {
   compare_with_brute_force(&port);
 }
 
+TEST(Truth, AgreesWithBruteForceBehindADome) {
+  Port port{{0, 0, 1}, 0, 0.01, 1, 1.49, 1.333};
+  port.dome = Dome{{0.004, -0.003, -0.006}, 0.05};
+  compare_with_brute_force(&port);
+}
+
 // Everything a scene is made of, small.
 struct SmallScene {
   TriangleMesh mesh;

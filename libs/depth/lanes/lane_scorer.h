@@ -10,6 +10,7 @@
 #include "depth/lanes/scorer.h"
 #include "depth/reference_patch.h"
 #include "refractive/affine_warp.h"
+#include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
 
 // Everything stays in registers only where no call lies between. Under the sanitizers that would be
@@ -162,7 +163,7 @@ class LaneScorer final : public Scorer {
                   const Image& image) const {
     const T limit(tables_.geometric_limit);
     // The ray of image.projection.pixel, because that is exact.
-    const Vector along(point.x(), point.y(), point.z() - image.origin_height);
+    const Vector along = point - image.origin();
     const T expected = sqrt(along.dot(along));
     const T found = lane_depth_near(tables_.depths.data(), views.image, image.projection, expected);
     const Vector shift = views.rotation.transpose() * (along * (found / expected - T(1)));
@@ -179,9 +180,15 @@ class LaneScorer final : public Scorer {
 
 template <class Abi>
 std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
-  if (tables.kind == CameraKind::pinhole)
-    return std::make_unique<LaneScorer<refractive::PinholeCamera, Abi>>(tables);
-  return std::make_unique<LaneScorer<refractive::FlatPortCamera, Abi>>(tables);
+  switch (tables.kind) {
+    case CameraKind::pinhole:
+      return std::make_unique<LaneScorer<refractive::PinholeCamera, Abi>>(tables);
+    case CameraKind::flat_port:
+      return std::make_unique<LaneScorer<refractive::FlatPortCamera, Abi>>(tables);
+    case CameraKind::dome_port:
+      return std::make_unique<LaneScorer<refractive::DomePortCamera, Abi>>(tables);
+  }
+  return nullptr;
 }
 
 }  // namespace axial::depth::lanes

@@ -16,7 +16,7 @@
 
 namespace axial::depth::lanes {
 
-enum class CameraKind { pinhole, flat_port };
+enum class CameraKind { pinhole, flat_port, dome_port };
 
 inline constexpr std::size_t kMaxCameraFields = 56;
 

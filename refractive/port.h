@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All kinds of ports, for code that only passes them on.
+#pragma once
+
+#include <variant>
+
+#include "refractive/dome_port.h"
+#include "refractive/flat_port.h"
+
+namespace axial::refractive {
+
+template <class T>
+using Port = std::variant<FlatPort<T>, DomePort<T>>;
+
+}  // namespace axial::refractive

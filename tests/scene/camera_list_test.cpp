@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which camera type serves which mixture of housings.
+#include "scene/camera_list.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/analytic_scene.h"
+#include "support/error_of.h"
+
+namespace axial {
+namespace {
+
+using testing::HasSubstr;
+
+CameraModel behind_dome() {
+  CameraModel model = test::dry_camera();
+  model.port = refractive::DomePort<double>{{0.003, 0.002, -0.004}, 0.05, 0.007, 1, 1.49, 1.34};
+  return model;
+}
+
+TEST(CameraList, IsOfTheKindOfItsPorts) {
+  const CameraModel dry = test::dry_camera(), flat = test::behind_port(dry), dome = behind_dome();
+  const auto kind = [](std::vector<CameraModel> models, ProjectionMethod method) {
+    return make_camera_list<float>(models, method).index();
+  };
+  constexpr auto kExact = ProjectionMethod::exact;
+  EXPECT_EQ(kind({dry, dry}, kExact), 0u);
+  EXPECT_EQ(kind({dry, dry}, ProjectionMethod::line_search), 0u);
+  EXPECT_EQ(kind({flat, dry}, kExact), 1u);
+  EXPECT_EQ(kind({dry, dome}, kExact), 2u);
+  EXPECT_EQ(kind({dry, flat}, ProjectionMethod::line_search), 3u);
+}
+
+// Same pixels, same rays, whatever the company.
+TEST(CameraList, LeavesDryCamerasDry) {
+  const CameraModel dry = test::dry_camera();
+  const auto alone = std::get<refractive::PinholeCamera<double>>(make_camera<double>(dry));
+  for (const CameraModel& other : {test::behind_port(dry), behind_dome()}) {
+    const std::vector<CameraModel> models{dry, other};
+    std::visit(
+        [&](const auto& cameras) {
+          for (const Eigen::Vector2d pixel :
+               {Eigen::Vector2d(3, 60), Eigen::Vector2d(47.2, 36.1)}) {
+            const auto ray = cameras[0].ray(pixel);
+            EXPECT_LT((ray.direction - alone.ray(pixel).direction).norm(), 1e-14);
+            EXPECT_LT(ray.origin.norm(), 1e-14);
+            for (const double distance : {0.01, 3.0})
+              EXPECT_LT((cameras[0].project(ray.at(distance)).pixel - pixel).norm(), 1e-9);
+          }
+        },
+        make_camera_list<double>(models));
+  }
+}
+
+TEST(CameraList, RefusesWhatCannotBeMatched) {
+  const CameraModel dry = test::dry_camera();
+  const std::vector<CameraModel> mixed{test::behind_port(dry), behind_dome()};
+  EXPECT_THAT(test::error_of([&] { make_camera_list<float>(mixed); }), HasSubstr("behind a dome"));
+  const std::vector<CameraModel> dome{behind_dome()};
+  EXPECT_THAT(test::error_of([&] { make_camera_list<float>(dome, ProjectionMethod::line_search); }),
+              HasSubstr("line search"));
+}
+
+}  // namespace
+}  // namespace axial
