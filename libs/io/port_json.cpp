@@ -42,11 +42,11 @@ void require_length(double metres, const char* key, const std::string& where) {
 }
 
 Eigen::Vector3d vector(const JsonPlace& place) {
-  const json& json = place.json;
-  if (!json.is_array() || json.size() != 3 ||
-      !std::ranges::all_of(json, [](const auto& value) { return value.is_number(); }))
-    fail("{} is {}, expected three numbers", place.where, json.dump());
-  return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+  const json& v = place.json;
+  if (!v.is_array() || v.size() != 3 ||
+      !std::ranges::all_of(v, [](const json& number) { return number.is_number(); }))
+    fail("{} is {}, expected three numbers", place.where, v.dump());
+  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
 json to_json(const Eigen::Vector3d& v) {
@@ -76,11 +76,11 @@ void read_glass(const JsonPlace& place, Port& port) {
 }
 
 template <class Port>
-void write_glass(const Port& port, json& json) {
-  json["thickness_m"] = port.thickness;
-  json["n_air"] = port.n_air;
-  json["n_glass"] = port.n_glass;
-  json["n_water"] = port.n_water;
+void write_glass(const Port& port, json& object) {
+  object["thickness_m"] = port.thickness;
+  object["n_air"] = port.n_air;
+  object["n_glass"] = port.n_glass;
+  object["n_water"] = port.n_water;
 }
 
 template <class Port>
@@ -115,16 +115,16 @@ refractive::DomePort<double> dome_from_json(const JsonPlace& place) {
 }
 
 json as_json(const refractive::FlatPort<double>& port) {
-  json json{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
-  write_glass(port, json);
-  return json;
+  json object{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
+  write_glass(port, object);
+  return object;
 }
 
 json as_json(const refractive::DomePort<double>& port) {
-  json json{
+  json object{
       {"type", "dome"}, {"center_m", to_json(port.centre)}, {"inner_radius_m", port.inner_radius}};
-  write_glass(port, json);
-  return json;
+  write_glass(port, object);
+  return object;
 }
 
 void check(const refractive::FlatPort<double>& port, const std::string& where) {

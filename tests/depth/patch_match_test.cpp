@@ -112,11 +112,13 @@ bool same_maps(const DepthMap& a, const DepthMap& b) {
 
 class PatchMatchOn : public testing::TestWithParam<Kind> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    Cameras, PatchMatchOn, testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port),
-    [](const auto& test) {
-      return std::array{"Pinhole", "FlatPort", "DomePort"}.at(static_cast<std::size_t>(test.param));
-    });
+std::string name_of(const testing::TestParamInfo<Kind>& test) {
+  if (test.param == Kind::pinhole) return "Pinhole";
+  return test.param == Kind::flat_port ? "FlatPort" : "DomePort";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, PatchMatchOn,
+                         testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port), name_of);
 
 TEST_P(PatchMatchOn, FindsTheSurface) {
   const Survey survey = make_survey(GetParam());

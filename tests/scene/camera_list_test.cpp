@@ -40,7 +40,7 @@ TEST(CameraList, LeavesDryCamerasDry) {
     const std::vector<CameraModel> models{dry, other};
     std::visit(
         [&](const auto& cameras) {
-          for (const Eigen::Vector2d pixel :
+          for (const Eigen::Vector2d& pixel :
                {Eigen::Vector2d(3, 60), Eigen::Vector2d(47.2, 36.1)}) {
             const auto ray = cameras[0].ray(pixel);
             EXPECT_LT((ray.direction - alone.ray(pixel).direction).norm(), 1e-14);
