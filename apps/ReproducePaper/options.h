@@ -17,7 +17,12 @@ struct Arguments {
 // The options of ReproducePaper, bound to `a`.
 ProgramOptions describe(Arguments& a);
 
-// The experiment that was asked for, or all. Error that names the option and its value.
-std::vector<experiments::Experiment> chosen_experiments(const Arguments& a);
+// The experiment that was asked for, or all, Error that names the option and its value.
+std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
+                                                        const CommonOptions& common);
+
+// Where the experiments of `a` keep intermediate files until they are finished.
+std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
+                                  const std::string& experiment);
 
 }  // namespace axial
