@@ -61,6 +61,7 @@ Words options_of(const SceneOptions& o) {
   add("--fov-degrees", o.fov_degrees);
   add("--scale", o.scale);
   add("--relief", o.relief);
+  add("--coarseness", o.coarseness);
   add("--truth", o.truth ? 1 : 0);
   words += o.port;
   return words;

@@ -105,8 +105,9 @@ std::vector<Case> all_cases() {
 void shrink(SceneOptions& scene) {
   scene.width = 384;
   scene.height = 288;
-  scene.views = 6;
+  scene.views = 5;
   scene.samples = 2;
+  scene.coarseness = 4;
 }
 
 // Quick: the usual case, one that is worse, and one second survey.

@@ -25,6 +25,8 @@ ProgramOptions describe(Arguments& a) {
       "horizontal field of view in air")("scale",
                                          po::value(&a.preset.scale)->default_value(preset.scale),
                                          "of the scene and the views' distances, not of the port")(
+      "coarseness", po::value(&a.preset.coarseness)->default_value(preset.coarseness),
+      "of the mesh: the distance between its vertices times this")(
       "relief", po::value(&a.preset.relief)->default_value(preset.relief),
       "of the scene's heights")("samples", po::value(&a.samples)->default_value(3),
                                 "rays along each side of a pixel")(

@@ -264,6 +264,7 @@ Preset make_preset(const PresetOptions& options) {
     fail("number of views is {}: must be between 0 (the preset's own) and 200", options.views);
   check_factor("scale", options.scale);
   check_factor("relief", options.relief);
+  check_factor("coarseness", options.coarseness);
   Preset preset;
   preset.lens = make_lens(options.width, options.height, options.horizontal_fov_degrees);
   const auto views_or = [&](int own) { return options.views > 0 ? options.views : own; };
@@ -278,6 +279,7 @@ Preset make_preset(const PresetOptions& options) {
   else
     fail("preset '{}' is unknown: there are reef, outcrop, closeup and survey", options.name);
   preset.terrain.relief = options.relief;
+  preset.terrain.cell *= options.coarseness;
   scale_preset(preset, options.scale);
   return preset;
 }

@@ -21,6 +21,8 @@ struct PresetOptions {
   double scale = 1;
   // Heights of the scene times this; the views stay where they are.
   double relief = 1;
+  // Distance between the mesh's vertices times this.
+  double coarseness = 1;
 };
 
 struct Preset {
@@ -36,8 +38,8 @@ struct Preset {
 // through reef's port.
 // "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
 // "survey": rows of ten views from above, as many as it takes; what a view sees does not depend on
-// how many there are. Error for another name, a number of views outside [0, 200], a scale or relief
-// outside [0.01, 100], or what make_lens refuses.
+// how many there are. Error for another name, a number of views outside [0, 200], a scale, relief
+// or coarseness outside [0.01, 100], or what make_lens refuses.
 Preset make_preset(const PresetOptions& options);
 
 }  // namespace axial::simulate
