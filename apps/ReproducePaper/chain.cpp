@@ -182,9 +182,9 @@ SceneDistances scene_distances(const SimulatedScene& scene, const std::string& m
   return {percentile(50), percentile(95) / percentile(5)};
 }
 
-double port_distance(const SimulatedScene& scene) {
+refractive::FlatPort<double> port_of(const SimulatedScene& scene) {
   const io::Housing housing = io::read_housing(scene.housing());
-  return housing.ports.at(housing.default_port).distance;
+  return housing.ports.at(housing.default_port);
 }
 
 Calibration true_lens(const SimulatedScene& scene) {
@@ -192,7 +192,10 @@ Calibration true_lens(const SimulatedScene& scene) {
 }
 
 Calibration self_calibration(const SimulatedScene& scene) {
-  return {"OPENCV", true_lens(scene).parameters + ",0,0,0,0", true};
+  std::vector<double> parameters = io::read_colmap_model(scene.model()).cameras.at(0).params;
+  for (const std::size_t focal : {0u, 1u}) parameters.at(focal) *= port_of(scene).n_water;
+  parameters.insert(parameters.end(), {0, 0, 0, 0});
+  return {"OPENCV", joined(parameters), true};
 }
 
 Calibration calibration_of(const fs::path& colmap_model) {

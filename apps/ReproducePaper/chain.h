@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/experiment.h"
+#include "refractive/flat_port.h"
 
 namespace axial {
 
@@ -48,8 +49,8 @@ struct SceneDistances {
 };
 SceneDistances scene_distances(const SimulatedScene& scene, const std::string& medium);
 
-// Of the scene's port, from camera centre to glass [m].
-double port_distance(const SimulatedScene& scene);
+// What all images of the scene under water look through.
+refractive::FlatPort<double> port_of(const SimulatedScene& scene);
 
 // How COLMAP comes by the lens.
 struct Calibration {
@@ -58,7 +59,9 @@ struct Calibration {
   bool refine = false;     // else as given
 };
 Calibration true_lens(const SimulatedScene& scene);
-Calibration self_calibration(const SimulatedScene& scene);  // OPENCV, from the true lens
+// OPENCV, from what one knows beforehand: the lens in air, its focal length times the water's
+// index.
+Calibration self_calibration(const SimulatedScene& scene);
 Calibration calibration_of(const std::filesystem::path& colmap_model);  // as found, kept
 
 // Poses and sparse points from photographs. `model` is empty where COLMAP found none.

@@ -152,7 +152,7 @@ Json measure(const Chain& chain, const Case& one, const EvaluationOptions& evalu
   const auto dense = densified(chain, "ours", scene, scene.model(), "water", {scene.housing(), {}});
   Json result{{"scene_distance", distances.median},
               {"range_ratio", distances.range_ratio},
-              {"port_distance", port_distance(scene)},
+              {"port_distance", port_of(scene).distance},
               {"ours", evaluated(chain, dense, scene, evaluation)},
               {"today", without_refraction(chain, one, scene, evaluation)}};
   std::filesystem::remove_all(scene.folder);
