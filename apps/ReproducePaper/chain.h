@@ -23,7 +23,7 @@ struct Chain {
 // SimulateUnderwater's options; the port is the preset's unless given by `port`.
 struct SceneOptions {
   std::string preset = "outcrop";
-  int seed = 1, views = 10, width = 1024, height = 768, samples = 3;
+  int seed = 1, views = 10, width = 1024, height = 768, samples = 2;
   double fov_degrees = 80, scale = 1, relief = 1, coarseness = 1;
   std::string medium = "both";
   bool truth = true;  // distances; normals are thrown away

@@ -51,7 +51,6 @@ Study study(bool quick) {
   all.scene.width = quick ? 320 : 2048;
   all.scene.height = quick ? 240 : 1536;
   all.scene.views = quick ? 4 : 10;
-  all.scene.samples = 2;
   all.scene.coarseness = quick ? 4 : 1;
   for (const Method& method : methods())
     if (!quick || method.name == std::string_view("air") || method.name == std::string_view("ours"))
@@ -282,7 +281,7 @@ std::string depth_pictures(const Json& results, int seed) {
   const Json& pictures = result_of(results, true_part(seed)).at("pictures");
   return picture_sheet("Depth maps on true poses: estimate, truth, error",
                        {{"in air", &pictures.at("air")}, {"refracted", &pictures.at("ours")}}, 1,
-                       960, 292);
+                       960, 264);
 }
 
 std::vector<Document> documents(const Json& results, const Seeds& seeds) {

@@ -75,7 +75,6 @@ Study study(bool quick, const Distance& distance) {
     one.scene.width = 256;
     one.scene.height = 192;
     one.scene.views = 4;
-    one.scene.samples = 2;
     one.scene.coarseness = 4;
     one.evaluation.samples = 20000;
   }
