@@ -155,6 +155,12 @@ Json to_json(const SceneOptions& options) {
   return options_of(options);
 }
 
+Json to_json(const EvaluationOptions& options) {
+  return {{"tolerance", options.tolerance},
+          {"samples", options.samples},
+          {"picture_width", options.picture_width}};
+}
+
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
   const Json inputs = to_json(options);
   const std::string key = Fingerprint().add(inputs.dump()).hex().substr(0, 8);

@@ -87,6 +87,8 @@ struct EvaluationOptions {
   std::size_t samples = 200000;
   int picture_width = 0;  // 0: no picture
 };
+Json to_json(const EvaluationOptions& options);
+
 // Distance statistics of a cloud within the field of view under water (points in the images of at
 // least two cameras there), whatever medium it is from, and completeness of what these cameras see:
 // "points", "mean", "median", "variance", "recall" and "f_score" at the tolerance, and "picture"

@@ -177,7 +177,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   if (quick) evaluation.samples = 20000;
   std::vector<Part> all;
   for (const Case& one : cases(quick)) {
-    Json inputs{{"version", 1}, {"scene", to_json(one.scene)}};
+    Json inputs{{"version", 1}, {"scene", to_json(one.scene)}, {"evaluation", to_json(evaluation)}};
     if (one.calibrated_in) inputs["calibrated_in"] = to_json(*one.calibrated_in);
     all.push_back({one.name, inputs, [=] { return measure(chain, one, evaluation); }});
   }

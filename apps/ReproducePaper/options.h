@@ -17,7 +17,7 @@ struct Arguments {
 // The options of ReproducePaper, bound to `a`.
 ProgramOptions describe(Arguments& a);
 
-// The experiment that was asked for, or all, Error that names the option and its value.
+// The experiment that was asked for, or all. Error that names the option and its value.
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
                                                         const CommonOptions& common);
 

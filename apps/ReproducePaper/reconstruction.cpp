@@ -118,7 +118,8 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   Study one = study(quick);
   for (const int seed : one.seeds) {
     one.scene.seed = seed;
-    const Json inputs{{"version", 1}, {"scene", to_json(one.scene)}};
+    const Json inputs{
+        {"version", 1}, {"scene", to_json(one.scene)}, {"evaluation", to_json(one.evaluation)}};
     all.push_back({colmap_part(seed), inputs, [=] { return clouds_on_colmap_poses(chain, one); }});
     all.push_back({true_part(seed), inputs, [=] { return maps_on_true_poses(chain, one); }});
   }

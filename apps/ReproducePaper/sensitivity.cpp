@@ -126,7 +126,10 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   std::vector<Part> all;
   for (const auto& [distance, mistake] : rows_of(quick)) {
     const Study one = study(quick, distance);
-    const Json inputs{{"version", 1}, {"scene", to_json(one.scene)}, {"mistake", to_json(mistake)}};
+    const Json inputs{{"version", 1},
+                      {"scene", to_json(one.scene)},
+                      {"evaluation", to_json(one.evaluation)},
+                      {"mistake", to_json(mistake)}};
     all.push_back({part_name(distance, mistake), inputs,
                    [chain, one, mistake] { return measure(chain, one, mistake); }});
   }

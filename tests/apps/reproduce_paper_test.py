@@ -21,7 +21,8 @@ class Quick(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory(prefix="axial_")
         cls.folder = cls.temporary.name
-        result = run(PROGRAM, "all", "-o", cls.folder, "--quick", "--max-threads", "1")
+        result = run(PROGRAM, "all", "-o", cls.folder, "--quick", "--max-threads", "1",
+                     timeout=1500)
         assert result.returncode == 0, result.stderr
 
     @classmethod
