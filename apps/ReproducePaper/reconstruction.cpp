@@ -69,14 +69,24 @@ std::string true_part(int seed) {
   return fmt::format("seed{}_true_poses", seed);
 }
 
-std::filesystem::path dense_of(const Chain& chain, const std::string& name,
+std::string dense_name(const std::string& poses, const Method& method) {
+  return poses + "-" + method.name;
+}
+
+// What a finished part needs no more; until then an interrupted run finds its clouds again.
+void remove_clouds(const std::string& poses, const SimulatedScene& scene) {
+  for (const Method& method : methods())
+    std::filesystem::remove_all(scene.folder / dense_name(poses, method));
+}
+
+std::filesystem::path dense_of(const Chain& chain, const std::string& poses,
                                const SimulatedScene& scene, const std::filesystem::path& model,
                                const Method& method) {
   DenseOptions options;
   if (method.in_water) options.housing = scene.housing();
   options.more = method.options;
-  return densified(chain, name + "-" + method.name, scene, model, method.in_water ? "water" : "air",
-                   options);
+  return densified(chain, dense_name(poses, method), scene, model,
+                   method.in_water ? "water" : "air", options);
 }
 
 Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
@@ -87,8 +97,8 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
   for (const Method& method : methods()) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
     result["clouds"][method.name] = evaluated(chain, dense, scene, study.evaluation);
-    std::filesystem::remove_all(dense);
   }
+  remove_clouds("colmap", scene);
   return result;
 }
 
@@ -108,8 +118,8 @@ Json maps_on_true_poses(const Chain& chain, const Study& study) {
     const auto dense = dense_of(chain, "true", scene, scene.model(), method);
     result["clouds"][method.name] = evaluated(chain, dense, scene, study.evaluation);
     if (method.options.empty()) judge_maps(chain, study, scene, method, dense, result);
-    std::filesystem::remove_all(dense);
   }
+  remove_clouds("true", scene);
   return result;
 }
 
