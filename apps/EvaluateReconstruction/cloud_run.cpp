@@ -117,6 +117,27 @@ nlohmann::ordered_json align(const Options& options, Input& input,
   return report;
 }
 
+// The points (and normals) that count.
+PointCloud counted_points(const Options& options, const PointCloud& cloud,
+                          std::span<const evaluate::View> views) {
+  PointCloud counted;
+  counted.positions = cloud.positions;
+  counted.normals = cloud.normals;
+  if (!options.framed_only) return counted;
+  const auto frames = evaluate::count_frames(cloud.positions, views);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i] < options.least_views) continue;
+    counted.positions[kept] = cloud.positions[i];
+    if (!cloud.normals.empty()) counted.normals[kept] = cloud.normals[i];
+    ++kept;
+  }
+  if (kept == 0) fail("{}: no point lies in enough of the images", options.input.string());
+  counted.positions.resize(kept);
+  if (!cloud.normals.empty()) counted.normals.resize(kept);
+  return counted;
+}
+
 void draw(const Options& options, const PointCloud& cloud, std::span<const evaluate::View> views) {
   evaluate::Viewpoint viewpoint;
   if (views.empty()) {
@@ -143,6 +164,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const Mesh truth = io::read_mesh_ply(options.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options);
+  if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   report["align"] = align(options, input, surface);
 
@@ -156,8 +178,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
     if (input.mesh)
       return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
                                      colored.positions);
-    colored.positions = input.cloud.positions;
-    colored.normals = input.cloud.normals;
+    colored = counted_points(options, input.cloud, views);
     return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
   });
   fmt::print("{}", evaluate::table(result));

@@ -51,7 +51,10 @@ void declare(po::options_description& visible, Options& options, Texts& texts) {
        "points of the truth that count for completeness, about (and points of an input mesh)")  //
       ("seed", po::value(&options.seed)->default_value(1), "of the samples")                    //
       ("min-views", po::value(&options.least_views)->default_value(2),
-       "views that must see a sample for it to count")             //
+       "views that must see a sample for it to count")  //
+      ("framed-only", po::value(&options.framed_only)->default_value(false)->implicit_value(true),
+       "count only points of a cloud that lie in the images of --min-views of --cameras, whatever "
+       "stands in between")                                        //
       ("json", po::value(&texts.json), "write all numbers there")  //
       ("error-cloud", po::value(&texts.error_cloud),
        "write the points coloured by error (.ply)")  //
@@ -77,6 +80,7 @@ void check(const Options& options) {
     fail("--align centres needs --estimated and --cameras");
   if (!options.housing.empty() && options.cameras.empty())
     fail("--housing needs --cameras: the cameras behind its ports");
+  if (options.framed_only && options.cameras.empty()) fail("--framed-only needs --cameras");
   if (options.least_views == 0) fail("--min-views is 0: must be at least 1");
   if (options.samples == 0 || options.samples > 100'000'000)
     fail("--samples is {}: must be 1 to 100000000", options.samples);

@@ -19,6 +19,7 @@ struct Options {
   std::size_t samples = 0;
   std::uint64_t seed = 0;
   std::uint32_t least_views = 0;
+  bool framed_only = false;
   double color_max = 0;  // [m]
   int picture_width = 0;
   std::string picture_camera;  // image name; empty: the first

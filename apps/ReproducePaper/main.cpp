@@ -22,6 +22,7 @@ void reproduce(const experiments::Experiment& experiment, const Arguments& argum
   const auto documents = experiment.documents(results);
   for (const experiments::Document& document : documents)
     write_atomically(folder / document.file, document.text);
+  std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
   if (!arguments.page.empty()) update_page(in_working_folder(common, arguments.page), documents);
   spdlog::info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
 }
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
     Arguments arguments;
     const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
     if (!parsed.run) return parsed.exit_code;
-    const auto experiments = chosen_experiments(arguments);
+    const auto experiments = chosen_experiments(arguments, parsed.common);
     const ThreadLimit limit(parsed.common.max_threads);
     for (const experiments::Experiment& experiment : experiments)
       reproduce(experiment, arguments, parsed.common);

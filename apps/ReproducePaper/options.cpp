@@ -2,6 +2,7 @@
 #include "options.h"
 
 #include "base/error.h"
+#include "chained.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -11,21 +12,34 @@ ProgramOptions describe(Arguments& a) {
   program.name = "ReproducePaper";
   program.description =
       "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
-      "with EXPERIMENT figure2, runtime, figure3, figure4 or all";
+      "with EXPERIMENT figure2, runtime, figure3, figure4, reconstruction, sensitivity, need or "
+      "all";
   program.visible.add_options()("output,o", po::value(&a.output),
                                 "folder of the results (required); finished parts found there are "
                                 "not computed again")(
       "quick", po::value(&a.quick)->default_value(false)->implicit_value(true),
-      "fewer samples: a look in a minute or two")(
+      "fewer samples, smaller images: a look in a few minutes")(
       "page", po::value(&a.page), "Markdown page to bring up to date with the results");
   // The name that parse_options knows the positional argument by.
   program.hidden.add_options()("input-file", po::value(&a.experiment), "the experiment");
   return program;
 }
 
-std::vector<experiments::Experiment> chosen_experiments(const Arguments& a) {
+std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
+                                  const std::string& experiment) {
+  return in_working_folder(common, a.output) / "work" / experiment;
+}
+
+std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
+                                                        const CommonOptions& common) {
   if (a.output.empty()) fail("no output folder given (-o DIR)");
+  const auto chain = [&](const char* name) {
+    return Chain{work_folder(a, common, name), common.max_threads};
+  };
   std::vector<experiments::Experiment> all = experiments::all_experiments(a.quick);
+  all.push_back(reconstruction(chain("reconstruction"), a.quick));
+  all.push_back(sensitivity(chain("sensitivity"), a.quick));
+  all.push_back(need(chain("need"), a.quick));
   if (a.experiment == "all") return all;
   std::string names;
   for (experiments::Experiment& experiment : all) {

@@ -18,6 +18,11 @@ struct Arguments {
 ProgramOptions describe(Arguments& a);
 
 // The experiment that was asked for, or all. Error that names the option and its value.
-std::vector<experiments::Experiment> chosen_experiments(const Arguments& a);
+std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
+                                                        const CommonOptions& common);
+
+// Where the experiments of `a` keep intermediate files until they are finished.
+std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
+                                  const std::string& experiment);
 
 }  // namespace axial

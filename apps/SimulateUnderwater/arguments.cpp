@@ -14,7 +14,7 @@ ProgramOptions describe(Arguments& a) {
   program.description = "makes a synthetic scene with ground truth, in air and under water";
   const simulate::PresetOptions preset;
   program.visible.add_options()("preset", po::value(&a.preset.name)->default_value(preset.name),
-                                "reef, closeup or survey")(
+                                "reef, outcrop, closeup or survey")(
       "seed", po::value(&a.preset.seed)->default_value(preset.seed), "of everything random")(
       "output,o", po::value(&a.output), "folder of the scene (required)")(
       "views", po::value(&a.preset.views)->default_value(0), "images (0: the preset's number)")(
@@ -22,8 +22,14 @@ ProgramOptions describe(Arguments& a) {
       "height", po::value(&a.preset.height)->default_value(preset.height), "of the images [px]")(
       "fov-degrees",
       po::value(&a.preset.horizontal_fov_degrees)->default_value(preset.horizontal_fov_degrees),
-      "horizontal field of view in air")("samples", po::value(&a.samples)->default_value(3),
-                                         "rays along each side of a pixel")(
+      "horizontal field of view in air")("scale",
+                                         po::value(&a.preset.scale)->default_value(preset.scale),
+                                         "of the scene and the views' distances, not of the port")(
+      "coarseness", po::value(&a.preset.coarseness)->default_value(preset.coarseness),
+      "of the mesh: the distance between its vertices times this")(
+      "relief", po::value(&a.preset.relief)->default_value(preset.relief),
+      "of the scene's heights")("samples", po::value(&a.samples)->default_value(3),
+                                "rays along each side of a pixel")(
       "port-distance", po::value(&a.port_distance), "camera centre to glass [m]")(
       "port-thickness", po::value(&a.port_thickness), "of the glass [m]")(
       "tilt-degrees", po::value(&a.tilt_degrees), "of the port against the optical axis")(

@@ -53,25 +53,41 @@ double median_of(std::vector<float> values) {
   return percentile_of_sorted(values, 50);
 }
 
+// `count` rings of equal width from the image centre to its corners.
+class Rings {
+ public:
+  Rings(cv::Size size, std::size_t count)
+      : cx_((size.width - 1) / 2.0),
+        cy_((size.height - 1) / 2.0),
+        half_diagonal_(std::hypot(size.width, size.height) / 2),
+        count_(count) {}
+
+  std::size_t of(int u, int v) const {
+    const double radius = std::hypot(u - cx_, v - cy_) / half_diagonal_;
+    return std::min(static_cast<std::size_t>(radius * static_cast<double>(count_)), count_ - 1);
+  }
+  double inner(std::size_t k) const { return static_cast<double>(k) / static_cast<double>(count_); }
+
+ private:
+  double cx_, cy_, half_diagonal_;
+  std::size_t count_;
+};
+
 std::vector<Ring> rings_of(const cv::Mat1f& error, std::size_t count) {
   std::vector<std::vector<float>> values(count), magnitudes(count);
-  const double cx = (error.cols - 1) / 2.0, cy = (error.rows - 1) / 2.0;
-  const double half_diagonal = std::hypot(error.cols, error.rows) / 2;
+  const Rings rings(error.size(), count);
   for (int v = 0; v < error.rows; ++v)
     for (int u = 0; u < error.cols; ++u) {
       if (std::isnan(error(v, u))) continue;
-      const double radius = std::hypot(u - cx, v - cy) / half_diagonal;
-      const auto k =
-          std::min(static_cast<std::size_t>(radius * static_cast<double>(count)), count - 1);
+      const std::size_t k = rings.of(u, v);
       values[k].push_back(error(v, u));
       magnitudes[k].push_back(std::abs(error(v, u)));
     }
-  std::vector<Ring> rings(count);
+  std::vector<Ring> result(count);
   for (std::size_t k = 0; k < count; ++k)
-    rings[k] = {static_cast<double>(k) / static_cast<double>(count),
-                static_cast<double>(k + 1) / static_cast<double>(count), values[k].size(),
-                median_of(values[k]), median_of(magnitudes[k])};
-  return rings;
+    result[k] = {rings.inner(k), rings.inner(k + 1), values[k].size(), median_of(values[k]),
+                 median_of(magnitudes[k])};
+  return result;
 }
 
 }  // namespace
@@ -125,6 +141,23 @@ DepthEvaluation evaluate_depth(const cv::Mat1f& estimate, const cv::Mat1f& truth
     result.scores.push_back(score_of(tolerance, precision, precision * result.completeness));
   }
   result.rings = rings_of(result.error, options.rings);
+  return result;
+}
+
+std::vector<RelativeRing> relative_rings(std::span<const DepthEvaluation> maps, std::size_t count) {
+  std::vector<std::vector<float>> values(count);
+  std::vector<RelativeRing> result(count);
+  for (const DepthEvaluation& map : maps) {
+    const Rings rings(map.error.size(), count);
+    for (int v = 0; v < map.error.rows; ++v)
+      for (int u = 0; u < map.error.cols; ++u)
+        if (!std::isnan(map.error(v, u)))
+          values[rings.of(u, v)].push_back(map.error(v, u) / map.truth(v, u));
+  }
+  for (std::size_t k = 0; k < count; ++k)
+    result[k] = {static_cast<double>(k) / static_cast<double>(count),
+                 static_cast<double>(k + 1) / static_cast<double>(count), values[k].size(),
+                 median_of(std::move(values[k]))};
   return result;
 }
 

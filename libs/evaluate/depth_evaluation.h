@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "evaluate/statistics.h"
@@ -44,6 +45,17 @@ struct DepthEvaluation {
 // more than a pixel), no tolerance, no pixel in common.
 DepthEvaluation evaluate_depth(const cv::Mat1f& estimate, const cv::Mat1f& truth,
                                const DepthOptions& options);
+
+// A ring as above, over several maps of one camera.
+struct RelativeRing {
+  double inner = 0, outer = 0;
+  std::size_t count = 0;
+  double signed_median = 0;  // (estimate - truth) / truth
+};
+
+// All pixels of all maps that have an error, `count` rings. A depth that is wrong by a part of
+// itself, the more so the farther from the centre, is what a lens modelled wrongly does.
+std::vector<RelativeRing> relative_rings(std::span<const DepthEvaluation> maps, std::size_t count);
 
 // The truth where the rays of a map of another size pass. Equal sizes: the same pixels. Otherwise
 // the position (u + 1/2) * scale - 1/2 is read off bilinearly in 1/distance (which is what a plane

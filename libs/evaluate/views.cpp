@@ -23,14 +23,34 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
   return model;
 }
 
+// `surface` null: nothing stands in between.
 template <class Camera>
-bool sees(const Camera& camera, const View& view, const Surface& surface,
+bool sees(const Camera& camera, const View& view, const Surface* surface,
           const Eigen::Vector3d& point) {
   const auto image = camera.project(view.pose.to_camera(point));
   const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
                       image.pixel.x() < view.camera.width - 0.5 &&
                       image.pixel.y() < view.camera.height - 0.5;
-  return inside && !surface.blocked(point, view.pose.to_world(camera.exit_point(image.pixel)));
+  return inside &&
+         !(surface && surface->blocked(point, view.pose.to_world(camera.exit_point(image.pixel))));
+}
+
+std::vector<std::uint32_t> count(std::span<const Eigen::Vector3f> points,
+                                 std::span<const View> views, const Surface* surface) {
+  std::vector<std::uint32_t> counts(points.size(), 0);
+  for (const View& view : views) {
+    std::visit(
+        [&](const auto& camera) {
+          parallel_for(
+              points.size(),
+              [&](std::size_t i) {
+                if (sees(camera, view, surface, points[i].cast<double>())) ++counts[i];
+              },
+              1024);
+        },
+        make_camera<double>(view.camera));
+  }
+  return counts;
 }
 
 }  // namespace
@@ -56,20 +76,12 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
 
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
                                        std::span<const View> views, const Surface& surface) {
-  std::vector<std::uint32_t> counts(points.size(), 0);
-  for (const View& view : views) {
-    std::visit(
-        [&](const auto& camera) {
-          parallel_for(
-              points.size(),
-              [&](std::size_t i) {
-                if (sees(camera, view, surface, points[i].cast<double>())) ++counts[i];
-              },
-              1024);
-        },
-        make_camera<double>(view.camera));
-  }
-  return counts;
+  return count(points, views, &surface);
+}
+
+std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
+                                        std::span<const View> views) {
+  return count(points, views, nullptr);
 }
 
 std::vector<Eigen::Vector3f> seen_points(std::span<const Eigen::Vector3f> points,

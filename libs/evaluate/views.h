@@ -32,6 +32,11 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
                                        std::span<const View> views, const Surface& surface);
 
+// In how many views' image rectangles each point's image lies, whatever stands in between: also for
+// points that are a little below the surface.
+std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
+                                        std::span<const View> views);
+
 // The points that at least `least` views see.
 std::vector<Eigen::Vector3f> seen_points(std::span<const Eigen::Vector3f> points,
                                          std::span<const View> views, const Surface& surface,

@@ -38,7 +38,7 @@ Experiment runtime(bool quick);
 Experiment figure3(bool quick);
 Experiment figure4(bool quick);
 
-// All of them.
+// All that need no other program.
 std::vector<Experiment> all_experiments(bool quick);
 
 // One parameter and its values, the default's among them.

@@ -49,6 +49,12 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 
 }  // namespace
 
+std::string png_in_base64(const cv::Mat3b& bgr) {
+  std::vector<unsigned char> png;
+  cv::imencode(".png", bgr, png);
+  return base64(png);
+}
+
 Svg::Svg(double width, double height) : width_(width), height_(height) {}
 
 void Svg::text(double x, double y, std::string_view content, Anchor anchor, std::string_view kind) {
@@ -88,12 +94,14 @@ void Svg::box(const Rectangle& r, std::string_view color) {
 }
 
 void Svg::picture(const Rectangle& r, const cv::Mat3b& bgr) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", bgr, png);
+  picture(r, png_in_base64(bgr));
+}
+
+void Svg::picture(const Rectangle& r, std::string_view png_in_base64) {
   body_ += fmt::format(
       "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
       "preserveAspectRatio=\"none\" href=\"data:image/png;base64,{}\"/>\n",
-      r.x, r.y, r.width, r.height, base64(png));
+      r.x, r.y, r.width, r.height, png_in_base64);
 }
 
 std::string Svg::str() const {

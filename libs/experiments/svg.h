@@ -15,6 +15,9 @@ struct Rectangle {
 
 enum class Anchor { kStart, kMiddle, kEnd };
 
+// A picture as text, fit for SVG and JSON.
+std::string png_in_base64(const cv::Mat3b& bgr);
+
 class Svg {
  public:
   Svg(double width, double height);
@@ -29,6 +32,7 @@ class Svg {
   void box(const Rectangle& where, std::string_view color);
   // Stretched to fill the rectangle.
   void picture(const Rectangle& where, const cv::Mat3b& bgr);
+  void picture(const Rectangle& where, std::string_view png_in_base64);
 
   std::string str() const;
 

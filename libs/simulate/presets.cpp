@@ -166,6 +166,37 @@ void make_survey(Preset& preset, std::uint32_t seed, int views) {
   }
 }
 
+// Bedded rock that stands out of the sediment, with blocks fallen off around it, photographed along
+// an uneven arc.
+void make_outcrop(Preset& preset, std::uint32_t seed, int views) {
+  preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
+  preset.texture = {seed + 3000u, 0.8};
+  Draw draw(seed + 3000u);
+  Terrain& terrain = preset.terrain;
+  terrain.floor = {draw.seed(), 1.6, 0.30, 0.3, 1.9, -0.7};
+  terrain.floor.layer = 0.11;
+  terrain.floor.dip = {draw.between(-0.3, 0.3), draw.between(0.1, 0.3)};
+  terrain.cell = 0.008;
+  terrain.half_width = 3.2;
+  terrain.half_height = 3.2;
+  terrain.skirt = 10;
+  scatter(terrain, 14, {2.2, 2.2}, 1.0, {0.10, 0.30}, draw);
+  scatter(terrain, 60, {2.4, 2.4}, 0.3, {0.03, 0.09}, draw);
+
+  for (int i = 0; i < views; ++i) {
+    const double along = views > 1 ? i / (views - 1.0) : 0.5;
+    const double around = (-155 + 130 * along + draw.between(-4, 4)) * kRadians;
+    const double elevation = draw.between(52, 70) * kRadians;
+    const double range = draw.between(2.2, 2.7);
+    const Eigen::Vector3d target(draw.between(-0.15, 0.15), draw.between(-0.15, 0.15), -0.25);
+    const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
+                                 std::cos(elevation) * std::sin(around), std::sin(elevation));
+    View view = look_at(target + range * offset, target, Eigen::Vector3d::UnitZ());
+    shake(view, 5, draw);
+    preset.views.push_back(view);
+  }
+}
+
 void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(3), 0.030, 0.018, 1.0, 1.49, 1.333};
   preset.texture = {seed + 1000u, 0.30};
@@ -200,22 +231,56 @@ void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   }
 }
 
+void scale_terrain(Terrain& terrain, double scale) {
+  for (double* length : {&terrain.floor.wavelength, &terrain.floor.height, &terrain.floor.bowl_from,
+                         &terrain.floor.bowl_to, &terrain.floor.bowl_height, &terrain.floor.layer,
+                         &terrain.cell, &terrain.half_width, &terrain.half_height, &terrain.skirt})
+    *length *= scale;
+  for (Blob& blob : terrain.blobs) {
+    blob.centre *= scale;
+    blob.radii *= scale;
+  }
+  for (Arch& arch : terrain.arches) {
+    arch.centre *= scale;
+    arch.span_radius *= scale;
+    arch.tube_radius *= scale;
+  }
+}
+
+void scale_preset(Preset& preset, double scale) {
+  scale_terrain(preset.terrain, scale);
+  preset.texture.largest *= scale;
+  for (View& view : preset.views) view.centre *= scale;
+}
+
+void check_factor(const char* name, double value) {
+  if (!(value >= 0.01 && value <= 100)) fail("{} is {}: must be between 0.01 and 100", name, value);
+}
+
 }  // namespace
 
 Preset make_preset(const PresetOptions& options) {
   if (options.views < 0 || options.views > 200)
     fail("number of views is {}: must be between 0 (the preset's own) and 200", options.views);
+  check_factor("scale", options.scale);
+  check_factor("relief", options.relief);
+  check_factor("coarseness", options.coarseness);
   Preset preset;
   preset.lens = make_lens(options.width, options.height, options.horizontal_fov_degrees);
   const auto views_or = [&](int own) { return options.views > 0 ? options.views : own; };
   if (options.name == "reef")
     make_reef(preset, options.seed, views_or(10));
+  else if (options.name == "outcrop")
+    make_outcrop(preset, options.seed, views_or(10));
   else if (options.name == "closeup")
     make_closeup(preset, options.seed, views_or(12));
   else if (options.name == "survey")
     make_survey(preset, options.seed, views_or(50));
   else
-    fail("preset '{}' is unknown: there are reef, closeup and survey", options.name);
+    fail("preset '{}' is unknown: there are reef, outcrop, closeup and survey", options.name);
+  preset.terrain.relief = options.relief;
+  preset.terrain.cell *= options.coarseness;
+  scale_preset(preset, options.scale);
   return preset;
 }
 

@@ -17,6 +17,12 @@ struct PresetOptions {
   int views = 0;  // 0: the preset's own number
   int width = 1024, height = 768;
   double horizontal_fov_degrees = 80;
+  // The whole scene and the views' distances times this; the port stays as it is.
+  double scale = 1;
+  // Heights of the scene times this; the views stay where they are.
+  double relief = 1;
+  // Distance between the mesh's vertices times this.
+  double coarseness = 1;
 };
 
 struct Preset {
@@ -28,10 +34,12 @@ struct Preset {
 };
 
 // "reef": a survey from above in two rows, seabed 2 to 3.5 m away, thin gap and thick glass.
+// "outcrop": ten views, as a hand would hold the camera, of a mound of bedded rock 2 to 3 m away,
+// through reef's port.
 // "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
 // "survey": rows of ten views from above, as many as it takes; what a view sees does not depend on
-// how many there are. Error for another name, a number of views outside [0, 200], or what make_lens
-// refuses.
+// how many there are. Error for another name, a number of views outside [0, 200], a scale, relief
+// or coarseness outside [0.01, 100], or what make_lens refuses.
 Preset make_preset(const PresetOptions& options);
 
 }  // namespace axial::simulate

@@ -50,6 +50,14 @@ bool below_floor(const Terrain& terrain, const Eigen::Vector3d& p) {
   return p.z() < terrain.floor.at(p.x(), p.y()) - burial(terrain);
 }
 
+// The height above bedding planes `layer` apart, as a stair: most of a layer's thickness is gained
+// in the last part of its height.
+double stair(double height, double layer) {
+  const double steps = std::floor(height / layer);
+  const auto within = static_cast<float>(height / layer - steps);
+  return layer * (steps + 0.25 * within + 0.75 * smooth_step(0.6f, 0.95f, within));
+}
+
 }  // namespace
 
 double Floor::at(double x, double y) const {
@@ -58,7 +66,10 @@ double Floor::at(double x, double y) const {
   const float ridges = 0.5f - std::abs(fractal_noise(turn_octave(1.7 * p), seed + 77u, 5, 0.5f));
   const auto r = static_cast<float>(std::sqrt(x * x + y * y));
   const float bowl = smooth_step(static_cast<float>(bowl_from), static_cast<float>(bowl_to), r);
-  return height * (dunes + 0.45 * (ridges - 0.3)) + bowl_height * bowl;
+  const double smooth = height * (dunes + 0.45 * (ridges - 0.3)) + bowl_height * bowl;
+  if (!(layer > 0)) return smooth;
+  const double rise = dip.x() * x + dip.y() * y;
+  return stair(smooth + rise, layer) - rise;
 }
 
 TriangleMesh terrain_mesh(const Terrain& terrain) {
@@ -72,6 +83,7 @@ TriangleMesh terrain_mesh(const Terrain& terrain) {
   };
   for (const Blob& blob : terrain.blobs) add(blob_mesh(blob, terrain.cell), &blob);
   for (const Arch& arch : terrain.arches) add(arch_mesh(arch, terrain.cell), nullptr);
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex.z() *= static_cast<float>(terrain.relief);
   return mesh;
 }
 

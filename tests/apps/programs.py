@@ -15,7 +15,7 @@ import zlib
 BIN = os.environ.get("AXIAL_BIN", "")
 
 
-def run(program, *arguments, file_size_limit=None, cwd=None):
+def run(program, *arguments, file_size_limit=None, cwd=None, timeout=600):
     """Runs a program to its end; `file_size_limit` [bytes] stands for a full disk."""
 
     def limit():
@@ -25,7 +25,8 @@ def run(program, *arguments, file_size_limit=None, cwd=None):
 
     return subprocess.run(
         [os.path.join(BIN, program), *map(str, arguments)], cwd=cwd, text=True, errors="replace",
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=600,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
+        timeout=timeout,
         preexec_fn=limit if file_size_limit is not None else None)
 
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -46,6 +47,38 @@ TEST(EvaluateDepth, OfAPlaneWithAKnownError) {
   EXPECT_DOUBLE_EQ(e.scores[1].recall, 0.75);
   EXPECT_TRUE(std::isnan(e.error(0, 0)));
   EXPECT_NEAR(e.error(0, 79), -0.001, rounding);
+}
+
+// An error of half a per mille a ring, added to walls at other distances: the walls must not show,
+// and each ring's median is that of the pixels counted one by one.
+TEST(EvaluateDepth, RelativeRingsPoolMapsAndForgetTheDistance) {
+  std::vector<DepthEvaluation> maps;
+  for (const float distance : {0.5f, 2.0f, 4.0f}) {
+    const cv::Mat1f truth(90, 120, distance);
+    cv::Mat1f estimate = truth.clone();
+    for (int v = 0; v < 90; ++v)
+      for (int u = 0; u < 120; ++u) {
+        const auto ring = std::floor(std::hypot(u - 59.5, v - 44.5) / 75 * 8);
+        estimate(v, u) *= 1 + 0.0005f * static_cast<float>(ring);
+      }
+    estimate(cv::Rect(0, 0, 120, 10)) = 0;  // no depth: must not count
+    maps.push_back(evaluate_depth(estimate, truth, {}));
+  }
+  const auto rings = relative_rings(maps, 8);
+  ASSERT_EQ(rings.size(), 8u);
+  std::size_t pixels = 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_NEAR(rings[k].signed_median, 0.0005 * static_cast<double>(k), 3e-7);  // float depths
+    EXPECT_DOUBLE_EQ(rings[k].outer - rings[k].inner, 0.125);
+    pixels += rings[k].count;
+  }
+  EXPECT_EQ(pixels, 3u * 80u * 120u);
+  EXPECT_EQ(rings[0].count, 3 * maps[0].rings[0].count);
+  EXPECT_NE(maps[0].rings[7].signed_median, maps[1].rings[7].signed_median);
+}
+
+TEST(EvaluateDepth, RelativeRingsOfNothingAreEmpty) {
+  for (const RelativeRing& ring : relative_rings({}, 8)) EXPECT_EQ(ring.count, 0u);
 }
 
 TEST(EvaluateDepth, RingsShowARadialError) {

@@ -57,6 +57,17 @@ TEST(CountViews, APlateHidesWhatLiesInItsShadow) {
   EXPECT_EQ(views_of({-0.9, 0, 2}, views, surface), 1u) << "the second view's shadow";
 }
 
+TEST(CountFrames, IsTheRectangleAloneInAirAndUnderWater) {
+  View wet = camera_at({0, 0, 0});
+  wet.camera.port = port();
+  const std::vector<View> views{camera_at({0, 0, 0}), wet};
+  // Water halves neither; 0.7 m aside at 1 m is inside in air and outside under water (see below).
+  const std::vector<Eigen::Vector3f> points{{0, 0, 1}, {0, 0, 7}, {0.72f, 0, 1}, {1.1f, 0, 1}};
+  EXPECT_THAT(count_frames(points, views), testing::ElementsAre(2u, 2u, 1u, 0u));
+  const Surface floor(flat_square(6, 1));  // hides the second point from both
+  EXPECT_THAT(count_views(points, views, floor), testing::ElementsAre(2u, 0u, 1u, 0u));
+}
+
 TEST(CountViews, WaterNarrowsTheFieldOfView) {
   const Surface floor(flat_square(6, 1));
   View wet = camera_at({0, 0, 0});

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -98,6 +99,67 @@ TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
     }
     EXPECT_NEAR(preset.views[10].centre.x(), preset.views[9].centre.x(), 0.13);
   }
+}
+
+TEST(Terrain, OutcropFillsTheViewsAtAFewMetres) {
+  for (const bool water : {false, true}) {
+    const Seen seen = look_around("outcrop", water);
+    EXPECT_EQ(seen.views, 10u);
+    EXPECT_EQ(seen.background, 0u);
+    EXPECT_GT(seen.quantile(0.02), 1.2);
+    EXPECT_GT(seen.quantile(0.5), 1.8);
+    EXPECT_LT(seen.quantile(0.5), 3.2);
+  }
+}
+
+// A slope of one half cut into layers of 10 cm that dip by a quarter, without relief of its own.
+TEST(Terrain, LayersMakeLedges) {
+  Floor floor{
+      .seed = 3, .wavelength = 1, .height = 0, .bowl_from = 0, .bowl_to = 1, .bowl_height = 0};
+  EXPECT_EQ(floor.at(0.3, 0.4), 0);
+  floor.layer = 0.1;
+  floor.dip = {0.25, 0};
+  double last = -1, steepest = 0, flattest = 1;
+  for (int i = 0; i <= 4000; ++i) {
+    const double x = 1e-3 * i;
+    // Above the bedding, which rises by a quarter downwards along x.
+    const double height = floor.at(x, 0.7) + 0.25 * x;
+    EXPECT_LE(std::abs(height - 0.25 * x), 0.1) << "a ledge is no higher than a layer";
+    if (i > 0) {
+      EXPECT_GE(height, last) << x;
+      steepest = std::max(steepest, (height - last) / 1e-3);
+      flattest = std::min(flattest, (height - last) / 1e-3);
+    }
+    last = height;
+  }
+  EXPECT_GT(steepest, 3 * 0.25);
+  EXPECT_LT(flattest, 0.3 * 0.25);
+}
+
+TEST(Terrain, ScaleAndReliefStretchTheMeshAndNotThePort) {
+  PresetOptions options;
+  options.name = "closeup";
+  options.coarseness = 8;
+  const Preset plain = make_preset(options);
+  options.scale = 2;
+  const Preset large = make_preset(options);
+  options.scale = 1;
+  options.relief = 3;
+  const Preset high = make_preset(options);
+  const TriangleMesh a = terrain_mesh(plain.terrain), b = terrain_mesh(large.terrain),
+                     c = terrain_mesh(high.terrain);
+  ASSERT_EQ(a.vertices.size(), b.vertices.size());
+  ASSERT_EQ(a.vertices.size(), c.vertices.size());
+  for (std::size_t i = 0; i < a.vertices.size(); ++i) {
+    EXPECT_LT((2 * a.vertices[i] - b.vertices[i]).norm(), 1e-5);  // metres, float
+    EXPECT_EQ(a.vertices[i].x(), c.vertices[i].x());
+    EXPECT_FLOAT_EQ(3 * a.vertices[i].z(), c.vertices[i].z());
+  }
+  EXPECT_EQ(large.port.distance, plain.port.distance);
+  EXPECT_LT((large.views[4].centre - 2 * plain.views[4].centre).norm(), 1e-12);
+  EXPECT_EQ(high.views[4].centre, plain.views[4].centre);
+  options.relief = 0;
+  EXPECT_THROW(make_preset(options), Error);
 }
 
 TEST(Terrain, HasOverhangs) {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The experiments that reconstruct scenes, by the project's programs and COLMAP.
+#pragma once
+
+#include "chain.h"
+#include "experiments/experiment.h"
+
+namespace axial {
+
+// `chain.work` is the experiment's own. Quick: few views, small images, for tests.
+experiments::Experiment reconstruction(const Chain& chain, bool quick);  // figures 5 and 6
+experiments::Experiment sensitivity(const Chain& chain, bool quick);     // to a wrong housing file
+experiments::Experiment need(const Chain& chain, bool quick);            // of a refractive model
+
+// What their tables are made of.
+double median_of(std::vector<double> values);  // of at least one
+std::string millimetres(const Json& metres);   // "0.871"; "-" for null
+std::string percent(const Json& fraction);     // "74.2"; "-" for null
+
+}  // namespace axial

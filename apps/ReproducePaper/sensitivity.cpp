@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How wrong clouds get when the housing file is: true poses, a port that is not as the file says.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <numbers>
+
+#include "chained.h"
+#include "experiments/tables.h"
+#include "io/housing.h"
+
+namespace axial {
+namespace {
+
+using experiments::Document;
+using experiments::Experiment;
+using experiments::Part;
+using experiments::result_of;
+using refractive::FlatPort;
+
+// What the file says wrongly. All zero: nothing.
+struct Mistake {
+  std::string name;   // of the part
+  std::string title;  // of the row
+  double distance = 0, thickness = 0, tilt_degrees = 0, n_water = 0;
+};
+
+std::vector<Mistake> mistakes() {
+  return {{"none", "none", 0, 0, 0, 0},
+          {"distance_1mm", "distance to the glass, 1 mm", 0.001, 0, 0, 0},
+          {"distance_5mm", "distance to the glass, 5 mm", 0.005, 0, 0, 0},
+          {"distance_20mm", "distance to the glass, 20 mm", 0.020, 0, 0, 0},
+          {"tilt_0.1", "tilt, 0.1 degrees", 0, 0, 0.1, 0},
+          {"tilt_0.5", "tilt, 0.5 degrees", 0, 0, 0.5, 0},
+          {"tilt_2", "tilt, 2 degrees", 0, 0, 2, 0},
+          {"n_water_0.005", "refractive index of the water, 0.005", 0, 0, 0, 0.005},
+          {"thickness_2mm", "thickness of the glass, 2 mm", 0, 0.002, 0, 0}};
+}
+
+Json to_json(const Mistake& mistake) {
+  return {{"distance", mistake.distance},
+          {"thickness", mistake.thickness},
+          {"tilt_degrees", mistake.tilt_degrees},
+          {"n_water", mistake.n_water}};
+}
+
+FlatPort<double> wrong_port(FlatPort<double> port, const Mistake& mistake) {
+  port.distance += mistake.distance;
+  port.thickness += mistake.thickness;
+  port.n_water += mistake.n_water;
+  const double radians = mistake.tilt_degrees * std::numbers::pi / 180;
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
+  port.normal = Eigen::AngleAxisd(radians, axis) * port.normal;
+  return port;
+}
+
+// Near: a metre away, as one photographs a coral. Far: as one surveys.
+struct Distance {
+  const char* name;
+  double scale;
+};
+constexpr std::array<Distance, 2> kDistances{{{"near", 0.4}, {"far", 1.0}}};
+
+struct Study {
+  SceneOptions scene;
+  EvaluationOptions evaluation;
+};
+
+Study study(bool quick, const Distance& distance) {
+  Study one;
+  one.scene.scale = distance.scale;
+  one.scene.medium = "water";
+  if (quick) {
+    one.scene.width = 256;
+    one.scene.height = 192;
+    one.scene.views = 4;
+    one.scene.coarseness = 4;
+    one.evaluation.samples = 20000;
+  }
+  return one;
+}
+
+std::string part_name(const Distance& distance, const Mistake& mistake) {
+  return fmt::format("{}_{}", distance.name, mistake.name);
+}
+
+Json measure(const Chain& chain, const Study& study, const Mistake& mistake) {
+  const SimulatedScene scene = simulated(chain, study.scene);
+  io::Housing housing = io::read_housing(scene.housing());
+  for (auto& [name, port] : housing.ports) port = wrong_port(port, mistake);
+  const std::filesystem::path file = scene.folder / (mistake.name + ".housing.json");
+  io::write_housing(file, housing);
+  const auto dense = densified(chain, mistake.name, scene, scene.model(), "water", {file, {}});
+  const SceneDistances distances = scene_distances(scene, "water");
+  Json result{{"scene_distance", distances.median}, {"range_ratio", distances.range_ratio}};
+  EvaluationOptions evaluation = study.evaluation;
+  result["as_it_lies"] = evaluated(chain, dense, scene, evaluation);
+  evaluation.icp = true;
+  result["moved"] = evaluated(chain, dense, scene, evaluation);
+  std::filesystem::remove_all(dense);
+  return result;
+}
+
+// Quick: one distance, and of each kind of mistake the largest.
+bool is_quick(const Distance& distance, const Mistake& mistake) {
+  const bool largest =
+      mistake.name == "none" || mistake.name == "distance_20mm" || mistake.name == "tilt_2";
+  return distance.name == std::string_view("near") && largest;
+}
+
+struct Row {
+  Distance distance;
+  Mistake mistake;
+};
+
+std::vector<Row> rows_of(bool quick) {
+  std::vector<Row> rows;
+  for (const Distance& distance : kDistances)
+    for (const Mistake& mistake : mistakes())
+      if (!quick || is_quick(distance, mistake)) rows.push_back({distance, mistake});
+  return rows;
+}
+
+std::vector<Part> parts(const Chain& chain, bool quick) {
+  std::vector<Part> all;
+  for (const auto& [distance, mistake] : rows_of(quick)) {
+    const Study one = study(quick, distance);
+    const Json inputs{{"version", 1},
+                      {"scene", to_json(one.scene)},
+                      {"evaluation", to_json(one.evaluation)},
+                      {"mistake", to_json(mistake)}};
+    all.push_back({part_name(distance, mistake), inputs,
+                   [chain, one, mistake] { return measure(chain, one, mistake); }});
+  }
+  return all;
+}
+
+std::string table(const Json& results, bool quick) {
+  std::vector<Words> rows{{"distance of the scene [m]", "wrong in the housing file", "points",
+                           "mean [mm]", "/ none wrong", "mean after a rigid move [mm]",
+                           "/ none wrong", "completeness [%]"}};
+  for (const auto& [distance, mistake] : rows_of(quick)) {
+    const Json& result = result_of(results, part_name(distance, mistake));
+    const Json& right = result_of(results, part_name(distance, mistakes().front()));
+    const auto mean = [](const Json& of, const char* how) {
+      return of.at(how).at("mean").get<double>();
+    };
+    const auto beside_right = [&](const char* how) {
+      return fmt::format("{:.2f}", mean(result, how) / mean(right, how));
+    };
+    rows.push_back({fmt::format("{:.2f}", result.at("scene_distance").get<double>()), mistake.title,
+                    fmt::format("{}", result.at("as_it_lies").at("points").get<std::size_t>()),
+                    millimetres(mean(result, "as_it_lies")), beside_right("as_it_lies"),
+                    millimetres(mean(result, "moved")), beside_right("moved"),
+                    percent(result.at("as_it_lies").at("recall"))});
+  }
+  return experiments::markdown_table(rows);
+}
+
+}  // namespace
+
+Experiment sensitivity(const Chain& chain, bool quick) {
+  return {"sensitivity", parts(chain, quick), [quick](const Json& results) {
+            return std::vector<Document>{{"sensitivity.md", table(results, quick)}};
+          }};
+}
+
+}  // namespace axial

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/subprocess.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace axial {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Subprocess : public testing::Test {
+ protected:
+  fs::path log_ = fs::path(testing::TempDir()) / "subprocess.log";
+  void TearDown() override { fs::remove(log_); }
+
+  std::string error_of(const std::vector<std::string>& command) {
+    try {
+      run_subprocess(command, log_);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(Subprocess, ArgumentsArriveAsTheyAre) {
+  run_subprocess({"printf", "%s|", "a b", "", "$HOME", "'\"", "*"}, log_);
+  EXPECT_EQ(read_file(log_), "a b||$HOME|'\"|*|");
+}
+
+TEST_F(Subprocess, BothStreamsAreLoggedAndInputIsEmpty) {
+  run_subprocess({"sh", "-c", "echo out; echo err >&2; cat"}, log_);
+  EXPECT_EQ(read_file(log_), "out\nerr\n");
+}
+
+TEST_F(Subprocess, AnOldLogIsReplaced) {
+  write_atomically(log_, "much longer than what comes");
+  run_subprocess({"echo", "new"}, log_);
+  EXPECT_EQ(read_file(log_), "new\n");
+}
+
+TEST_F(Subprocess, FailuresNameTheProgramAndItsLastWords) {
+  const std::string said = error_of({"sh", "-c", "echo first; echo 'no more disk'; exit 3"});
+  EXPECT_THAT(said, HasSubstr("sh: exit code 3"));
+  EXPECT_THAT(said, HasSubstr(log_.string()));
+  EXPECT_THAT(said, HasSubstr("no more disk"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("first")));
+  EXPECT_THAT(error_of({"sh", "-c", "kill -9 $$"}), HasSubstr("signal 9"));
+  EXPECT_THAT(error_of({"no-such-program"}), HasSubstr("no-such-program: cannot be started"));
+}
+
+TEST_F(Subprocess, TheProgramsOwnFolder) {
+  EXPECT_TRUE(fs::is_regular_file(program_folder() / "base_subprocess_test"));
+}
+
+}  // namespace
+}  // namespace axial
