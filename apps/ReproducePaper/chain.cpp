@@ -190,7 +190,7 @@ SceneDistances scene_distances(const SimulatedScene& scene, const std::string& m
 
 refractive::FlatPort<double> port_of(const SimulatedScene& scene) {
   const io::Housing housing = io::read_housing(scene.housing());
-  return housing.ports.at(housing.default_port);
+  return std::get<refractive::FlatPort<double>>(housing.ports.at(housing.default_port));
 }
 
 Calibration true_lens(const SimulatedScene& scene) {

@@ -88,7 +88,8 @@ std::string part_name(const Distance& distance, const Mistake& mistake) {
 Json measure(const Chain& chain, const Study& study, const Mistake& mistake) {
   const SimulatedScene scene = simulated(chain, study.scene);
   io::Housing housing = io::read_housing(scene.housing());
-  for (auto& [name, port] : housing.ports) port = wrong_port(port, mistake);
+  for (auto& [name, port] : housing.ports)
+    port = wrong_port(std::get<FlatPort<double>>(port), mistake);
   const std::filesystem::path file = scene.folder / (mistake.name + ".housing.json");
   io::write_housing(file, housing);
   const auto dense = densified(chain, mistake.name, scene, scene.model(), "water", {file, {}});
