@@ -96,7 +96,7 @@ TEST_F(Programs, EvaluateACloud) {
 TEST_F(Programs, WarnOfHousingEntriesWithoutAnImage) {
   write_scene();
   io::Housing housing;
-  housing.ports["main"].distance = 0.02;
+  housing.ports["main"] = refractive::FlatPort<double>{.distance = 0.02};
   housing.cameras = {{1, "main"}, {9, "main"}};
   housing.images = {{"0001.jpg", "none"}, {"0001.png", "none"}};
   io::write_housing(folder_ / "housing.json", housing);

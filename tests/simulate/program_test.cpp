@@ -39,6 +39,20 @@ const std::string kSmall =
 
 const std::string kPort = "--port-distance 0.05 --tilt-degrees 0 --n-glass 1.6 --noise 0 ";
 
+TEST_F(SimulateUnderwater, PhotographsThroughADome) {
+  const std::string dome = "--dome-radius 0.06 --dome-x 0.004 --dome-z=-0.01 --n-glass 1.6 ";
+  const Outcome outcome = run(kSmall + dome + "-o a --medium water");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::Housing housing = io::read_housing(folder_ / "a" / "housing.json");
+  const auto& port = std::get<refractive::DomePort<double>>(housing.ports.at("main"));
+  EXPECT_EQ(port.centre, Eigen::Vector3d(0.004, 0, -0.01));
+  EXPECT_EQ(port.inner_radius, 0.06);
+  EXPECT_EQ(port.n_glass, 1.6);
+  refuses("--tilt-degrees", kSmall + dome + "--tilt-degrees 3 -o b");
+  refuses("--dome-x needs --dome-radius", kSmall + "--dome-x 0.004 -o b");
+  refuses("centre is 0.07", kSmall + "--dome-radius 0.06 --dome-x 0.07 -o b");
+}
+
 TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
   const Outcome outcome = run(kSmall + kPort + "-o a --max-threads 1");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
@@ -48,9 +62,10 @@ TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
   EXPECT_GT(model.points.size(), 100u);
   EXPECT_GT(io::read_mesh_ply(scene / "mesh.ply").faces.size(), 1000u);
   const io::Housing housing = io::read_housing(scene / "housing.json");
-  EXPECT_EQ(housing.ports.at("main").distance, 0.05);
-  EXPECT_EQ(housing.ports.at("main").n_glass, 1.6);
-  EXPECT_EQ(housing.ports.at("main").normal, Eigen::Vector3d::UnitZ());
+  const auto& port = std::get<refractive::FlatPort<double>>(housing.ports.at("main"));
+  EXPECT_EQ(port.distance, 0.05);
+  EXPECT_EQ(port.n_glass, 1.6);
+  EXPECT_EQ(port.normal, Eigen::Vector3d::UnitZ());
   for (const std::string medium : {"air", "water"}) {
     for (const io::ColmapImage& image : model.images) {
       const fs::path base = (scene / medium / image.name).replace_extension();
