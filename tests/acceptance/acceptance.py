@@ -383,7 +383,11 @@ def memory_growth(work):
 def results_of(folder):
     """Fingerprints of the cloud and the depth maps."""
     files = [folder / "scene_dense.ply", *sorted(folder.glob("depth????.dmap"))]
-    return {file.name: hashlib.sha1(file.read_bytes()).hexdigest() for file in files}
+    def fingerprint(file):
+        with open(file, "rb") as content:
+            return hashlib.file_digest(content, "sha1").hexdigest()
+
+    return {file.name: fingerprint(file) for file in files}
 
 
 @point("200 views with --max-memory 512 and 1000: the same bytes, at most 10 % above the cap; below "

@@ -28,7 +28,8 @@ def shared(*parts):
 
 
 def measured(log, *command):
-    """Runs a command, output to `log`; wall and CPU seconds, peak memory in bytes."""
+    """Runs a command, output to `log`; wall and CPU seconds, peak memory in bytes. The peak is at
+    least what this process has in memory: the kernel counts the child from the fork on."""
     log.parent.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic()
     with open(log, "w") as out:
@@ -102,7 +103,8 @@ def densify(folder, *options):
 
 
 def points_in(folder):
-    header = (folder / "scene_dense.ply").read_bytes()[:2000].decode("ascii", "replace")
+    with open(folder / "scene_dense.ply", "rb") as cloud:
+        header = cloud.read(2000).decode("ascii", "replace")
     return int(re.search(r"element vertex (\d+)", header)[1])
 
 
