@@ -38,9 +38,9 @@ struct Port {
 // Unit normal of a port tilted by the given angle, towards the right and bottom of the image.
 Eigen::Vector3d tilted_normal(double tilt_degrees);
 
-// Error that names the value: distance or radius outside [0, 1] m, thickness outside [0, 1] m, an index below
-// 1 or above 4, a camera outside its dome, a corner of the image whose light does not meet the port
-// from inside.
+// Error that names the value: distance, radius or thickness outside [0, 1] m, an index below 1 or
+// above 4, a camera outside its dome, a corner of the image whose light does not meet the port from
+// inside.
 void check_port(const Port& port, const Lens& lens);
 
 // x_in_camera = rotation * (x_in_world - centre).
