@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "support/empty_folder.h"
 
 namespace axial {
 namespace {
@@ -24,17 +25,8 @@ std::size_t files_in(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-fs::path fresh_folder(const std::string& name) {
-  const fs::path folder =
-      fs::path(testing::TempDir()) / fmt::format("axial_atomic_file_{}_{}", name, ::getpid());
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
-
 TEST(AtomicFile, TellsBeforeTheWorkThatAFileCannotBeWritten) {
-  const fs::path folder = fs::path(testing::TempDir()) / "atomic_file_probe";
-  fs::create_directories(folder);
+  const fs::path folder = test::empty_folder();
   EXPECT_NO_THROW(require_writable(folder / "a.txt"));
   EXPECT_TRUE(fs::is_empty(folder));
   EXPECT_THROW(require_writable(folder / "no_such_folder" / "a.txt"), Error);
@@ -42,7 +34,7 @@ TEST(AtomicFile, TellsBeforeTheWorkThatAFileCannotBeWritten) {
 }
 
 TEST(AtomicFile, KeepsTheOldContentsWhenTheWriterFails) {
-  const fs::path folder = fresh_folder("keeps");
+  const fs::path folder = test::empty_folder();
   const fs::path file = folder / "a.txt";
   write_atomically(file, "old");
   EXPECT_THROW(write_atomically(file,
@@ -87,7 +79,7 @@ class FileSizeLimit {
 };
 
 TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
-  const fs::path folder = fresh_folder("full");
+  const fs::path folder = test::empty_folder();
   const fs::path file = folder / "a.txt";
   write_atomically(file, "old");
   // The limit falls within the first buffer, between buffers, and on the very last byte.
@@ -120,7 +112,7 @@ pid_t dead_process() {
 }
 
 TEST(AtomicFile, RemovesOnlyTemporariesOfDeadProcesses) {
-  const fs::path folder = fresh_folder("abandoned");
+  const fs::path folder = test::empty_folder();
   const pid_t dead = dead_process();
   const std::vector<std::string> abandoned = {fmt::format("depth0.{}.tmp.dmap", dead),
                                               fmt::format("depth0.{0}.tmp.{0}.tmp.dmap", dead),
@@ -141,7 +133,7 @@ TEST(AtomicFile, RemovesOnlyTemporariesOfDeadProcesses) {
 }
 
 TEST(AtomicFile, LeavesNothingWithoutACommit) {
-  const fs::path folder = fresh_folder("abandoned");
+  const fs::path folder = test::empty_folder();
   write_atomically(folder / "a.txt", "old");
   for (const bool commit : {false, true}) {
     AtomicFile file(folder / "a.txt");
@@ -156,7 +148,7 @@ TEST(AtomicFile, LeavesNothingWithoutACommit) {
 }
 
 TEST(AtomicFile, KeepsTheExtensionOfTheTemporary) {
-  const fs::path folder = fresh_folder("extension");
+  const fs::path folder = test::empty_folder();
   write_atomically(folder / "a.b.tiff", [&](const fs::path& temporary) {
     EXPECT_EQ(temporary.extension(), ".tiff");
     EXPECT_EQ(temporary.parent_path(), folder);
@@ -168,7 +160,7 @@ TEST(AtomicFile, KeepsTheExtensionOfTheTemporary) {
 }
 
 TEST(AtomicFile, FailsWhereTheWriterWroteNothing) {
-  const fs::path folder = fresh_folder("nothing");
+  const fs::path folder = test::empty_folder();
   EXPECT_THROW(write_atomically(folder / "a.txt", [](const fs::path&) {}), Error);
   fs::create_directories(folder / "b.txt" / "c");
   EXPECT_THROW(write_atomically(folder / "b.txt", "x"), Error);  // a folder is in the way
@@ -177,7 +169,7 @@ TEST(AtomicFile, FailsWhereTheWriterWroteNothing) {
 }
 
 TEST(ReadFile, ReadsBytesAsTheyAre) {
-  const fs::path folder = fresh_folder("read");
+  const fs::path folder = test::empty_folder();
   const std::string bytes("a\0\r\n\xFF", 5);
   write_atomically(folder / "a", bytes);
   EXPECT_EQ(read_file(folder / "a"), bytes);

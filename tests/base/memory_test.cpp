@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "support/empty_folder.h"
 
 namespace axial {
 namespace {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 // A system that says what we put into its files.
 class FakeSystem {
  public:
-  FakeSystem() { fs::create_directories(root_); }
+  FakeSystem() = default;
   ~FakeSystem() { fs::remove_all(root_); }
   FakeSystem(const FakeSystem&) = delete;
 
@@ -32,7 +33,7 @@ class FakeSystem {
   std::uint64_t available() const { return available_memory(root_); }
 
  private:
-  fs::path root_ = fs::path(testing::TempDir()) / ("axial_system_" + std::to_string(::getpid()));
+  fs::path root_ = test::empty_folder();
 };
 
 const std::string kMeminfo =

@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "support/empty_folder.h"
 
 namespace axial {
 namespace {
@@ -22,12 +23,7 @@ using testing::Not;
 // A program with options of every kind, run in a folder of its own.
 class ProgramTest : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::path(testing::TempDir()) / fmt::format("axial_program_{}_{}", info->name(), ::getpid());
-    fs::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = test::empty_folder(); }
   void TearDown() override { fs::remove_all(folder_); }
 
   ParsedOptions parse(std::vector<std::string> arguments, bool in_folder = true) {

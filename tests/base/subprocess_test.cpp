@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
+#include "support/empty_folder.h"
+#include "support/error_of.h"
 
 namespace axial {
 namespace {
@@ -15,16 +16,12 @@ using testing::HasSubstr;
 
 class Subprocess : public testing::Test {
  protected:
-  fs::path log_ = fs::path(testing::TempDir()) / "subprocess.log";
-  void TearDown() override { fs::remove(log_); }
+  fs::path folder_ = test::empty_folder();
+  fs::path log_ = folder_ / "subprocess.log";
+  void TearDown() override { fs::remove_all(folder_); }
 
   std::string error_of(const std::vector<std::string>& command) {
-    try {
-      run_subprocess(command, log_);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return test::error_of([&] { run_subprocess(command, log_); });
   }
 };
 

@@ -28,8 +28,6 @@ using test::Outcome;
 
 class Programs : public test::ProgramTest {
  protected:
-  Programs() : ProgramTest("evaluate_") {}
-
   Outcome run(const std::string& program, const std::string& arguments) const {
     return run_program(program, arguments);
   }

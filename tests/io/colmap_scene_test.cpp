@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
+#include "support/empty_folder.h"
 
 namespace axial::io {
 namespace {
@@ -27,9 +28,7 @@ cv::Vec3d color_at(double x, double y) {
 class ColmapScene : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
+    folder_ = test::empty_folder();
     fs::create_directories(folder_ / "images");
     import_ = {folder_ / "sparse", folder_ / "images", folder_ / "out" / "undistorted"};
     model_.cameras = {{5, "PINHOLE", kWidth, kHeight, {150, 151, 80, 60}},

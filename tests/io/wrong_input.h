@@ -4,7 +4,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,20 +12,10 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "support/empty_folder.h"
 #include "support/error_of.h"
 
 namespace axial::test {
-
-// An empty folder of this test's own.
-inline std::filesystem::path empty_folder() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir()) /
-                      (std::string("axial_") + info->test_suite_name() + "_" + info->name() + "_" +
-                       std::to_string(::getpid()));
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 inline void put(const std::filesystem::path& path, std::string_view bytes) {
   std::filesystem::remove(path);  // some file systems wait for the disk when a file is rewritten

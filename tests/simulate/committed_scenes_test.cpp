@@ -12,6 +12,7 @@
 #include "io/image.h"
 #include "simulate/presets.h"
 #include "simulate/solid_texture.h"
+#include "support/empty_folder.h"
 
 namespace axial::simulate {
 namespace {
@@ -79,12 +80,13 @@ void expect_same_image(const Remade& remade, const std::string& name, std::size_
   const cv::Mat3f radiance =
       render_radiance(remade.scene, shader, preset.lens, water ? &preset.port : nullptr,
                       preset.views[image], kSamples);
-  const fs::path file = fs::path(testing::TempDir()) / (name + "_remade.jpg");
+  const fs::path folder = test::empty_folder();
+  const fs::path file = folder / "remade.jpg";
   io::write_jpeg(file, develop(radiance, kNoise, noise_key(kSeed, image, water)), kJpegQuality);
   const fs::path committed =
       folder_of(name) / (water ? "water" : "air") / fmt::format("{:04}.jpg", image);
   EXPECT_GE(cv::PSNR(io::read_color_image(committed), io::read_color_image(file)), 45);
-  fs::remove(file);
+  fs::remove_all(folder);
 }
 
 void expect_same_port(const Port& port, const std::string& name) {

@@ -23,8 +23,6 @@ using test::Outcome;
 
 class SimulateUnderwater : public test::ProgramTest {
  protected:
-  SimulateUnderwater() : ProgramTest("simulate_") {}
-
   Outcome run(const std::string& arguments) const {
     return run_program("SimulateUnderwater", arguments);
   }

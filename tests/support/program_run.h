@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <string>
 
+#include "support/empty_folder.h"
+
 namespace axial::test {
 
 struct Outcome {
@@ -19,17 +21,10 @@ struct Outcome {
   std::string output;  // both streams
 };
 
-// A fixture with an empty folder, "<prefix><test name>", that goes with the test.
+// A fixture with an empty folder that goes with the test.
 class ProgramTest : public testing::Test {
  protected:
-  explicit ProgramTest(const std::string& prefix) : prefix_(prefix) {}
-
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (prefix_ + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = empty_folder(); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Outcome run_program(const std::string& program, const std::string& arguments) const {
@@ -53,9 +48,6 @@ class ProgramTest : public testing::Test {
   }
 
   std::filesystem::path folder_;
-
- private:
-  std::string prefix_;
 };
 
 }  // namespace axial::test
