@@ -25,7 +25,8 @@ class DomePortCamera {
       : lens_(lens),
         inv_fx_(T(1) / lens.fx),
         inv_fy_(T(1) / lens.fy),
-        projector_(lens, port, width, height, T(margin_or_default(width, height, margin))) {}
+        projector_(lens, port, width, height,
+                   WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
   DomePortCamera() = default;  // means nothing before each_field() has filled it
 
@@ -103,10 +104,6 @@ class DomePortCamera {
   }
 
  private:
-  static int margin_or_default(int width, int height, int margin) {
-    return margin >= 0 ? margin : (width > height ? width : height) / 8;
-  }
-
   PinholeLens<T> lens_;
   T inv_fx_, inv_fy_;
   DomePortProjector<T> projector_;

@@ -16,6 +16,7 @@
 
 #include "refractive/dome_port.h"
 #include "refractive/pinhole_camera.h"
+#include "refractive/widened_image.h"
 
 namespace axial::refractive {
 
@@ -32,8 +33,7 @@ struct DomePortImage {
     const T along = towards.dot(step);
     const Vector3<T> turn = inv_range * (step - along * towards);
     const T zeta = zeta_by_cosine * centre.dot(turn) - zeta_by_inv_range * along;
-    const Vector3<T> bearing = turn - zeta * centre;
-    return {scale_u * (bearing.x() - x * bearing.z()), scale_v * (bearing.y() - y * bearing.z())};
+    return in_air.moved(turn - zeta * centre);
   }
 
   Vector3<T> towards, centre;  // d and C
@@ -41,8 +41,7 @@ struct DomePortImage {
   T inv_range;                 // 1/|X|
   T zeta_by_cosine;            // d(zeta)/d(d.C)
   T zeta_by_inv_range;         // d(zeta)/d(1/|X|) / |X|^2
-  T x, y;                      // the in-air direction divided by its z
-  T scale_u, scale_v;          // focal lengths divided by the z of d - zeta C
+  PinholeImage<T> in_air;      // of d - zeta C, as if it were a point
 };
 
 template <class T>
@@ -53,19 +52,14 @@ class DomePortProjector {
   // Points are projected within the image of width x height, widened by `margin` pixels.
   DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
                     const T& margin)
-      : optics_(port),
-        lens_(lens),
-        lowest_(-margin),
-        highest_u_(T(width - 1) + margin),
-        highest_v_(T(height - 1) + margin),
-        steps_(steps_for(optics_)) {}
+      : optics_(port), in_air_(lens), image_(width, height, margin), steps_(steps_for(optics_)) {}
 
   // See DomePortCamera.
   template <class Visit>
   void each_field(Visit&& visit) {
     optics_.each_field(visit);
-    visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
-    visit(lowest_), visit(highest_u_), visit(highest_v_);
+    in_air_.each_field(visit);
+    image_.each_field(visit);
     visit(steps_);
   }
 
@@ -91,15 +85,10 @@ class DomePortProjector {
     image.zeta_by_inv_range = at.zeta_by_inv_range * image.inv_range * image.inv_range;
     image.origin_share = at.origin_share;
 
-    const Vector3<T> bearing = image.towards - at.zeta * C;
-    const Mask<T> in_front = bearing.z() > T(1e-3);
-    const T inv_depth = T(1) / select(in_front, bearing.z(), T(1));
-    image.x = bearing.x() * inv_depth;
-    image.y = bearing.y() * inv_depth;
-    image.scale_u = lens_.fx * inv_depth;
-    image.scale_v = lens_.fy * inv_depth;
-    image.projection.pixel = {lens_.fx * image.x + lens_.cx, lens_.fy * image.y + lens_.cy};
-    image.projection.visible = in_water && in_front && inside(image.projection.pixel);
+    image.in_air = in_air_.image(image.towards - at.zeta * C);
+    image.projection = image.in_air.projection;
+    image.projection.visible =
+        in_water && image.projection.visible && image_.contains(image.projection.pixel);
     return image;
   }
 
@@ -179,14 +168,9 @@ class DomePortProjector {
     return decentring2 < T(0.01) ? 1 : (decentring2 < T(0.16) ? 2 : 4);
   }
 
-  Mask<T> inside(const Vector2<T>& pixel) const {
-    return pixel.x() >= lowest_ && pixel.x() <= highest_u_ && pixel.y() >= lowest_ &&
-           pixel.y() <= highest_v_;
-  }
-
   DomePortOptics<T> optics_;
-  PinholeLens<T> lens_;
-  T lowest_, highest_u_, highest_v_;  // the widened image
+  PinholeCamera<T> in_air_;
+  WidenedImage<T> image_;
   int steps_;
 };
 

@@ -30,7 +30,8 @@ class FlatPortCamera {
         inv_fy_(T(1) / lens.fy),
         port_(port),
         optics_(port),
-        projector_(lens, port, width, height, T(margin_or_default(width, height, margin))) {}
+        projector_(lens, port, width, height,
+                   WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
   FlatPortCamera() = default;  // means nothing before each_field() has filled it
 
@@ -95,10 +96,6 @@ class FlatPortCamera {
     Vector3<T> across;
     T inv_along;  // scale from the lens's bearing (z = 1)
   };
-
-  static int margin_or_default(int width, int height, int margin) {
-    return margin >= 0 ? margin : (width > height ? width : height) / 8;
-  }
 
   AirDirection air_direction(const Vector2<T>& pixel) const {
     const Vector3<T> bearing((pixel.x() - lens_.cx) * inv_fx_, (pixel.y() - lens_.cy) * inv_fy_,

@@ -8,6 +8,7 @@
 #include "refractive/flat_port.h"
 #include "refractive/flat_port_solver.h"
 #include "refractive/pinhole_camera.h"
+#include "refractive/widened_image.h"
 
 namespace axial::refractive {
 
@@ -82,9 +83,7 @@ class FlatPortProjector {
         field_(optics_, largest_incidence_tangent(lens, port, width, height, margin)),
         cx_(lens.cx),
         cy_(lens.cy),
-        lowest_(-margin),
-        highest_u_(T(width - 1) + margin),
-        highest_v_(T(height - 1) + margin) {
+        image_(width, height, margin) {
     const Matrix3<T> axis = axis_from_camera(port.normal);
     row_u_ = lens.fx * axis.col(0);
     row_v_ = lens.fy * axis.col(1);
@@ -99,7 +98,7 @@ class FlatPortProjector {
     for (Vector3<T>* row : {&row_u_, &row_v_, &row_z_})
       visit(row->x()), visit(row->y()), visit(row->z());
     visit(cx_), visit(cy_);
-    visit(lowest_), visit(highest_u_), visit(highest_v_);
+    image_.each_field(visit);
   }
 
   // The image of X [port's frame], visible as FlatPortCamera::project says.
@@ -133,21 +132,16 @@ class FlatPortProjector {
         (row_u_.y() - u * row_z_.y()) * inv_depth,  //
         (row_v_.x() - v * row_z_.x()) * inv_depth, (row_v_.y() - v * row_z_.y()) * inv_depth;
     image.projection.pixel = {u + cx_, v + cy_};
-    image.projection.visible = in_field && in_front && inside(image.projection.pixel);
+    image.projection.visible = in_field && in_front && image_.contains(image.projection.pixel);
     return image;
   }
 
  private:
-  Mask<T> inside(const Vector2<T>& pixel) const {
-    return pixel.x() >= lowest_ && pixel.x() <= highest_u_ && pixel.y() >= lowest_ &&
-           pixel.y() <= highest_v_;
-  }
-
   FlatPortOptics<T> optics_;
   FlatPortField<T> field_;
   Vector3<T> row_u_, row_v_, row_z_;  // the lens's focal lengths times the camera's axes
   T cx_, cy_;
-  T lowest_, highest_u_, highest_v_;  // the widened image
+  WidenedImage<T> image_;
 };
 
 }  // namespace axial::refractive

@@ -13,8 +13,7 @@ experiments::Experiment sensitivity(const Chain& chain, bool quick);     // to a
 experiments::Experiment need(const Chain& chain, bool quick);            // of a refractive model
 
 // What their tables are made of.
-double median_of(std::vector<double> values);  // of at least one
-std::string millimetres(const Json& metres);   // "0.871"; "-" for null
-std::string percent(const Json& fraction);     // "74.2"; "-" for null
+std::string millimetres(const Json& metres);  // "0.871"; "-" for null
+std::string percent(const Json& fraction);    // "74.2"; "-" for null
 
 }  // namespace axial

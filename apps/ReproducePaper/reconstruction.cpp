@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "chained.h"
+#include "experiments/distribution.h"
 #include "experiments/svg.h"
 #include "experiments/tables.h"
 
@@ -143,7 +144,7 @@ using Seeds = std::vector<int>;
 double median_over(const Seeds& seeds, const std::function<double(int seed)>& value) {
   std::vector<double> values;
   for (const int seed : seeds) values.push_back(value(seed));
-  return median_of(values);
+  return experiments::median_of(values);
 }
 
 // The clouds on one kind of poses.

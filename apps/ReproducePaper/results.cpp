@@ -2,7 +2,6 @@
 #include "results.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/hash.h"
 
 namespace axial {
@@ -27,12 +26,6 @@ Json kept_part(const fs::path& file, const Part& part) {
 }
 
 }  // namespace
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) fail("{}: cannot be created", folder.string());
-}
 
 Json computed_results(const experiments::Experiment& experiment, bool quick, const fs::path& folder,
                       const ProgressSink& progress) {

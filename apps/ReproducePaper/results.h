@@ -15,6 +15,4 @@ experiments::Json computed_results(const experiments::Experiment& experiment, bo
                                    const std::filesystem::path& folder,
                                    const ProgressSink& progress);
 
-void make_folder(const std::filesystem::path& folder);
-
 }  // namespace axial

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "arguments.h"
+#include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/image.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/colmap.h"
 #include "io/housing.h"
@@ -32,13 +33,6 @@ Rgb to_rgb(const Eigen::Vector3f& color) {
 
 std::string view_name(std::size_t view) {
   return fmt::format("{:04}", view);
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder))
-    fail("{}: cannot be created ({})", folder.string(), error.message());
 }
 
 void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,

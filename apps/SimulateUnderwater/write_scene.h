@@ -15,9 +15,6 @@ namespace axial {
 // "0007": images, their truth and their entries in the sparse model share it.
 std::string view_name(std::size_t view);
 
-// Creates `folder` and its parents. Error that names it.
-void make_folder(const std::filesystem::path& folder);
-
 // <folder>/{cameras,images,points3D}.txt: one PINHOLE camera, the true poses and observations.
 void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
                         std::span<const simulate::View> views,

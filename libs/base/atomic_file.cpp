@@ -103,6 +103,13 @@ void require_writable(const std::filesystem::path& path) {
   if (!opened) fail("{}: cannot be written: {}", path.string(), std::strerror(error));
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    fail("{}: cannot be created ({})", folder.string(), error.message());
+}
+
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))

@@ -45,6 +45,9 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
 // temporary file beside it and removes it again.
 void require_writable(const std::filesystem::path& path);
 
+// Creates `folder` and its parents. Error that names it.
+void make_folder(const std::filesystem::path& folder);
+
 // The whole file. Error that names `path` if it cannot be read or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 

@@ -17,17 +17,18 @@ concept InLanes = requires(Camera camera) {
   camera.each_field([](auto&) {});
 };
 
+// One for each camera that lanes know.
+consteval lanes::CameraKind lane_kind(const refractive::PinholeCamera<float>*) {
+  return lanes::CameraKind::pinhole;
+}
+consteval lanes::CameraKind lane_kind(const refractive::FlatPortCamera<float>*) {
+  return lanes::CameraKind::flat_port;
+}
+consteval lanes::CameraKind lane_kind(const refractive::DomePortCamera<float>*) {
+  return lanes::CameraKind::dome_port;
+}
 template <InLanes Camera>
-inline constexpr lanes::CameraKind kLaneKind{};
-template <>
-inline constexpr lanes::CameraKind kLaneKind<refractive::PinholeCamera<float>> =
-    lanes::CameraKind::pinhole;
-template <>
-inline constexpr lanes::CameraKind kLaneKind<refractive::FlatPortCamera<float>> =
-    lanes::CameraKind::flat_port;
-template <>
-inline constexpr lanes::CameraKind kLaneKind<refractive::DomePortCamera<float>> =
-    lanes::CameraKind::dome_port;
+inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));
 
 template <InLanes Fielded>
 lanes::CameraFields fields_of(Fielded from) {

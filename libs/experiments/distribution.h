@@ -45,4 +45,7 @@ class Distribution {
   double sum_ = 0, largest_ = 0;
 };
 
+// The mean of the two middle ones if their number is even. Precondition: not empty.
+double median_of(std::vector<double> values);
+
 }  // namespace axial::experiments

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/hash.h"
+#include "experiments/distribution.h"
 #include "experiments/table_search.h"
 #include "refractive/polynomial_projection.h"
 
@@ -101,12 +102,6 @@ std::vector<Sample> make_samples(const CameraSetup& setup, int width, int height
   return samples;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void measure_errors(const Method& method, std::span<const Sample> samples, MethodTime& result) {
   double sum = 0;
   for (const Sample& sample : samples) {
@@ -141,8 +136,8 @@ std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, in
   std::vector<MethodTime> results(methods.size());
   for (std::size_t m = 0; m < methods.size(); ++m) {
     results[m].method = methods[m].name;
-    results[m].nanoseconds = 1e9 * median(times[m]);
-    results[m].ratio = median(ratios[m]);
+    results[m].nanoseconds = 1e9 * median_of(times[m]);
+    results[m].ratio = median_of(ratios[m]);
     measure_errors(methods[m], own(methods[m]), results[m]);
   }
   return results;

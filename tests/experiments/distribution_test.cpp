@@ -50,5 +50,11 @@ TEST(Tables, AreMarkdown) {
   EXPECT_EQ(markdown_table({{"a", "b"}, {"1", "2"}}), "| a | b |\n|---|---|\n| 1 | 2 |\n");
 }
 
+TEST(MedianOf, IsTheMiddleOrTheMeanOfTheTwo) {
+  EXPECT_EQ(median_of({7}), 7);
+  EXPECT_EQ(median_of({9, 1, 4}), 4);
+  EXPECT_EQ(median_of({9, 1, 4, 5}), 4.5);
+}
+
 }  // namespace
 }  // namespace axial::experiments

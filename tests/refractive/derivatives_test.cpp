@@ -11,22 +11,9 @@ namespace axial::refractive::testing {
 namespace {
 
 using Jet2 = ceres::Jet<double, 2>;
-using Jet3 = ceres::Jet<double, 3>;
 template <class Jet>
 FlatPortCamera<Jet> jet_camera(const View& view) {
   return view.camera<Jet>();
-}
-
-void check_projection(const View& view, const Vector3<double>& X) {
-  const auto camera = view.camera<double>();
-  Matrix23<double> jacobian;
-  ASSERT_TRUE(camera.project(X, &jacobian).visible);
-  const auto jets = jet_camera<Jet3>(view).project(variables<Jet3, 3>(X));
-  expect_close(jacobian, derivatives<Jet3, 2>(jets.pixel), jacobian.norm());
-  // Pixels are good to 1e-12 and bend over centimetres: both errors are near 1e-8 at this step.
-  const auto numeric =
-      differences<2, 3>(X, 1e-6, [&](const Vector3<double>& x) { return camera.project(x).pixel; });
-  expect_close(jacobian, numeric, jacobian.norm());
 }
 
 TEST(Derivatives, OfTheProjection) {

@@ -2,9 +2,12 @@
 // Automatic and numeric derivatives, to hold closed forms against.
 #pragma once
 
+#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+
+#include "refractive/axial_ray.h"
 
 namespace axial::refractive::testing {
 
@@ -39,6 +42,21 @@ Eigen::Matrix<double, M, N> differences(const Eigen::Matrix<double, N, 1>& x, do
 template <class A, class B>
 void expect_close(const A& a, const B& b, double scale) {
   EXPECT_LE((a - b).norm(), kRelative * scale) << a << "\n\n" << b;
+}
+
+// The Jacobian of a view's projection.
+template <class View>
+void check_projection(const View& view, const Vector3<double>& X) {
+  using Jet = ceres::Jet<double, 3>;
+  const auto camera = view.template camera<double>();
+  Matrix23<double> jacobian;
+  ASSERT_TRUE(camera.project(X, &jacobian).visible);
+  const auto jets = view.template camera<Jet>().project(variables<Jet, 3>(X));
+  expect_close(jacobian, derivatives<Jet, 2>(jets.pixel), jacobian.norm());
+  // Pixels are good to 1e-12 and bend over centimetres: both errors are near 1e-8 at this step.
+  const auto numeric =
+      differences<2, 3>(X, 1e-6, [&](const Vector3<double>& x) { return camera.project(x).pixel; });
+  expect_close(jacobian, numeric, jacobian.norm());
 }
 
 }  // namespace axial::refractive::testing

@@ -95,18 +95,6 @@ TEST(DomePort, TakesAPixelThereAndBackInFloatWithFixedSteps) {
   }
 }
 
-void check_projection(const DomeView& view, const Vector3d& X) {
-  using Jet = ceres::Jet<double, 3>;
-  const auto camera = view.camera<double>();
-  Matrix23<double> jacobian;
-  ASSERT_TRUE(camera.project(X, &jacobian).visible);
-  const auto jets = view.camera<Jet>().project(variables<Jet, 3>(X));
-  expect_close(jacobian, derivatives<Jet, 2>(jets.pixel), jacobian.norm());
-  const auto numeric =
-      differences<2, 3>(X, 1e-6, [&](const Vector3d& x) { return camera.project(x).pixel; });
-  expect_close(jacobian, numeric, jacobian.norm());
-}
-
 void check_ray(const DomeView& view, const Vector2<double>& pixel) {
   using Jet = ceres::Jet<double, 2>;
   const auto camera = view.camera<double>();

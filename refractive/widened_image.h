@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The image rectangle with a margin on every side, in which cameras behind ports project points.
+#pragma once
+
+#include "refractive/axial_ray.h"
+
+namespace axial::refractive {
+
+template <class T>
+struct WidenedImage {
+  T lowest, highest_u, highest_v;  // [px]
+
+  WidenedImage() = default;
+  WidenedImage(int width, int height, const T& margin)
+      : lowest(-margin), highest_u(T(width - 1) + margin), highest_v(T(height - 1) + margin) {}
+
+  // The margin if it is not negative, else the default: an eighth of the longer side.
+  static T margin_or_default(int width, int height, int margin) {
+    return T(margin >= 0 ? margin : (width > height ? width : height) / 8);
+  }
+
+  template <class Visit>
+  void each_field(Visit&& visit) {
+    visit(lowest), visit(highest_u), visit(highest_v);
+  }
+
+  // False for NaN.
+  Mask<T> contains(const Vector2<T>& pixel) const {
+    return pixel.x() >= lowest && pixel.x() <= highest_u && pixel.y() >= lowest &&
+           pixel.y() <= highest_v;
+  }
+};
+
+}  // namespace axial::refractive
