@@ -45,10 +45,9 @@ struct PatchMatchOptions {
   float refinement_angle = radians(16);  // normal trial
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
-  float keep_cost_before_geometric = 1.2f;  // hypotheses at or above are cleared
-  float keep_cost = 0.9f;
+  float keep_cost = 1.2f;  // hypotheses at or above are cleared
 
-  float geometric_weight = 0.1f;
+  float geometric_weight = 0.25f;
   float geometric_limit = 4.0f;
 };
 

@@ -72,7 +72,8 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
   const auto sources = make_sources(input, level, cameras, maps);
   const auto run_all = [&](const auto& matcher) {
     for (int i = 0; i < sweeps; ++i, ++sweep.sweep) {
-      Sweep(matcher, planes, options, sweep).run();
+      const std::uint64_t scores = Sweep(matcher, planes, options, sweep).run();
+      if (input.scores) *input.scores += scores;
       sweep.first = false;
       sweep.trial_pairs = options.later_pairs;
     }
@@ -226,10 +227,9 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
   for (int halvings = usable_levels(input, options); halvings >= 0; --halvings) {
     const Level level = make_level(input, halvings);
     LevelState state =
-        coarser
-            ? refine_level(*coarser, level.cameras[0], range, options.keep_cost_before_geometric)
-            : LevelState{
-                  planes_from_points(level.cameras[0], points, range.min, range.max), {}, {}};
+        coarser ? refine_level(*coarser, level.cameras[0], range, options.keep_cost)
+                : LevelState{
+                      planes_from_points(level.cameras[0], points, range.min, range.max), {}, {}};
     state.mask = mask_at(input, level.cameras[0]);
     SweepInput sweep;
     sweep.image_id = input.reference->id;
@@ -244,7 +244,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);
   }
-  return to_depth_map(input, *coarser, range, options.keep_cost_before_geometric);
+  return to_depth_map(input, *coarser, range, options.keep_cost);
 }
 
 DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
@@ -264,8 +264,7 @@ DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
   sweep.mask = mask.empty() ? nullptr : &mask;
   run_sweeps(input, level, source_maps, options, sweep, 1, planes);
   const DepthRange range{current.min_depth, current.max_depth};
-  return to_depth_map(input, planes, range,
-                      last ? options.keep_cost : options.keep_cost_before_geometric);
+  return to_depth_map(input, planes, range, options.keep_cost);
 }
 
 }  // namespace axial::depth

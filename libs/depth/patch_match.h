@@ -28,6 +28,7 @@ struct MatchInput {
   std::span<const Eigen::Vector3f> sparse_points;  // world frame, seen by the reference view
   const cv::Mat1b* mask = nullptr;                 // non-zero: match this pixel; null: all
   ProjectionMethod projection = ProjectionMethod::exact;
+  std::uint64_t* scores = nullptr;  // if given: counted up by every plane scored in a view
 };
 
 // Photometric depth map: sub-resolution levels, then the working resolution. The depth range is

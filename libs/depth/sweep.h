@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <opencv2/core.hpp>
 #include <utility>
 
@@ -57,11 +59,14 @@ class Sweep {
     for (std::size_t i = 0; i < matcher.views(); ++i) all_views_[i] = static_cast<std::uint8_t>(i);
   }
 
-  void run() {
+  // The number of scores computed: of one plane in one view.
+  std::uint64_t run() {
     const int strips = (map_.height + kStripHeight - 1) / kStripHeight;
     save_strip_edges(strips);
-    parallel_for(static_cast<std::size_t>(strips),
-                 [&](std::size_t strip) { run_strip(static_cast<int>(strip)); });
+    std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips));
+    parallel_for(scores.size(),
+                 [&](std::size_t strip) { scores[strip] = run_strip(static_cast<int>(strip)); });
+    return std::accumulate(scores.begin(), scores.end(), std::uint64_t{0});
   }
 
  private:
@@ -83,23 +88,30 @@ class Sweep {
     return edges_[static_cast<std::size_t>((edge * 2 + row) * map_.width + x)];
   }
 
-  void run_strip(int strip) {
-    const int top = strip * kStripHeight;
+  std::uint64_t run_strip(int number) {
+    const int top = number * kStripHeight;
     const int bottom = std::min(top + kStripHeight, map_.height);
-    Rays rays;
+    Strip strip{number, {}, 0};
     if (input_.sweep % 2 == 0) {
       for (int y = top; y < bottom; ++y)
-        for (int x = 0; x < map_.width; ++x) visit(strip, x, y, -1, rays);
+        for (int x = 0; x < map_.width; ++x) visit(strip, x, y, -1);
     } else {
       for (int y = bottom - 1; y >= top; --y)
-        for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1, rays);
+        for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1);
     }
+    return strip.scores;
   }
 
   // The rays of the tile of pixels that was visited last.
   struct Rays {
     int x = -1, y = -1;  // where it begins
     RayTile tile;
+  };
+
+  struct Strip {
+    int number;
+    Rays rays;
+    std::uint64_t scores;
   };
 
   const PixelRay& ray(int x, int y, Rays& rays) const {
@@ -160,13 +172,14 @@ class Sweep {
   struct Visit {
     const ReferencePixel& pixel;
     const Neighbourhood& around;
+    std::uint64_t& scores;  // counted up
   };
 
-  void visit(int strip, int x, int y, int step, Rays& rays) {
+  void visit(Strip& strip, int x, int y, int step) {
     PlanePixel& current = map_.at(x, y);
     if (!window_inside(x, y, map_.width, map_.height) || (input_.mask && !(*input_.mask)(y, x)))
       return clear(current);
-    ReferencePixel pixel = matcher_.pixels().prepare(x, y, ray(x, y, rays));
+    ReferencePixel pixel = matcher_.pixels().prepare(x, y, ray(x, y, strip.rays));
     float prior = input_.prior ? (*input_.prior)(y, x) : 0.0f;
     if (pixel.patch.texture < options_.min_texture) {
       if (input_.textureless_prior) prior = (*input_.textureless_prior)(y, x);
@@ -182,13 +195,14 @@ class Sweep {
     if (!(current.plane.normal.dot(pixel.ray.direction) < 0))
       current.plane.normal = random.facing_normal(pixel.ray.direction);
 
-    const Neighbourhood around = neighbourhood(strip, x, y);
-    const Visit at{pixel, around};
+    const Neighbourhood around = neighbourhood(strip.number, x, y);
+    const Visit at{pixel, around, strip.scores};
     const PlanePixel none;
     const bool beside = x + step >= 0 && x + step < map_.width;
     const bool above = y + step >= 0 && y + step < map_.height;
-    const std::array<const PlanePixel*, 2> before{beside ? &neighbour(strip, x + step, y) : &none,
-                                                  above ? &neighbour(strip, x, y + step) : &none};
+    const std::array<const PlanePixel*, 2> before{
+        beside ? &neighbour(strip.number, x + step, y) : &none,
+        above ? &neighbour(strip.number, x, y + step) : &none};
     const Views own = own_views(x, y, current, before);
     Candidates candidates;
     candidates.add(current.plane, own.all());
@@ -272,6 +286,7 @@ class Sweep {
     std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
     matcher_.score(at.pixel, candidates.all(), pairs, at.around.all(), scores);
+    at.scores += pairs.size();
     std::size_t winner = pairs.size();  // its first pair
     for (std::size_t i = 0; i < pairs.size();) {
       constexpr float kNone = std::numeric_limits<float>::max();
@@ -350,7 +365,7 @@ class Sweep {
     Candidates candidates;
     for (int trial = 0; trial < options_.restart_trials; ++trial)
       candidates.add(random_plane(at.pixel, random), {all_views_.data(), matcher_.views()});
-    keep_best({at.pixel, Neighbourhood()}, candidates, best);
+    keep_best({at.pixel, Neighbourhood(), at.scores}, candidates, best);
     return best.cost < options_.bad_cost;
   }
 

@@ -22,9 +22,7 @@ struct Survey {
   std::vector<const depth::MatchImage*> sources;
   std::vector<const DepthMap*> source_maps;
 
-  depth::MatchInput input() const {
-    return {&views[0], sources, points, nullptr, ProjectionMethod::exact};
-  }
+  depth::MatchInput input() const { return {&views[0], sources, points}; }
 };
 
 // Made once and kept. 512 x 384 pixels.

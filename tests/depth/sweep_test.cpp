@@ -76,9 +76,19 @@ SweepInput input(int trial_pairs) {
   return sweep;
 }
 
-void run(const FormulaMatcher& matcher, PlaneMap& map, const SweepInput& sweep) {
+std::uint64_t run(const FormulaMatcher& matcher, PlaneMap& map, const SweepInput& sweep) {
   const ThreadLimit one(1);
-  Sweep(matcher, map, PatchMatchOptions(), sweep).run();
+  return Sweep(matcher, map, PatchMatchOptions(), sweep).run();
+}
+
+TEST(SweepScores, AreCounted) {
+  const FormulaMatcher matcher;
+  PlaneMap map = wall();
+  map.at(kSide / 2, kSide / 2).plane.depth = 3.9f;  // hopeless: tries planes at random
+  const std::uint64_t counted = run(matcher, map, input(2));
+  std::uint64_t asked = 0;
+  for (const auto& pairs : matcher.calls) asked += pairs.size();
+  EXPECT_EQ(counted, asked);
 }
 
 TEST(SweepViews, AreFewHoweverManyThereAre) {
