@@ -279,7 +279,7 @@ def threads(work):
 def refractive_cost(work):
     table = work / "refractive-cost.json"
     measured(work / "refractive-cost.log", BIN / "matching_benchmark",
-             "--benchmark_filter=sweep|depth_map", "--benchmark_repetitions=7",
+             "--benchmark_filter=sweep|depth_map", "--benchmark_repetitions=21",
              f"--benchmark_out={table}")
     ratios = {b["run_name"]: b["ratio"] for b in json.loads(table.read_text())["benchmarks"]
               if b.get("aggregate_name") == "median"}
