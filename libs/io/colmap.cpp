@@ -85,4 +85,15 @@ ColmapModel read_colmap_model(const fs::path& folder) {
   return model;
 }
 
+std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
+  std::vector<ColmapCamera> cameras;
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    cameras = read_part(path, "cameras", read_cameras_text, read_cameras_binary);
+  else
+    cameras = path.extension() == ".bin" ? read_cameras_binary(path) : read_cameras_text(path);
+  require_unique_ids(cameras, "camera", path.string());
+  return cameras;
+}
+
 }  // namespace axial::io

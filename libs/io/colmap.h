@@ -65,8 +65,15 @@ std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 // NaN, a reference to a camera, image or point that does not exist, a truncated file.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
+// The cameras alone: of a model's folder, or a file cameras.txt or cameras.bin by any name with
+// that extension.
+std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
+
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
+
+// How many of a camera model's parameters, the first ones, are focal lengths; -1 if unknown.
+int colmap_focal_count(std::string_view model);
 
 // Number of parameters of a camera model by name; -1 if unknown.
 int colmap_parameter_count(std::string_view model);

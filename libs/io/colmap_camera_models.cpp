@@ -68,6 +68,11 @@ int colmap_parameter_count(std::string_view name) {
   return model ? model->parameters : -1;
 }
 
+int colmap_focal_count(std::string_view name) {
+  const Model* model = find_model(name);
+  return model ? model->focal_lengths : -1;
+}
+
 Pose pose_from_colmap(const ColmapPose& values, const std::string& where) {
   for (const double value : values)
     if (!std::isfinite(value)) fail("{}: the pose holds {}", where, value);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/colmap_lens.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -182,7 +184,42 @@ bool whole_border_seen(const ColmapCamera& camera, const Parts& parts,
   return true;
 }
 
+// Central differences: the models have no closed derivatives in common.
+Eigen::Matrix2d derivative_at(const Parts& parts, const Vector2d& direction) {
+  const double h = 1e-6 * (1 + direction.norm());
+  Eigen::Matrix2d derivative;
+  for (int k = 0; k < 2; ++k) {
+    const Vector2d step = h * Vector2d::Unit(k);
+    derivative.col(k) =
+        (image_point(parts, direction + step) - image_point(parts, direction - step)) / (2 * h);
+  }
+  return derivative;
+}
+
 }  // namespace
+
+std::optional<ImagedDirection> direction_at(const ColmapCamera& camera, const Vector2d& pixel) {
+  const Parts parts = take_apart(camera);
+  const auto& lens = parts.pinhole;
+  Vector2d direction((pixel.x() - lens.cx) / lens.fx, (pixel.y() - lens.cy) / lens.fy);
+  constexpr int kSteps = 50;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vector2d miss = image_point(parts, direction) - pixel;
+    const Eigen::Matrix2d derivative = derivative_at(parts, direction);
+    if (!miss.allFinite() || !(derivative.determinant() > 0)) return std::nullopt;
+    if (miss.norm() < 1e-9 * (1 + pixel.norm())) return ImagedDirection{direction, derivative};
+    Vector2d step = derivative.inverse() * miss;
+    // A fisheye's edge is far out on the plane: not there in one leap.
+    const double reach = 0.5 * (1 + direction.norm());
+    if (step.norm() > reach) step *= reach / step.norm();
+    direction -= step;
+  }
+  return std::nullopt;
+}
+
+refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera) {
+  return take_apart(camera).pinhole;
+}
 
 Vector2d image_direction(const ColmapCamera& camera, double u, double v) {
   return image_point(take_apart(camera), {u, v});

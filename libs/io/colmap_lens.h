@@ -18,6 +18,20 @@ namespace axial::io {
 // Error for a model that is not supported or a wrong number of parameters.
 Eigen::Vector2d image_direction(const ColmapCamera& camera, double u, double v);
 
+// The inverse of image_direction.
+struct ImagedDirection {
+  Eigen::Vector2d direction;   // (u, v)
+  Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) there
+};
+
+// What in-air direction `camera` images at `pixel` (centres at integers). Nothing where the model
+// has none, or none that is found from the undistorted one. Error as image_direction.
+std::optional<ImagedDirection> direction_at(const ColmapCamera& camera,
+                                            const Eigen::Vector2d& pixel);
+
+// The lens without its distortion: focal lengths and principal point. Pixel centres at integers.
+refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera);
+
 // The lens if `camera` is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a lens model whose distortion is
 // exactly zero. Pixel centres at integers.
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const ColmapCamera& camera);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/program.h"
+#include "pose/refine.h"
+
+struct Options {
+  axial::ParsedOptions parsed;
+  std::filesystem::path model;    // COLMAP folder
+  std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
+  std::filesystem::path housing;  // file
+  std::filesystem::path output;   // folder
+  std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
+  double scale_sigma = 0;         // [m]
+  axial::pose::RefineOptions refine;
+};
+
+// Parses and checks the command line; what is left to do is in `parsed.run`.
+Options parse_command_line(int argc, const char* const* argv);

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scale_from.h"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace {
+
+using namespace axial;
+using pose::KnownDistance;
+
+template <class T>
+T number(const std::string& text, const std::string& where) {
+  T value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) fail("{}: '{}' is no number", where, text);
+  return value;
+}
+
+std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
+                        const std::string& where) {
+  const auto found =
+      std::find_if(bundle.images.begin(), bundle.images.end(),
+                   [&](const pose::BundleImage& image) { return image.name == name; });
+  if (found == bundle.images.end()) fail("{}: the model has no image '{}'", where, name);
+  return static_cast<std::size_t>(found - bundle.images.begin());
+}
+
+KnownDistance known_distance(KnownDistance::Between between, const std::string& list, double sigma,
+                             const pose::Bundle& bundle, const std::string& where) {
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  if (words.size() != 3) fail("{}: must name two ends and the metres between them", where);
+  KnownDistance known;
+  known.between = between;
+  const auto end = [&](const std::string& word) {
+    if (between == KnownDistance::Between::images) return image_named(bundle, word, where);
+    const auto id = number<std::size_t>(word, where);
+    point_of(bundle, id);
+    return id;
+  };
+  known.first = end(words[0]);
+  known.second = end(words[1]);
+  known.metres = number<double>(words[2], where);
+  known.sigma = sigma;
+  if (!(known.metres > 0)) fail("{}: {} m is no distance", where, words[2]);
+  if (known.first == known.second) fail("{}: both ends are the same", where);
+  return known;
+}
+
+void read_positions(const std::filesystem::path& file, double sigma, const pose::Bundle& bundle,
+                    pose::AdjustOptions& adjust) {
+  std::istringstream lines(read_file(file));
+  int line_number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = fmt::format("{}:{}", file.string(), ++line_number);
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string name, x, y, z;
+    if (!(words >> name)) continue;
+    std::string more;
+    if (!(words >> x >> y >> z) || words >> more) fail("{}: must be NAME X Y Z", where);
+    adjust.positions.push_back(
+        {image_named(bundle, name, where),
+         {number<double>(x, where), number<double>(y, where), number<double>(z, where)},
+         sigma});
+  }
+  if (adjust.positions.size() < 3)
+    fail("{}: {} positions, at least 3 are needed", file.string(), adjust.positions.size());
+}
+
+}  // namespace
+
+void add_known(const std::string& scale_from, double sigma,
+               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
+               pose::AdjustOptions& adjust) {
+  if (scale_from.empty()) return;
+  const std::string where = "--scale-from " + scale_from;
+  const std::size_t colon = scale_from.find(':');
+  const std::string kind = scale_from.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? "" : scale_from.substr(colon + 1);
+  if (kind == "images")
+    adjust.distances.push_back(
+        known_distance(KnownDistance::Between::images, rest, sigma, bundle, where));
+  else if (kind == "points")
+    adjust.distances.push_back(
+        known_distance(KnownDistance::Between::points, rest, sigma, bundle, where));
+  else if (kind == "positions")
+    read_positions(working_folder / rest, sigma, bundle, adjust);
+  else
+    fail("{}: must begin with images:, points: or positions:", where);
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/adjust.h"
+
+#include <ceres/solver.h>
+
+#include "base/error.h"
+#include "pose/adjust_problem.h"
+
+namespace axial::pose {
+namespace {
+
+ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_SCHUR;
+  auto* ordering = new ceres::ParameterBlockOrdering;
+  for (double* block : adjusted.point_blocks()) ordering->AddElementToGroup(block, 0);
+  for (double* block : adjusted.camera_blocks()) ordering->AddElementToGroup(block, 1);
+  options.linear_solver_ordering.reset(ordering);
+  options.num_threads = 1;
+  options.max_num_iterations = max_iterations;
+  // Refraction tells the scale, and little else does: it converges last and moves the cost least.
+  options.function_tolerance = 1e-10;
+  options.gradient_tolerance = 0;
+  options.parameter_tolerance = 1e-12;
+  // Where nothing tells the scale, some damping must be left to divide by.
+  options.max_trust_region_radius = 1e10;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+}  // namespace
+
+AdjustReport adjust(Bundle& bundle, const AdjustOptions& options) {
+  AdjustProblem adjusted(bundle, options);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(adjusted, options.max_iterations), &adjusted.problem(), &summary);
+  if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
+  adjusted.write_back(bundle);
+  return {summary.termination_type == ceres::CONVERGENCE,
+          static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/adjust_problem.h"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace axial::pose {
+namespace {
+
+// What follows are residuals in standard deviations.
+
+struct LengthResidual {
+  int offset;  // of the position within its block
+  double metres, sigma;
+
+  template <class T>
+  bool operator()(const T* a, const T* b, T* residual) const {
+    using std::sqrt;
+    T sum(0);
+    for (int k = offset; k < offset + 3; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    residual[0] = (sqrt(sum) - metres) / sigma;
+    return true;
+  }
+};
+
+struct PositionResidual {
+  Eigen::Vector3d metres;
+  double sigma;
+
+  template <class T>
+  bool operator()(const T* pose, T* residual) const {
+    for (int k = 0; k < 3; ++k) residual[k] = (pose[3 + k] - metres(k)) / sigma;
+    return true;
+  }
+};
+
+struct MeasuredResidual {
+  int number;
+  double sigma;
+
+  template <class T>
+  bool operator()(const T* change, T* residual) const {
+    residual[0] = change[number] / sigma;
+    return true;
+  }
+};
+
+ceres::Problem::Options problem_options(CurrentCameras* cameras) {
+  ceres::Problem::Options options;
+  options.evaluation_callback = cameras;
+  return options;
+}
+
+bool is_known(double sigma) {
+  return sigma > 0;
+}
+
+void check(const Bundle& bundle, const AdjustOptions& options) {
+  if (bundle.observations.empty()) fail("bundle adjustment: no observations");
+  if (!(options.pixel_sigma > 0)) fail("bundle adjustment: pixel_sigma must be positive");
+  for (const KnownDistance& known : options.distances)
+    if (!(known.metres > 0) || !(known.sigma > 0))
+      fail("bundle adjustment: a known distance of {} +- {} m", known.metres, known.sigma);
+  for (const KnownPosition& known : options.positions)
+    if (!(known.sigma > 0)) fail("bundle adjustment: a known position +- {} m", known.sigma);
+  const bool port_is_free = std::find(options.free.begin(), options.free.begin() + kFocalNumber,
+                                      true) != options.free.begin() + kFocalNumber;
+  for (const BundleCamera& camera : bundle.cameras)
+    if (port_is_free && !camera.measured.port)
+      fail("bundle adjustment: a camera in air has no port to adjust");
+}
+
+}  // namespace
+
+AdjustProblem::AdjustProblem(const Bundle& bundle, const AdjustOptions& options)
+    : bundle_(bundle), options_(options) {
+  check(bundle, options);
+  for (const BundlePoint& point : bundle.points) points_.push_back(point.position);
+  tied_.resize(points_.size());
+  for (const BundleImage& image : bundle.images) poses_.push_back(numbers_of(image.pose));
+  for (const BundleCamera& camera : bundle.cameras) changes_.push_back(camera.change);
+  cameras_ = std::make_unique<CurrentCameras>(bundle.cameras, changes_);
+  problem_ = std::make_unique<ceres::Problem>(problem_options(cameras_.get()));
+  add_observations();
+  add_known();
+  fix_what_stays();
+}
+
+void AdjustProblem::add_observations() {
+  const double sigma = options_.pixel_sigma;
+  auto* loss = new ceres::ScaledLoss(new ceres::HuberLoss(options_.loss_sigmas * sigma),
+                                     1 / (sigma * sigma), ceres::TAKE_OWNERSHIP);
+  for (const Observation& observation : bundle_.observations) {
+    const BundleImage& image = bundle_.images[observation.image];
+    problem_->AddResidualBlock(
+        new ObservationCost(observation, image.pose, bundle_.cameras[image.camera],
+                            (*cameras_)[image.camera]),
+        loss, image_block(observation.image), points_[observation.point].data(),
+        change_block(image.camera));
+  }
+}
+
+void AdjustProblem::add_known() {
+  for (const KnownDistance& known : options_.distances) add_known_distance(known);
+  for (const KnownPosition& known : options_.positions)
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PositionResidual, 3, kPoseNumbers>(
+                                   new PositionResidual{known.metres, known.sigma}),
+                               nullptr, image_block(known.image));
+  for (HousingChange<double>& change : changes_)
+    for (int k = 0; k < kHousingNumbers; ++k) {
+      const auto number = static_cast<std::size_t>(k);
+      if (options_.free[number] && is_known(options_.prior_sigma[number]))
+        problem_->AddResidualBlock(
+            new ceres::AutoDiffCostFunction<MeasuredResidual, 1, kHousingNumbers>(
+                new MeasuredResidual{k, options_.prior_sigma[number]}),
+            nullptr, change.data());
+    }
+}
+
+void AdjustProblem::add_known_distance(const KnownDistance& known) {
+  if (known.between == KnownDistance::Between::images) {
+    problem_->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<LengthResidual, 1, kPoseNumbers, kPoseNumbers>(
+            new LengthResidual{3, known.metres, known.sigma}),
+        nullptr, image_block(known.first), image_block(known.second));
+    return;
+  }
+  const std::size_t first = point_of(bundle_, known.first);
+  const std::size_t second = point_of(bundle_, known.second);
+  tied_[first] = tied_[second] = true;
+  problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LengthResidual, 1, 3, 3>(
+                                 new LengthResidual{0, known.metres, known.sigma}),
+                             nullptr, points_[first].data(), points_[second].data());
+}
+
+void AdjustProblem::fix_what_stays() {
+  if (options_.positions.size() < 3 && problem_->HasParameterBlock(poses_[0].data()))
+    problem_->SetParameterBlockConstant(poses_[0].data());
+  std::vector<int> fixed;
+  for (int k = 0; k < kHousingNumbers; ++k)
+    if (!options_.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
+  for (HousingChange<double>& change : changes_) {
+    if (!problem_->HasParameterBlock(change.data()) || fixed.empty()) continue;
+    if (fixed.size() == kHousingNumbers)
+      problem_->SetParameterBlockConstant(change.data());
+    else
+      problem_->SetManifold(change.data(), new ceres::SubsetManifold(kHousingNumbers, fixed));
+  }
+}
+
+std::vector<double*> AdjustProblem::camera_blocks() {
+  std::vector<double*> blocks;
+  const auto add = [&](double* block) {
+    if (problem_->HasParameterBlock(block) && !problem_->IsParameterBlockConstant(block))
+      blocks.push_back(block);
+  };
+  for (PoseNumbers& pose : poses_) add(pose.data());
+  for (HousingChange<double>& change : changes_) add(change.data());
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (tied_[i]) add(points_[i].data());
+  return blocks;
+}
+
+std::vector<double*> AdjustProblem::point_blocks() {
+  std::vector<double*> blocks;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (!tied_[i] && problem_->HasParameterBlock(points_[i].data()))
+      blocks.push_back(points_[i].data());
+  return blocks;
+}
+
+void AdjustProblem::write_back(Bundle& bundle) const {
+  for (std::size_t i = 0; i < poses_.size(); ++i)
+    bundle.images[i].pose = moved(bundle_.images[i].pose, poses_[i]);
+  for (std::size_t i = 0; i < points_.size(); ++i) bundle.points[i].position = points_[i];
+  for (std::size_t i = 0; i < changes_.size(); ++i) bundle.cameras[i].change = changes_[i];
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/bundle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace axial::pose {
+namespace {
+
+double error_of(const CameraVariant<double>& camera, const Pose& pose, const Eigen::Vector3d& point,
+                const Observation& observation) {
+  return std::visit(
+      [&](const auto& c) {
+        const auto image = c.project(pose.to_camera(point));
+        if (!image.visible) return std::numeric_limits<double>::infinity();
+        return (observation.to_photograph * (image.pixel - observation.pixel)).norm();
+      },
+      camera);
+}
+
+}  // namespace
+
+std::size_t point_of(const Bundle& bundle, std::size_t source) {
+  const auto found = std::find_if(bundle.points.begin(), bundle.points.end(),
+                                  [&](const BundlePoint& point) { return point.source == source; });
+  if (found == bundle.points.end())
+    fail("point {} is not in the model, or fits no refractive cameras", source);
+  return static_cast<std::size_t>(found - bundle.points.begin());
+}
+
+std::vector<double> reprojection_errors(const Bundle& bundle) {
+  std::vector<CameraVariant<double>> cameras;
+  for (const BundleCamera& camera : bundle.cameras)
+    cameras.push_back(make_camera<double>(camera.now()));
+  std::vector<double> errors;
+  errors.reserve(bundle.observations.size());
+  for (const Observation& observation : bundle.observations) {
+    const BundleImage& image = bundle.images[observation.image];
+    errors.push_back(error_of(cameras[image.camera], image.pose,
+                              bundle.points[observation.point].position, observation));
+  }
+  return errors;
+}
+
+double root_mean_square(std::span<const double> errors) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double error : errors) {
+    if (!std::isfinite(error)) continue;
+    sum += error * error;
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+}  // namespace axial::pose

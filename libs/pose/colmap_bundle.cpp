@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/colmap_bundle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/error.h"
+#include "io/colmap_lens.h"
+
+namespace axial::pose {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
+                                std::span<const io::ColmapCamera> lenses) {
+  const auto found = std::find_if(lenses.begin(), lenses.end(), [&](const io::ColmapCamera& lens) {
+    return lenses.size() == 1 || lens.id == camera.id;
+  });
+  if (found == lenses.end()) fail("camera {} has no in-air lens", camera.id);
+  if (found->width != camera.width || found->height != camera.height)
+    fail("camera {} is {} x {}, its in-air lens {} x {}", camera.id, camera.width, camera.height,
+         found->width, found->height);
+  return *found;
+}
+
+// The lens without distortion, zoomed out until it holds all that `camera` images.
+refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
+  refractive::PinholeLens<double> lens = io::undistorted_lens(camera);
+  const double right = static_cast<double>(camera.width) - 1;
+  const double bottom = static_cast<double>(camera.height) - 1;
+  double zoom = 1;
+  const auto hold = [&](const Eigen::Vector2d& pixel) {
+    const auto imaged = io::direction_at(camera, pixel);
+    if (!imaged) return;
+    const double u = lens.fx * imaged->direction.x(), v = lens.fy * imaged->direction.y();
+    const double room_u = u > 0 ? right - lens.cx : lens.cx;
+    const double room_v = v > 0 ? bottom - lens.cy : lens.cy;
+    zoom = std::min(
+        {zoom, room_u / std::max(std::abs(u), room_u), room_v / std::max(std::abs(v), room_v)});
+  };
+  constexpr int kSamples = 32;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double x = right * i / kSamples, y = bottom * i / kSamples;
+    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(x, 0), Eigen::Vector2d(x, bottom),
+                                         Eigen::Vector2d(0, y), Eigen::Vector2d(right, y)})
+      hold(pixel);
+  }
+  lens.fx *= zoom;
+  lens.fy *= zoom;
+  return lens;
+}
+
+// Bundle cameras: one for each lens and port that occur together.
+class Cameras {
+ public:
+  Cameras(ColmapBundle& result, const io::Housing& housing) : result_(result), housing_(housing) {}
+
+  std::size_t index(const io::ColmapCamera& camera, const io::ColmapCamera& lens,
+                    const std::string& port) {
+    const auto [found, added] =
+        indices_.try_emplace({camera.id, port}, result_.bundle.cameras.size());
+    if (added) add(lens, port);
+    return found->second;
+  }
+
+ private:
+  void add(const io::ColmapCamera& lens, const std::string& port) {
+    result_.bundle.cameras.push_back({{static_cast<int>(lens.width), static_cast<int>(lens.height),
+                                       holding(lens), port_named(port)},
+                                      HousingChange<double>::Zero()});
+    result_.lenses.push_back(lens);
+    result_.lenses.back().id = static_cast<std::uint32_t>(result_.lenses.size());
+    result_.ports.push_back(port);
+  }
+
+  std::optional<refractive::Port<double>> port_named(const std::string& name) const {
+    if (name == "none") return std::nullopt;
+    return housing_.ports.at(name);
+  }
+
+  ColmapBundle& result_;
+  const io::Housing& housing_;
+  std::map<std::pair<std::uint32_t, std::string>, std::size_t> indices_;
+};
+
+// The observation on the distortion-free lens; false where the lens images nothing.
+bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& pinhole,
+           const io::ColmapPoint2D& point, Observation& observation) {
+  const auto imaged = io::direction_at(lens, {point.x - 0.5, point.y - 0.5});
+  if (!imaged) return false;
+  observation.pixel = {pinhole.fx * imaged->direction.x() + pinhole.cx,
+                       pinhole.fy * imaged->direction.y() + pinhole.cy};
+  observation.to_photograph.col(0) = imaged->derivative.col(0) / pinhole.fx;
+  observation.to_photograph.col(1) = imaged->derivative.col(1) / pinhole.fy;
+  return true;
+}
+
+template <class Range, class Id>
+std::map<Id, std::size_t> indices_by_id(const Range& range, Id) {
+  std::map<Id, std::size_t> indices;
+  for (std::size_t i = 0; i < range.size(); ++i) indices[range[i].id] = i;
+  return indices;
+}
+
+void scale_focal_lengths(io::ColmapCamera& lens, double factor) {
+  const auto focal_lengths = static_cast<std::size_t>(io::colmap_focal_count(lens.model));
+  for (std::size_t k = 0; k < focal_lengths; ++k) lens.params[k] *= factor;
+}
+
+}  // namespace
+
+ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
+                       const io::Housing& housing) {
+  ColmapBundle result;
+  Bundle& bundle = result.bundle;
+  Cameras cameras(result, housing);
+  const auto camera_indices = indices_by_id(model.cameras, std::uint32_t{});
+  for (const io::ColmapImage& image : model.images) {
+    const io::ColmapCamera& camera = model.cameras[camera_indices.at(image.camera)];
+    bundle.images.push_back(
+        {image.name,
+         cameras.index(camera, lens_of(camera, lenses), housing.port_of(image.name, image.camera)),
+         image.pose});
+  }
+  const auto image_indices = indices_by_id(model.images, std::uint32_t{});
+  for (const io::ColmapPoint3D& point : model.points) {
+    for (const io::ColmapTrackElement& element : point.track) {
+      Observation observation;
+      observation.image = image_indices.at(element.image);
+      observation.point = bundle.points.size();
+      observation.source = element.point2d;
+      const std::size_t camera = bundle.images[observation.image].camera;
+      const io::ColmapPoint2D& seen = model.images[observation.image].points.at(element.point2d);
+      if (place(result.lenses[camera], bundle.cameras[camera].measured.lens, seen, observation))
+        bundle.observations.push_back(observation);
+      else
+        ++result.unseen;
+    }
+    bundle.points.push_back({point.position, point.id});
+  }
+  return result;
+}
+
+io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model) {
+  const Bundle& bundle = refined.bundle;
+  io::ColmapModel result;
+  result.cameras = refined.lenses;
+  for (std::size_t i = 0; i < result.cameras.size(); ++i)
+    scale_focal_lengths(result.cameras[i], std::exp(bundle.cameras[i].change(kFocalNumber)));
+  result.images = model.images;
+  for (std::size_t i = 0; i < result.images.size(); ++i) {
+    result.images[i].pose = bundle.images[i].pose;
+    result.images[i].camera = result.cameras[bundle.images[i].camera].id;
+    for (io::ColmapPoint2D& point : result.images[i].points) point.point3d = io::kNoPoint3D;
+  }
+  const auto colors = indices_by_id(model.points, std::uint64_t{});
+  for (const BundlePoint& point : bundle.points) {
+    io::ColmapPoint3D copy = model.points[colors.at(point.source)];
+    copy.position = point.position;
+    copy.track.clear();
+    copy.error = 0;
+    result.points.push_back(std::move(copy));
+  }
+  const std::vector<double> errors = reprojection_errors(bundle);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Observation& observation = bundle.observations[i];
+    io::ColmapPoint3D& point = result.points[observation.point];
+    io::ColmapImage& image = result.images[observation.image];
+    point.track.push_back({image.id, static_cast<std::uint32_t>(observation.source)});
+    point.error += errors[i];
+    image.points[observation.source].point3d = point.id;
+  }
+  for (io::ColmapPoint3D& point : result.points)
+    if (!point.track.empty()) point.error /= static_cast<double>(point.track.size());
+  return result;
+}
+
+io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured) {
+  io::Housing housing;
+  std::map<std::string, int> uses;
+  for (const std::string& port : refined.ports) ++uses[port];
+  for (std::size_t i = 0; i < refined.ports.size(); ++i) {
+    const std::string& port = refined.ports[i];
+    if (port == "none") continue;
+    const BundleCamera& camera = refined.bundle.cameras[i];
+    const bool own = uses[port] > 1 && !camera.change.isZero(0);
+    const std::string name = own ? fmt::format("{}_{}", port, refined.lenses[i].id) : port;
+    housing.ports[name] = *camera.now().port;
+    housing.cameras[refined.lenses[i].id] = name;
+  }
+  if (uses.size() == 1 && housing.ports.size() == 1 && measured.images.empty()) {
+    housing.default_port = housing.ports.begin()->first;
+    housing.cameras.clear();
+  }
+  return housing;
+}
+
+}  // namespace axial::pose

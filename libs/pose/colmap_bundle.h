@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a COLMAP model of photographs taken through a port to a bundle, and back.
+#pragma once
+
+#include <span>
+
+#include "io/colmap.h"
+#include "io/housing.h"
+#include "pose/bundle.h"
+
+namespace axial::pose {
+
+// A bundle and what it takes to make a COLMAP model of it again.
+struct ColmapBundle {
+  Bundle bundle;
+  std::vector<io::ColmapCamera> lenses;  // per bundle camera: in air; ids are the bundle's, from 1
+  std::vector<std::string> ports;        // per bundle camera: its port's name
+  std::size_t unseen = 0;                // observations left out: the lens images nothing there
+};
+
+// Poses, points and tracks of `model`, whatever lenses it believes in; in their place the `lenses`
+// in air, by camera id, or a single one for all cameras of its size, behind their ports of
+// `housing`. Observations are moved to the pixels of a distortion-free lens that holds the whole
+// image. Error for a camera without a lens, or of another size than its lens.
+ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
+                       const io::Housing& housing);
+
+// `model` with the bundle's poses, points, tracks and mean errors, and the in-air lenses.
+io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
+
+// The ports where the bundle has them now, by camera id; one that several cameras share, and that
+// has been adjusted, becomes one for each.
+io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
+
+}  // namespace axial::pose

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The unknown numbers of a camera behind a port: how far lens and port are from where they were
+// measured.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "scene/camera_model.h"
+
+namespace axial::pose {
+
+// Of a flat port: tilts [rad] of the normal about the two axes across it, distance [m], refractive
+// index of the water. Of a dome: its centre [m], the index. Of a camera in air: nothing. Last, of
+// all of them: the logarithm of the factor of both focal lengths.
+inline constexpr int kHousingNumbers = 5;
+inline constexpr int kIndexNumber = 3, kFocalNumber = 4;
+
+template <class T>
+using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
+
+template <class T>
+refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
+                              const HousingChange<T>& change) {
+  refractive::FlatPort<T> port = measured.cast<T>();
+  const Eigen::Matrix3d axis = refractive::axis_from_camera(measured.normal);
+  port.normal +=
+      axis.row(0).transpose().cast<T>() * change(0) + axis.row(1).transpose().cast<T>() * change(1);
+  port.normal.normalize();
+  port.distance += change(2);
+  port.n_water += change(kIndexNumber);
+  return port;
+}
+
+template <class T>
+refractive::DomePort<T> moved(const refractive::DomePort<double>& measured,
+                              const HousingChange<T>& change) {
+  refractive::DomePort<T> port = measured.cast<T>();
+  port.centre += change.template head<3>();
+  port.n_water += change(kIndexNumber);
+  return port;
+}
+
+template <class T>
+refractive::PinholeLens<T> moved(const refractive::PinholeLens<double>& measured,
+                                 const HousingChange<T>& change) {
+  using std::exp;
+  refractive::PinholeLens<T> lens = measured.cast<T>();
+  lens.fx *= exp(change(kFocalNumber));
+  lens.fy *= exp(change(kFocalNumber));
+  return lens;
+}
+
+// The camera with lens and port moved.
+CameraModel moved(const CameraModel& measured, const HousingChange<double>& change);
+
+// The derivative of the point at `lambda` on the pixel's ray, in the camera frame, by the change.
+// Since a point's image is the pixel whose ray meets it, the derivative of an image by the change
+// is -(d(pixel)/dX) times this (implicit function theorem): no iteration is differentiated.
+Eigen::Matrix<double, 3, kHousingNumbers> ray_by_change(const CameraModel& measured,
+                                                        const HousingChange<double>& change,
+                                                        const Eigen::Vector2d& pixel,
+                                                        double lambda);
+
+}  // namespace axial::pose

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/observation_cost.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace axial::pose {
+namespace {
+
+constexpr double kUnseen = 100;  // [px], of a point whose light does not reach the camera
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+template <int Columns>
+using RowMajor = Eigen::Map<Eigen::Matrix<double, 2, Columns, Eigen::RowMajor>>;
+
+}  // namespace
+
+PoseNumbers numbers_of(const Pose& start) {
+  return {0, 0, 0, start.centre.x(), start.centre.y(), start.centre.z()};
+}
+
+Pose moved(const Pose& start, const PoseNumbers& numbers) {
+  return {rotation_of(Eigen::Map<const Eigen::Vector3d>(numbers.data())) * start.rotation,
+          Eigen::Map<const Eigen::Vector3d>(numbers.data() + 3)};
+}
+
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w) {
+  const double angle2 = w.squaredNorm();
+  const Eigen::Matrix3d W = cross_matrix(w);
+  if (angle2 < 1e-8) return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 6;
+  const double angle = std::sqrt(angle2);
+  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle2 * W +
+         (angle - std::sin(angle)) / (angle2 * angle) * W * W;
+}
+
+CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras,
+                               std::span<const HousingChange<double>> changes)
+    : measured_(cameras), changes_(changes) {
+  CurrentCameras::PrepareForEvaluation(false, true);
+}
+
+void CurrentCameras::PrepareForEvaluation(bool, bool new_evaluation_point) {
+  if (!new_evaluation_point) return;
+  cameras_.resize(measured_.size());
+  for (std::size_t i = 0; i < cameras_.size(); ++i)
+    cameras_[i] = make_camera<double>(moved(measured_[i].measured, changes_[i]));
+}
+
+bool ObservationCost::Evaluate(double const* const* parameters, double* residuals,
+                               double** jacobians) const {
+  PoseNumbers numbers;
+  std::copy_n(parameters[0], numbers.size(), numbers.begin());
+  const Pose pose = moved(start_, numbers);
+  const Eigen::Vector3d X = pose.to_camera(Eigen::Map<const Eigen::Vector3d>(parameters[1]));
+  refractive::Matrix23<double> by_point;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  const auto image =
+      std::visit([&](const auto& camera) { return camera.project(X, &by_point, &origin); }, now_);
+  Eigen::Map<Eigen::Vector2d> residual(residuals);
+  residual = image.visible
+                 ? Eigen::Vector2d(observation_.to_photograph * (image.pixel - observation_.pixel))
+                 : Eigen::Vector2d(kUnseen, kUnseen);
+  if (!jacobians) return true;
+  if (image.visible)
+    by_point = observation_.to_photograph * by_point;
+  else
+    by_point.setZero();
+  if (jacobians[0]) {
+    RowMajor<kPoseNumbers> by_pose(jacobians[0]);
+    by_pose.leftCols<3>() = -by_point * cross_matrix(X) *
+                            left_jacobian(Eigen::Map<const Eigen::Vector3d>(parameters[0]));
+    by_pose.rightCols<3>() = -by_point * pose.rotation;
+  }
+  if (jacobians[1]) RowMajor<3>{jacobians[1]} = by_point * pose.rotation;
+  if (jacobians[2]) {
+    HousingChange<double> change;
+    std::copy_n(parameters[2], kHousingNumbers, change.data());
+    RowMajor<kHousingNumbers>{jacobians[2]} =
+        -by_point * ray_by_change(measured_.measured, change, image.pixel, (X - origin).norm());
+  }
+  return true;
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The residual of refractive bundle adjustment: by how many pixels a point misses its observation,
+// by the exact projection, with analytic derivatives.
+#pragma once
+
+#include <ceres/evaluation_callback.h>
+#include <ceres/sized_cost_function.h>
+
+#include <array>
+#include <vector>
+
+#include "pose/bundle.h"
+
+namespace axial::pose {
+
+// A pose as its change: a rotation vector w [rad], applied after the rotation it starts from, and
+// the camera centre. X_camera = exp([w]x) R (X - C).
+inline constexpr int kPoseNumbers = 6;
+using PoseNumbers = std::array<double, kPoseNumbers>;
+
+PoseNumbers numbers_of(const Pose& start);
+Pose moved(const Pose& start, const PoseNumbers& numbers);
+
+// d(exp([w]x) v)/dw = -[exp([w]x) v]x J, with this J: the left Jacobian of the rotation group.
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
+
+// The cameras as the numbers under adjustment have them now: made anew once per evaluation, not
+// once per observation.
+class CurrentCameras : public ceres::EvaluationCallback {
+ public:
+  // `changes`, one per camera: what the solver works on. Both must outlive this.
+  CurrentCameras(std::span<const BundleCamera> cameras,
+                 std::span<const HousingChange<double>> changes);
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+
+  const CameraVariant<double>& operator[](std::size_t camera) const { return cameras_[camera]; }
+
+ private:
+  std::span<const BundleCamera> measured_;
+  std::span<const HousingChange<double>> changes_;
+  std::vector<CameraVariant<double>> cameras_;
+};
+
+// Residual [px of the photograph] of one observation; blocks: the pose's numbers, the point, the
+// camera's change. A point whose light does not reach the camera has a large residual that nothing
+// moves: the loss function bounds its say.
+class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
+ public:
+  // All arguments must outlive the cost.
+  ObservationCost(const Observation& observation, const Pose& start, const BundleCamera& measured,
+                  const CameraVariant<double>& now)
+      : observation_(observation), start_(start), measured_(measured), now_(now) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const Observation& observation_;
+  const Pose& start_;
+  const BundleCamera& measured_;
+  const CameraVariant<double>& now_;
+};
+
+}  // namespace axial::pose

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/refine.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/error.h"
+
+namespace axial::pose {
+namespace {
+
+constexpr std::size_t kTrialPoints = 1500;  // enough to tell one scale from another
+// Median distances of the scene [m] to begin with: close-up to wide survey.
+constexpr std::array<double, 7> kTrialDistances{0.25, 0.5, 1, 2, 4, 8, 16};
+
+const Eigen::Vector3d& place_of(const Bundle& bundle, const KnownDistance& known, std::size_t end) {
+  if (known.between == KnownDistance::Between::images) return bundle.images[end].pose.centre;
+  return bundle.points[point_of(bundle, end)].position;
+}
+
+// The factor that makes a length known in metres right; nothing where none is known.
+double known_scale(const Bundle& bundle, const AdjustOptions& options) {
+  for (const KnownDistance& known : options.distances) {
+    const double length =
+        (place_of(bundle, known, known.first) - place_of(bundle, known, known.second)).norm();
+    if (length > 0) return known.metres / length;
+  }
+  return 0;
+}
+
+// Brings the bundle where its positions are known to be.
+bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positions) {
+  if (positions.size() < 3) return false;
+  Eigen::Matrix3Xd from(3, positions.size()), to(3, positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
+    to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
+  }
+  const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, true);
+  const double scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
+  const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / scale;
+  const auto place = [&](Eigen::Vector3d& x) {
+    x = scale * (rotation * x) + similarity.topRightCorner<3, 1>();
+  };
+  for (BundleImage& image : bundle.images) {
+    place(image.pose.centre);
+    image.pose.rotation = image.pose.rotation * rotation.transpose();
+  }
+  for (BundlePoint& point : bundle.points) place(point.position);
+  return true;
+}
+
+// A part of the bundle: the points seen most often.
+Bundle sample(const Bundle& bundle) {
+  std::vector<std::size_t> seen(bundle.points.size());
+  for (const Observation& observation : bundle.observations) ++seen[observation.point];
+  std::vector<std::size_t> order(seen.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return seen[a] > seen[b]; });
+  order.resize(std::min(order.size(), kTrialPoints));
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> place(seen.size(), kNone);
+  Bundle part{bundle.cameras, bundle.images, {}, {}};
+  for (const std::size_t point : order) {
+    place[point] = part.points.size();
+    part.points.push_back(bundle.points[point]);
+  }
+  for (Observation observation : bundle.observations) {
+    if (place[observation.point] == kNone) continue;
+    observation.point = place[observation.point];
+    part.observations.push_back(observation);
+  }
+  return part;
+}
+
+// What a short adjustment of `trial` leaves of its errors.
+double trial_cost(Bundle trial, double scale) {
+  scale_places(trial, scale);
+  triangulate(trial);
+  AdjustOptions options;
+  options.max_iterations = 12;
+  options.loss_sigmas = 4;
+  return adjust(trial, options).final_cost;
+}
+
+double best_scale(const Bundle& bundle) {
+  const Bundle part = sample(bundle);
+  const double distance = median_distance(part);
+  double best = 1, least = std::numeric_limits<double>::max();
+  for (const double metres : kTrialDistances) {
+    const double cost = trial_cost(part, metres / distance);
+    if (cost < least) least = cost, best = metres / distance;
+  }
+  return best;
+}
+
+}  // namespace
+
+double median_distance(const Bundle& bundle) {
+  std::vector<double> distances;
+  for (const Observation& observation : bundle.observations)
+    distances.push_back(
+        (bundle.points[observation.point].position - bundle.images[observation.image].pose.centre)
+            .norm());
+  if (distances.empty()) fail("the model has no observations");
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+void scale_places(Bundle& bundle, double scale) {
+  for (BundleImage& image : bundle.images) image.pose.centre *= scale;
+  for (BundlePoint& point : bundle.points) point.position *= scale;
+}
+
+void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
+  if (!place_by_positions(bundle, options.positions)) {
+    const double known = known_scale(bundle, options);
+    scale_places(bundle, known > 0 ? known : best_scale(bundle));
+  }
+  triangulate(bundle);
+}
+
+RefineReport refine(Bundle& bundle, const RefineOptions& options,
+                    const std::function<void(const std::string&)>& progress) {
+  RefineReport report;
+  report.observations_before = bundle.observations.size();
+  report.points_before = bundle.points.size();
+  AdjustOptions adjusting = options.adjust;
+  report.rms_before = root_mean_square(reprojection_errors(bundle));
+
+  // Wide at first: what a pinhole engine left is no outlier yet.
+  TrackLimits limits = options.tracks;
+  limits.max_error *= 4;
+  adjusting.loss_sigmas *= 4;
+  for (int round = 0; round < options.rounds; ++round) {
+    report.last = adjust(bundle, adjusting);
+    const std::size_t dropped = filter(bundle, limits);
+    if (bundle.observations.empty()) fail("no observation fits refractive cameras");
+    if (progress)
+      progress(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
+                           round + 1, report.last.iterations,
+                           root_mean_square(reprojection_errors(bundle)), dropped));
+    limits = options.tracks;
+    adjusting.loss_sigmas = options.adjust.loss_sigmas;
+    adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
+  }
+  report.last = adjust(bundle, adjusting);
+  report.uncertainty = uncertainty(bundle, adjusting);
+  report.rms_after = root_mean_square(reprojection_errors(bundle));
+  report.observations_after = bundle.observations.size();
+  report.points_after = bundle.points.size();
+  return report;
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/tracks.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace axial::pose {
+namespace {
+
+using Ray = refractive::AxialRay<double>;
+
+// The ray in water of every observation, in the world frame.
+std::vector<Ray> world_rays(const Bundle& bundle) {
+  std::vector<CameraVariant<double>> cameras;
+  for (const BundleCamera& camera : bundle.cameras)
+    cameras.push_back(make_camera<double>(camera.now()));
+  std::vector<Ray> rays;
+  for (const Observation& observation : bundle.observations) {
+    const BundleImage& image = bundle.images[observation.image];
+    const Ray ray = std::visit([&](const auto& camera) { return camera.ray(observation.pixel); },
+                               cameras[image.camera]);
+    rays.push_back(
+        {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction});
+  }
+  return rays;
+}
+
+std::vector<std::vector<std::size_t>> observations_by_point(const Bundle& bundle) {
+  std::vector<std::vector<std::size_t>> lists(bundle.points.size());
+  for (std::size_t i = 0; i < bundle.observations.size(); ++i)
+    lists[bundle.observations[i].point].push_back(i);
+  return lists;
+}
+
+// [rad], the largest between any two.
+double widest_angle(std::span<const std::size_t> list, const std::vector<Ray>& rays) {
+  double smallest_cosine = 1;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (std::size_t j = i + 1; j < list.size(); ++j)
+      smallest_cosine =
+          std::min(smallest_cosine, rays[list[i]].direction.dot(rays[list[j]].direction));
+  return std::acos(std::clamp(smallest_cosine, -1.0, 1.0));
+}
+
+// Points without observations leave, and the others close ranks.
+void drop_points(Bundle& bundle, const std::vector<bool>& kept) {
+  std::vector<std::size_t> place(kept.size());
+  std::vector<BundlePoint> points;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    place[i] = points.size();
+    if (kept[i]) points.push_back(bundle.points[i]);
+  }
+  std::erase_if(bundle.observations, [&](const Observation& o) { return !kept[o.point]; });
+  for (Observation& observation : bundle.observations) observation.point = place[observation.point];
+  bundle.points = std::move(points);
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> triangulate(std::span<const Ray> rays) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const Ray& ray : rays) {
+    const Eigen::Matrix3d across =
+        Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose();
+    normal += across;
+    right += across * ray.origin;
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+  constexpr double kParallel = 1e-8;  // squared sine of an angle of 0.006 degrees
+  if (rays.size() < 2 || !(solver.vectorD().minCoeff() > kParallel)) return {};
+  const Eigen::Vector3d point = solver.solve(right);
+  for (const Ray& ray : rays)
+    if (!(ray.direction.dot(point - ray.origin) > 0)) return {};
+  return point;
+}
+
+void triangulate(Bundle& bundle) {
+  const std::vector<Ray> rays = world_rays(bundle);
+  const auto lists = observations_by_point(bundle);
+  std::vector<Ray> own;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    own.clear();
+    for (const std::size_t observation : lists[i]) own.push_back(rays[observation]);
+    if (const auto point = triangulate(own)) bundle.points[i].position = *point;
+  }
+}
+
+std::size_t filter(Bundle& bundle, const TrackLimits& limits) {
+  const std::size_t before = bundle.observations.size();
+  const std::vector<double> errors = reprojection_errors(bundle);
+  std::vector<Observation> believed;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i] <= limits.max_error) believed.push_back(bundle.observations[i]);
+  bundle.observations = std::move(believed);
+
+  const std::vector<Ray> rays = world_rays(bundle);
+  const auto lists = observations_by_point(bundle);
+  std::vector<bool> kept;
+  for (const auto& list : lists)
+    kept.push_back(list.size() >= 2 &&
+                   widest_angle(list, rays) >= limits.min_angle * std::numbers::pi / 180);
+  drop_points(bundle, kept);
+  return before - bundle.observations.size();
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tracks of a bundle: triangulation through ports, and which observations to believe.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "pose/bundle.h"
+#include "refractive/axial_ray.h"
+
+namespace axial::pose {
+
+// The point with the least sum of squared distances to the rays (metres, any common frame). Nothing
+// for fewer than two rays, or where they are parallel or meet behind their origins.
+std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
+
+// All points anew from their observations' rays. Those that have none keep their place.
+void triangulate(Bundle& bundle);
+
+struct TrackLimits {
+  double max_error = 4;    // [px]
+  double min_angle = 1.5;  // [degrees] between some two rays of a point
+};
+
+// Drops observations with larger errors, then points with fewer than two observations or too
+// narrow an angle. The number of observations dropped.
+std::size_t filter(Bundle& bundle, const TrackLimits& limits);
+
+}  // namespace axial::pose

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <ceres/crs_matrix.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "pose/adjust.h"
+#include "pose/adjust_problem.h"
+
+namespace axial::pose {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
+  const std::size_t fixed_images = options.positions.size() < 3 ? 1 : 0;
+  const auto free =
+      static_cast<std::size_t>(std::count(options.free.begin(), options.free.end(), true));
+  return kPoseNumbers * (bundle.images.size() - fixed_images) + free * bundle.cameras.size() +
+         3 * bundle.points.size();
+}
+
+Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  options.num_threads = 1;
+  ceres::CRSMatrix crs;
+  problem.Evaluate(options, nullptr, nullptr, nullptr, &crs);
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  return Eigen::Map<const Rows>(crs.num_rows, crs.num_cols,
+                                static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(),
+                                crs.cols.data(), crs.values.data());
+}
+
+// Of the blocks of 3 that the points are.
+Sparse inverse_of_blocks(const Sparse& blocks) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int start = 0; start < blocks.cols(); start += 3) {
+    const Eigen::Matrix3d block = blocks.block(start, start, 3, 3);
+    // A point at infinity knows nothing of the cameras' places.
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(block);
+    const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1e-12 * eigen.eigenvalues()(2));
+    const Eigen::Matrix3d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                                    eigen.eigenvectors().transpose();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) entries.emplace_back(start + i, start + j, inverse(i, j));
+  }
+  Sparse result(blocks.rows(), blocks.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+// The normal matrix of the cameras with the points eliminated.
+Eigen::MatrixXd reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camera_columns) {
+  const Sparse cameras = jacobian.leftCols(camera_columns);
+  const Sparse points = jacobian.rightCols(jacobian.cols() - camera_columns);
+  const Sparse across = cameras.transpose() * points;
+  const Sparse own = points.transpose() * points;
+  const Sparse eliminated = across * inverse_of_blocks(own) * Sparse(across.transpose());
+  return Eigen::MatrixXd(Sparse(cameras.transpose() * cameras)) - Eigen::MatrixXd(eliminated);
+}
+
+// Covariance of a vector whose normal matrix is given; scaled first, since metres, radians and
+// indices differ by orders of magnitude. What nothing determines has an infinite variance.
+class Covariance {
+ public:
+  explicit Covariance(const Eigen::MatrixXd& normal)
+      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
+        eigen_(scale_.asDiagonal() * normal * scale_.asDiagonal()) {}
+
+  double variance(const Eigen::VectorXd& direction) const {
+    const Eigen::VectorXd along =
+        eigen_.eigenvectors().transpose() * (scale_.asDiagonal() * direction);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      if (std::abs(along(i)) < 1e-9 * along.norm()) continue;
+      if (!(eigen_.eigenvalues()(i) > kUndetermined)) return kInfinite;
+      sum += along(i) * along(i) / eigen_.eigenvalues()(i);
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr double kUndetermined = 1e-12;
+  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd scale_;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+};
+
+std::size_t farthest_image(const Bundle& bundle) {
+  std::size_t farthest = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    const double distance = (bundle.images[i].pose.centre - bundle.images[0].pose.centre).norm();
+    if (distance > largest) largest = distance, farthest = i;
+  }
+  return farthest;
+}
+
+// The normal equations at the solution, and which of their columns is what.
+class Normal {
+ public:
+  Normal(const Bundle& bundle, const AdjustOptions& options)
+      : problem_(bundle, options), bundle_(bundle), options_(options) {
+    std::vector<double*> blocks = problem_.camera_blocks();
+    for (const double* block : blocks) {
+      columns_[block] = camera_columns_;
+      camera_columns_ += problem_.problem().ParameterBlockTangentSize(block);
+    }
+    for (double* block : problem_.point_blocks()) blocks.push_back(block);
+    const Sparse derivatives = jacobian(problem_.problem(), blocks);
+    covariance_.emplace(reduced_normal_matrix(derivatives, camera_columns_));
+  }
+
+  HousingChange<double> sigmas_of_camera(std::size_t camera) {
+    HousingChange<double> sigmas = HousingChange<double>::Zero();
+    const auto found = columns_.find(problem_.change_block(camera));
+    if (found == columns_.end()) return sigmas;
+    Eigen::Index column = found->second;
+    for (int k = 0; k < kHousingNumbers; ++k)
+      if (options_.free[static_cast<std::size_t>(k)])
+        sigmas(k) =
+            std::sqrt(covariance_->variance(Eigen::VectorXd::Unit(camera_columns_, column++)));
+    return sigmas;
+  }
+
+  // Relative, of the distance between two images.
+  double sigma_of_distance(std::size_t from, std::size_t to) {
+    const Eigen::Vector3d baseline =
+        bundle_.images[to].pose.centre - bundle_.images[from].pose.centre;
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(camera_columns_);
+    add_centre(to, baseline.normalized(), direction);
+    add_centre(from, -baseline.normalized(), direction);
+    return std::sqrt(covariance_->variance(direction)) / baseline.norm();
+  }
+
+ private:
+  void add_centre(std::size_t image, const Eigen::Vector3d& along, Eigen::VectorXd& direction) {
+    const auto found = columns_.find(problem_.image_block(image));
+    if (found != columns_.end()) direction.segment<3>(found->second + 3) += along;
+  }
+
+  AdjustProblem problem_;
+  const Bundle& bundle_;
+  const AdjustOptions& options_;
+  std::map<const double*, Eigen::Index> columns_;
+  Eigen::Index camera_columns_ = 0;
+  std::optional<Covariance> covariance_;
+};
+
+}  // namespace
+
+double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) {
+  const std::vector<double> errors = reprojection_errors(bundle);
+  const double residuals = 2.0 * static_cast<double>(errors.size());
+  const double free = std::max(1.0, residuals - static_cast<double>(unknowns_of(bundle, options)));
+  constexpr double kLeast = 1e-9;  // of errors that rounding makes
+  return std::max(kLeast, root_mean_square(errors) * std::sqrt(residuals / (2 * free)));
+}
+
+Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options) {
+  Uncertainty result;
+  result.pixel_sigma = observed_pixel_sigma(bundle, options);
+  AdjustOptions weighed = options;
+  weighed.pixel_sigma = result.pixel_sigma;
+  Normal normal(bundle, weighed);
+  for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
+    result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
+  result.scale_sigma = normal.sigma_of_distance(0, farthest_image(bundle));
+  return result;
+}
+
+}  // namespace axial::pose

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/adjust.h"
+
+#include <gtest/gtest.h>
+
+#include "pose/survey.h"
+#include "support/error_of.h"
+
+namespace axial::pose {
+namespace {
+
+using testing::camera_behind;
+using testing::disturb;
+using testing::dome_port;
+using testing::flat_port;
+using testing::kDegree;
+using testing::pose_errors;
+using testing::survey;
+
+struct Case {
+  const char* name;
+  refractive::Port<double> port;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) {
+  return out << one.name;
+}
+
+class AdjustBehind : public ::testing::TestWithParam<Case> {};
+
+TEST_P(AdjustBehind, FindsPosesPointsAndScaleOfPerfectTracks) {
+  const Bundle truth = survey(camera_behind(GetParam().port), {});
+  Bundle bundle = truth;
+  disturb(bundle, 0.5 * kDegree, 0.01, 3);
+  bundle.images[0].pose = truth.images[0].pose;
+  AdjustOptions options;
+  // The true scale, as a tape measure knows it: a centred dome would not tell it.
+  options.distances.push_back({KnownDistance::Between::images, 0, 11,
+                               (truth.images[0].pose.centre - truth.images[11].pose.centre).norm(),
+                               1e-4});
+  const AdjustReport report = adjust(bundle, options);
+  EXPECT_LT(report.final_cost, 1e-9 * report.initial_cost);
+  const auto errors = pose_errors(bundle, truth, false);
+  EXPECT_LT(errors.centre_rms, 1e-7);
+  EXPECT_LT(errors.largest_angle, 1e-5);
+}
+
+// Every observation has two numbers of noise, and every unknown takes one away.
+TEST_P(AdjustBehind, LeavesAsMuchErrorAsTheNoise) {
+  const Bundle truth = survey(camera_behind(GetParam().port), {.noise = 0.5});
+  Bundle bundle = truth;
+  disturb(bundle, 0.2 * kDegree, 0.003, 3);
+  AdjustOptions options;
+  options.pixel_sigma = 0.5;
+  options.loss_sigmas = 100;
+  adjust(bundle, options);
+  const double numbers = 2.0 * static_cast<double>(bundle.observations.size());
+  const double unknowns = 6.0 * 11 + 3.0 * static_cast<double>(bundle.points.size());
+  const double expected = 0.5 * std::sqrt(2 * (1 - unknowns / numbers));
+  const double rms = root_mean_square(reprojection_errors(bundle));
+  EXPECT_NEAR(rms, expected, 0.03 * expected);  // 1 / sqrt(2 x 5000) is 1 %
+  EXPECT_NEAR(observed_pixel_sigma(bundle, options), 0.5, 0.015);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ports, AdjustBehind,
+                         ::testing::Values(Case{"FlatPort", flat_port(3)},
+                                           Case{"FarPort", flat_port(0, 0.1)},
+                                           Case{"Dome", dome_port()}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(Adjust, OutliersHaveLittleSay) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
+  Bundle bundle = truth;
+  for (std::size_t i = 0; i < bundle.observations.size(); i += 50)
+    bundle.observations[i].pixel += Eigen::Vector2d(40, -30);
+  AdjustOptions options;
+  options.pixel_sigma = 0.3;
+  adjust(bundle, options);
+  const auto errors = pose_errors(bundle, truth);
+  EXPECT_LT(errors.centre_rms, 0.001);  // 0.1 px of 610 at 0.8 m is 0.13 mm
+}
+
+TEST(Adjust, KnownPositionsHoldTheModel) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
+  Bundle bundle = truth;
+  AdjustOptions options;
+  for (const std::size_t image : {std::size_t{0}, std::size_t{4}, std::size_t{11}})
+    options.positions.push_back(
+        {image, truth.images[image].pose.centre + Eigen::Vector3d(1, 2, 3) * 0.01, 1e-5});
+  adjust(bundle, options);
+  for (const KnownPosition& known : options.positions)
+    EXPECT_LT((bundle.images[known.image].pose.centre - known.metres).norm(), 1e-4);
+  EXPECT_LT(pose_errors(bundle, truth).centre_rms, 0.001);
+}
+
+TEST(Adjust, AKnownLengthBetweenPointsSetsTheScale) {
+  const Bundle truth = survey(camera_behind(std::nullopt), {});
+  Bundle bundle = truth;
+  AdjustOptions options;
+  const double length = (truth.points[0].position - truth.points[7].position).norm();
+  options.distances.push_back({KnownDistance::Between::points, 0, 7, 2 * length, 1e-4});
+  adjust(bundle, options);
+  EXPECT_NEAR(pose_errors(bundle, truth).scale, 0.5, 1e-6);
+}
+
+TEST(Adjust, RefusesWhatCannotBe) {
+  const Bundle truth = survey(camera_behind(std::nullopt), {});
+  Bundle bundle = truth;
+  AdjustOptions options;
+  options.free[2] = true;
+  EXPECT_NE(test::error_of([&] { adjust(bundle, options); }).find("no port"), std::string::npos);
+  options = {};
+  options.distances.push_back({KnownDistance::Between::images, 0, 1, -1, 0.1});
+  EXPECT_NE(test::error_of([&] { adjust(bundle, options); }).find("-1"), std::string::npos);
+  bundle.observations.clear();
+  EXPECT_NE(test::error_of([&] { adjust(bundle, {}); }).find("no observations"), std::string::npos);
+}
+
+// In air nothing tells the scale; behind a port, the farther the port the better.
+TEST(Uncertainty, OfTheScaleIsWhatThePortMakesIt) {
+  const auto scale_sigma = [](std::optional<refractive::Port<double>> port) {
+    const Bundle bundle = survey(camera_behind(std::move(port)), {.noise = 0.5});
+    return uncertainty(bundle, {}).scale_sigma;
+  };
+  const double near = scale_sigma(flat_port(0, 0.005)), far = scale_sigma(flat_port(0, 0.1));
+  EXPECT_TRUE(std::isinf(scale_sigma(std::nullopt)));
+  EXPECT_LT(far, 0.3 * near);
+  EXPECT_LT(far, 0.1);
+  EXPECT_GT(far, 0);
+}
+
+TEST(Uncertainty, OfAKnownLengthIsThatOfTheMeasure) {
+  const Bundle bundle = survey(camera_behind(std::nullopt), {.noise = 0.5});
+  const double length = (bundle.images[0].pose.centre - bundle.images[11].pose.centre).norm();
+  AdjustOptions options;
+  options.distances.push_back({KnownDistance::Between::images, 0, 11, length, 0.02 * length});
+  EXPECT_NEAR(uncertainty(bundle, options).scale_sigma, 0.02, 1e-4);
+}
+
+Bundle with_noise(Bundle bundle, double sigma, int seed) {
+  std::mt19937_64 random(static_cast<unsigned>(seed) + 100);
+  std::normal_distribution<double> noise(0, sigma);
+  for (Observation& observation : bundle.observations)
+    observation.pixel += Eigen::Vector2d(noise(random), noise(random));
+  return bundle;
+}
+
+// A distance of the port as far off as the scene is makes the same photographs, but for the glass:
+// one length must be known to find the port.
+KnownDistance known_baseline(const Bundle& truth) {
+  const std::size_t last = truth.images.size() - 1;
+  return {KnownDistance::Between::images, 0, last,
+          (truth.images[0].pose.centre - truth.images[last].pose.centre).norm(), 1e-5};
+}
+
+// Many surveys that differ in noise alone: the numbers scatter as the standard deviations say.
+TEST(Uncertainty, OfThePortIsHonest) {
+  constexpr int kRuns = 30;
+  const Bundle exact = survey(camera_behind(flat_port(2, 0.02)), {.images = 8, .points = 150});
+  AdjustOptions options;
+  options.free = {true, true, true, false, false};
+  options.pixel_sigma = 0.5;
+  options.loss_sigmas = 100;
+  options.distances.push_back(known_baseline(exact));
+  HousingChange<double> sum2 = HousingChange<double>::Zero(), predicted2 = sum2;
+  for (int run = 0; run < kRuns; ++run) {
+    Bundle bundle = with_noise(exact, 0.5, run);
+    adjust(bundle, options);
+    const Uncertainty found = uncertainty(bundle, options);
+    sum2 += bundle.cameras[0].change.cwiseAbs2();
+    predicted2 += found.camera_sigmas[0].cwiseAbs2();
+  }
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GT(sum2(k) / predicted2(k), 0.3) << k;
+    EXPECT_LT(sum2(k) / predicted2(k), 1.9) << k;
+  }
+  for (int k = 3; k < kHousingNumbers; ++k) EXPECT_EQ(sum2(k) + predicted2(k), 0);
+}
+
+TEST(Uncertainty, OfTheScaleIsHonest) {
+  constexpr int kRuns = 30;
+  const Bundle exact = survey(camera_behind(flat_port(0, 0.1)), {.images = 8, .points = 150});
+  double sum2 = 0, predicted2 = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    Bundle bundle = with_noise(exact, 0.5, run);
+    AdjustOptions options;
+    options.pixel_sigma = 0.5;
+    options.loss_sigmas = 100;
+    adjust(bundle, options);
+    const double error = 1 / pose_errors(bundle, exact).scale - 1;
+    sum2 += error * error;
+    predicted2 += std::pow(uncertainty(bundle, options).scale_sigma, 2);
+  }
+  EXPECT_GT(sum2 / predicted2, 0.3);  // see above
+  EXPECT_LT(sum2 / predicted2, 1.9);
+}
+
+// Started from a distance wrong by 5 mm and a tilt wrong by 1 degree.
+TEST(Adjust, FindsThePortAgain) {
+  const Bundle truth = survey(camera_behind(flat_port(2, 0.02)), {.points = 600, .noise = 0.5});
+  Bundle bundle = truth;
+  bundle.cameras[0].measured = camera_behind(flat_port(3, 0.025));
+  AdjustOptions options;
+  options.distances.push_back(known_baseline(truth));
+  options.free = {true, true, true, false, false};
+  options.pixel_sigma = 0.5;
+  adjust(bundle, options);
+  const Uncertainty found = uncertainty(bundle, options);
+  const auto port = std::get<refractive::FlatPort<double>>(*bundle.cameras[0].now().port);
+  const auto& sigmas = found.camera_sigmas[0];
+  EXPECT_LT(std::abs(port.distance - 0.02), 3 * sigmas(2));
+  EXPECT_LT(std::abs(std::asin(port.normal.x()) - 2 * kDegree), 3 * sigmas(0));
+  EXPECT_LT(std::abs(std::asin(port.normal.y())), 3 * sigmas(1));
+  EXPECT_LT(sigmas(0), 0.3 * kDegree);
+  EXPECT_LT(sigmas(2), 0.004);
+}
+
+TEST(Adjust, FindsTheCentreOfADome) {
+  const auto port = dome_port();
+  const Bundle truth = survey(camera_behind(port), {.points = 600, .noise = 0.3});
+  Bundle bundle = truth;
+  auto wrong = port;
+  wrong.centre += Eigen::Vector3d(0.002, -0.001, 0.002);
+  bundle.cameras[0].measured = camera_behind(wrong);
+  AdjustOptions options;
+  options.distances.push_back(known_baseline(truth));
+  options.free = {true, true, true, false, false};
+  options.pixel_sigma = 0.3;
+  adjust(bundle, options);
+  const Uncertainty found = uncertainty(bundle, options);
+  const auto now = std::get<refractive::DomePort<double>>(*bundle.cameras[0].now().port);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_LT(std::abs(now.centre(k) - port.centre(k)), 3 * found.camera_sigmas[0](k)) << k;
+}
+
+}  // namespace
+}  // namespace axial::pose

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/colmap_bundle.h"
+
+#include <gtest/gtest.h>
+
+#include "io/colmap_lens.h"
+#include "pose/survey.h"
+#include "support/error_of.h"
+
+namespace axial::pose {
+namespace {
+
+using testing::camera_behind;
+using testing::flat_port;
+using testing::survey;
+
+const io::ColmapCamera kLens{
+    4, "OPENCV", 1024, 768, {620, 615, 512, 384, -0.12, 0.02, 1e-4, -2e-4}};
+
+io::Housing housing() {
+  io::Housing housing;
+  housing.ports["main"] = flat_port(2);
+  housing.default_port = "main";
+  return housing;
+}
+
+// The survey as COLMAP would know it: its images taken by the distorting lens. Points that the lens
+// has outside its image stay, off the image.
+io::ColmapModel model_of(const Bundle& bundle) {
+  io::ColmapModel model;
+  model.cameras = {{4, "SIMPLE_RADIAL", 1024, 768, {800, 512, 384, 0.1}}};
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    io::ColmapImage image;
+    image.id = static_cast<std::uint32_t>(i + 10);
+    image.camera = 4;
+    image.name = bundle.images[i].name;
+    image.pose = bundle.images[i].pose;
+    model.images.push_back(image);
+  }
+  for (std::size_t i = 0; i < bundle.points.size(); ++i)
+    model.points.push_back({i + 1000, bundle.points[i].position, {1, 2, 3}, 0, {}});
+  const auto& lens = bundle.cameras[0].measured.lens;
+  for (const Observation& observation : bundle.observations) {
+    const Eigen::Vector3d bearing = lens.bearing(observation.pixel);
+    const Eigen::Vector2d pixel = io::image_direction(kLens, bearing.x(), bearing.y());
+    io::ColmapImage& image = model.images[observation.image];
+    io::ColmapPoint3D& point = model.points[observation.point];
+    point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+    image.points.push_back({pixel.x() + 0.5, pixel.y() + 0.5, point.id});
+  }
+  return model;
+}
+
+TEST(ColmapBundle, SeesThroughLensAndPort) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  const ColmapBundle bundle = to_bundle(model, {&kLens, 1}, housing());
+  EXPECT_EQ(bundle.unseen, 0u);
+  ASSERT_EQ(bundle.bundle.cameras.size(), 1u);
+  for (const double error : reprojection_errors(bundle.bundle)) ASSERT_LT(error, 1e-6);
+}
+
+// A tenth of a pixel in the photograph is a tenth of a pixel of error, wherever the lens distorts.
+TEST(ColmapBundle, MeasuresErrorsInThePhotograph) {
+  io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  for (io::ColmapImage& image : model.images)
+    for (io::ColmapPoint2D& point : image.points) point.x += 0.1;
+  const ColmapBundle bundle = to_bundle(model, {&kLens, 1}, housing());
+  for (const double error : reprojection_errors(bundle.bundle)) ASSERT_NEAR(error, 0.1, 2e-4);
+}
+
+TEST(ColmapBundle, BecomesTheModelAgain) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {.noise = 0.5}));
+  ColmapBundle bundle = to_bundle(model, {&kLens, 1}, housing());
+  bundle.bundle.cameras[0].change(kFocalNumber) = std::log(1.01);
+  bundle.bundle.images[2].pose.centre.x() += 0.1;
+  const io::ColmapModel back = to_model(bundle, model);
+  ASSERT_EQ(back.cameras.size(), 1u);
+  EXPECT_EQ(back.cameras[0].model, "OPENCV");
+  EXPECT_NEAR(back.cameras[0].params[0], 620 * 1.01, 1e-9);
+  EXPECT_NEAR(back.cameras[0].params[1], 615 * 1.01, 1e-9);
+  EXPECT_EQ(back.cameras[0].params[2], 512);
+  EXPECT_EQ(back.images[2].pose.centre.x(), model.images[2].pose.centre.x() + 0.1);
+  ASSERT_EQ(back.points.size(), model.points.size());
+  for (std::size_t i = 0; i < back.points.size(); ++i) {
+    EXPECT_EQ(back.points[i].id, model.points[i].id);
+    EXPECT_EQ(back.points[i].track.size(), model.points[i].track.size());
+  }
+  for (std::size_t i = 0; i < back.images.size(); ++i) {
+    ASSERT_EQ(back.images[i].points.size(), model.images[i].points.size());
+    for (std::size_t k = 0; k < back.images[i].points.size(); ++k) {
+      EXPECT_EQ(back.images[i].points[k].x, model.images[i].points[k].x);
+      EXPECT_EQ(back.images[i].points[k].point3d, model.images[i].points[k].point3d);
+    }
+  }
+}
+
+TEST(ColmapBundle, LeavesOutWhatWasDropped) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  ColmapBundle bundle = to_bundle(model, {&kLens, 1}, housing());
+  const Observation dropped = bundle.bundle.observations[0];
+  bundle.bundle.observations.erase(bundle.bundle.observations.begin());
+  const io::ColmapModel back = to_model(bundle, model);
+  EXPECT_EQ(back.images[dropped.image].points[dropped.source].point3d, io::kNoPoint3D);
+  EXPECT_EQ(back.points[0].track.size() + 1, model.points[0].track.size());
+}
+
+TEST(ColmapBundle, GivesEachPortItsCamera) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  io::Housing two = housing();
+  two.ports["other"] = flat_port(0);
+  two.images["image3.jpg"] = "other";
+  two.images["image4.jpg"] = "none";
+  ColmapBundle bundle = to_bundle(model, {&kLens, 1}, two);
+  ASSERT_EQ(bundle.ports, (std::vector<std::string>{"main", "other", "none"}));
+  EXPECT_FALSE(bundle.bundle.cameras[2].measured.port);
+  bundle.bundle.cameras[1].change(2) = 0.003;
+  const io::Housing back = to_housing(bundle, two);
+  const io::ColmapModel refined = to_model(bundle, model);
+  EXPECT_EQ(back.port_of("image0.jpg", refined.images[0].camera), "main");
+  EXPECT_EQ(back.port_of("image3.jpg", refined.images[3].camera), "other");
+  EXPECT_EQ(back.port_of("image4.jpg", refined.images[4].camera), "none");
+  EXPECT_NEAR(std::get<refractive::FlatPort<double>>(back.ports.at("other")).distance, 0.023,
+              1e-15);
+}
+
+TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  io::ColmapCamera small = kLens;
+  small.width = 512;
+  EXPECT_EQ(test::error_of([&] {
+              to_bundle(model, {&small, 1}, housing());
+            }),
+            "camera 4 is 1024 x 768, its in-air lens 512 x 768");
+  std::vector<io::ColmapCamera> others{kLens, kLens};
+  others[0].id = 1;
+  others[1].id = 2;
+  EXPECT_EQ(test::error_of([&] { to_bundle(model, others, housing()); }),
+            "camera 4 has no in-air lens");
+}
+
+}  // namespace
+}  // namespace axial::pose

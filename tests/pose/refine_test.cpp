@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what a pinhole engine makes of underwater photographs to refractive poses.
+#include "pose/refine.h"
+
+#include <gtest/gtest.h>
+
+#include "pose/survey.h"
+
+namespace axial::pose {
+namespace {
+
+using testing::camera_behind;
+using testing::dome_port;
+using testing::flat_port;
+using testing::pose_errors;
+using testing::survey;
+using testing::SurveyOptions;
+
+struct Case {
+  const char* name;
+  refractive::Port<double> port;
+  double distance;  // of the scene [m]
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) {
+  return out << one.name;
+}
+
+// The survey as a pinhole engine with a free focal length knows it, in a scale of its own.
+Bundle absorbed(const Bundle& truth) {
+  Bundle bundle = truth;
+  bundle.cameras[0].measured.port.reset();
+  AdjustOptions options;
+  options.free[kFocalNumber] = true;
+  options.loss_sigmas = 10;
+  adjust(bundle, options);
+  scale_places(bundle, 7.3);
+  bundle.cameras = truth.cameras;
+  return bundle;
+}
+
+class RefineBehind : public ::testing::TestWithParam<Case> {};
+
+TEST_P(RefineBehind, FindsPosesFromAbsorbedOnes) {
+  const Bundle truth = survey(camera_behind(GetParam().port),
+                              {.distance = GetParam().distance, .points = 400, .noise = 0.2});
+  Bundle bundle = absorbed(truth);
+  RefineOptions options;
+  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
+  options.adjust.distances.push_back(
+      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  bring_to_metres(bundle, options.adjust);
+  const RefineReport report = refine(bundle, options);
+  EXPECT_LT(report.rms_after, 0.2 * std::sqrt(2.0) * 1.02);
+  EXPECT_GT(report.rms_after, 0.2 * std::sqrt(2.0) * 0.8);
+  const auto errors = pose_errors(bundle, truth);
+  EXPECT_LT(errors.centre_rms, 0.001 * GetParam().distance);
+  EXPECT_LT(errors.largest_angle, 0.05);
+  EXPECT_NEAR(errors.scale, 1, 1e-3);
+  EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
+}
+
+// The scale comes out within what its standard deviation says, from refraction alone.
+TEST_P(RefineBehind, SaysHowWellItKnowsTheScale) {
+  const Bundle truth = survey(camera_behind(GetParam().port),
+                              {.distance = GetParam().distance, .points = 400, .noise = 0.2});
+  Bundle bundle = absorbed(truth);
+  RefineOptions options;
+  bring_to_metres(bundle, options.adjust);
+  const RefineReport report = refine(bundle, options);
+  const double scale = 1 / pose_errors(bundle, truth).scale;
+  EXPECT_LT(std::abs(std::log(scale)), 3 * report.uncertainty.scale_sigma);
+  EXPECT_LT(report.rms_after, 0.2 * std::sqrt(2.0) * 1.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ports, RefineBehind,
+                         ::testing::Values(Case{"Flat", flat_port(0), 2.5},
+                                           Case{"CloseUp", flat_port(0), 0.7},
+                                           Case{"Tilted", flat_port(3), 2.5},
+                                           Case{"FarPort", flat_port(0, 0.1), 2.5},
+                                           Case{"Dome", dome_port(), 2.5}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
+  const Bundle truth = survey(camera_behind(flat_port()), {});
+  Bundle bundle = truth;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  for (BundleImage& image : bundle.images) {
+    image.pose.centre = 3 * (turn * image.pose.centre) + Eigen::Vector3d(1, 2, 3);
+    image.pose.rotation = image.pose.rotation * turn.transpose();
+  }
+  AdjustOptions options;
+  for (const std::size_t image : {std::size_t{0}, std::size_t{4}, std::size_t{11}})
+    options.positions.push_back({image, truth.images[image].pose.centre, 0.001});
+  bring_to_metres(bundle, options);
+  for (std::size_t i = 0; i < truth.images.size(); ++i) {
+    EXPECT_LT((bundle.images[i].pose.centre - truth.images[i].pose.centre).norm(), 1e-9);
+    EXPECT_LT((bundle.images[i].pose.rotation - truth.images[i].pose.rotation).norm(), 1e-9);
+  }
+  for (const double error : reprojection_errors(bundle)) ASSERT_LT(error, 1e-6);
+}
+
+TEST(Refine, DropsOutliers) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.points = 600, .noise = 0.3});
+  Bundle bundle = truth;
+  std::size_t outliers = 0;
+  for (std::size_t i = 0; i < bundle.observations.size(); i += 25, ++outliers)
+    bundle.observations[i].pixel += Eigen::Vector2d(30, 20);
+  const RefineReport report = refine(bundle, {});
+  EXPECT_GE(report.observations_before - report.observations_after, outliers);
+  EXPECT_LE(report.observations_before - report.observations_after, outliers + outliers / 5);
+  EXPECT_LT(report.rms_after, 0.3 * std::sqrt(2.0) * 1.02);
+}
+
+}  // namespace
+}  // namespace axial::pose

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A survey with known poses and points, seen through any camera: true tracks, with as much noise as
+// is asked for.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "pose/bundle.h"
+
+namespace axial::pose::testing {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+inline refractive::FlatPort<double> flat_port(double tilt_degrees = 0, double distance = 0.02) {
+  const double tilt = tilt_degrees * kDegree;
+  return {{std::sin(tilt), 0, std::cos(tilt)}, distance, 0.014, 1, 1.52, 1.333};
+}
+
+inline refractive::DomePort<double> dome_port() {
+  return {{0.003, -0.004, 0.002}, 0.05, 0.007, 1, 1.52, 1.333};
+}
+
+inline CameraModel camera_behind(std::optional<refractive::Port<double>> port) {
+  return {1024, 768, {610, 615, 511.5, 383.5}, std::move(port)};
+}
+
+// A camera at `centre` that looks at `target`, turned about its axis by `roll` [rad].
+inline Pose looking_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target, double roll) {
+  const Eigen::Vector3d z = (target - centre).normalized();
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitY().cross(z).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << x.transpose(), z.cross(x).transpose(), z.transpose();
+  return {Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix() * rotation, centre};
+}
+
+struct SurveyOptions {
+  double distance = 0.8;  // of the ground [m]
+  int images = 12;
+  int points = 300;
+  double noise = 0;  // standard deviation per axis [px]
+  unsigned seed = 1;
+};
+
+// Rolled and tilted views over rough ground.
+inline Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
+  std::mt19937_64 random(options.seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::normal_distribution<double> noise(0, 1);
+  const double d = options.distance;
+  Bundle bundle;
+  bundle.cameras.push_back({camera, HousingChange<double>::Zero()});
+  for (int i = 0; i < options.images; ++i) {
+    const double along = 0.9 * d * (i / (options.images - 1.0) - 0.5);
+    const Eigen::Vector3d centre(along, uniform(-0.25, 0.25) * d, uniform(-0.2, 0.2) * d);
+    const Eigen::Vector3d target(uniform(-0.3, 0.3) * d, uniform(-0.2, 0.2) * d, d);
+    bundle.images.push_back(
+        {"image" + std::to_string(i) + ".jpg", 0, looking_at(centre, target, i * 1.3)});
+  }
+  const auto seeing = make_camera<double>(camera);
+  while (bundle.points.size() < static_cast<std::size_t>(options.points)) {
+    const Eigen::Vector3d point(uniform(-0.8, 0.8) * d, uniform(-0.6, 0.6) * d,
+                                uniform(0.8, 1.25) * d);
+    std::vector<Observation> track;
+    for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+      const auto image = std::visit(
+          [&](const auto& c) { return c.project(bundle.images[i].pose.to_camera(point)); }, seeing);
+      const Eigen::Vector2d& p = image.pixel;
+      if (!image.visible || p.x() < 0 || p.y() < 0 || p.x() > camera.width - 1 ||
+          p.y() > camera.height - 1)
+        continue;
+      Observation observation;
+      observation.image = i;
+      observation.point = bundle.points.size();
+      observation.pixel = p + options.noise * Eigen::Vector2d(noise(random), noise(random));
+      observation.source = bundle.points.size();
+      track.push_back(observation);
+    }
+    if (track.size() < 3) continue;
+    bundle.observations.insert(bundle.observations.end(), track.begin(), track.end());
+    bundle.points.push_back({point, bundle.points.size()});
+  }
+  return bundle;
+}
+
+// Poses and points moved at random: `angle` [rad] and `shift` [m] are standard deviations.
+inline void disturb(Bundle& bundle, double angle, double shift, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, 1);
+  const auto vector = [&] {
+    return Eigen::Vector3d(normal(random), normal(random), normal(random));
+  };
+  for (BundleImage& image : bundle.images) {
+    const Eigen::Vector3d turn = angle * vector();
+    image.pose.rotation =
+        Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * image.pose.rotation;
+    image.pose.centre += shift * vector();
+  }
+  for (BundlePoint& point : bundle.points) point.position += shift * vector();
+}
+
+// How far the centres and rotations are from the truth after the best similarity.
+struct PoseErrors {
+  double centre_rms = 0;     // [m]
+  double largest_angle = 0;  // [degrees]
+  double scale = 1;          // of the similarity that was taken away
+};
+
+inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool with_scale = true) {
+  const auto count = static_cast<Eigen::Index>(found.images.size());
+  Eigen::Matrix3Xd from(3, count), to(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    from.col(i) = found.images[static_cast<std::size_t>(i)].pose.centre;
+    to.col(i) = truth.images[static_cast<std::size_t>(i)].pose.centre;
+  }
+  const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, with_scale);
+  PoseErrors errors;
+  errors.scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
+  const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / errors.scale;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d moved =
+        similarity.topLeftCorner<3, 3>() * from.col(i) + similarity.topRightCorner<3, 1>();
+    sum += (moved - to.col(i)).squaredNorm();
+    const Eigen::Matrix3d between =
+        found.images[static_cast<std::size_t>(i)].pose.rotation * rotation.transpose() *
+        truth.images[static_cast<std::size_t>(i)].pose.rotation.transpose();
+    errors.largest_angle =
+        std::max(errors.largest_angle, Eigen::AngleAxisd(between).angle() / kDegree);
+  }
+  errors.centre_rms = std::sqrt(sum / static_cast<double>(count));
+  return errors;
+}
+
+}  // namespace axial::pose::testing
