@@ -41,14 +41,14 @@ int run(int argc, char** argv) {
   const fs::path folder = io::find_colmap_model(options.model);
   const io::ColmapModel model = io::read_colmap_model(folder);
   pose::ColmapBundle refined = load(options, model, housing);
+  pose::AdjustOptions& adjust = options.refine.adjust;
+  add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
+            refined.bundle, adjust);
   spdlog::info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
                model.points.size(), refined.bundle.observations.size());
   if (refined.unseen > 0)
     spdlog::warn("{} observations lie where the lens in air images nothing", refined.unseen);
 
-  pose::AdjustOptions& adjust = options.refine.adjust;
-  add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
-            refined.bundle, adjust);
   pose::bring_to_metres(refined.bundle, adjust);
   spdlog::info("Begins with points {:.3g} m away, in the middle",
                pose::median_distance(refined.bundle));

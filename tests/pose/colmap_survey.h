@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A survey in COLMAP's files: a lens that distorts, and a model made of its photographs.
+#pragma once
+
+#include "io/colmap.h"
+#include "io/colmap_lens.h"
+#include "io/housing.h"
+#include "pose/survey.h"
+
+namespace axial::pose::testing {
+
+inline const io::ColmapCamera kLens{
+    4, "OPENCV", 1024, 768, {620, 615, 512, 384, -0.12, 0.02, 1e-4, -2e-4}};
+
+inline io::Housing housing() {
+  io::Housing housing;
+  housing.ports["main"] = flat_port(2);
+  housing.default_port = "main";
+  return housing;
+}
+
+// The survey as COLMAP would know it: its images taken by the distorting lens.
+inline io::ColmapModel model_of(const Bundle& bundle) {
+  io::ColmapModel model;
+  model.cameras = {{4, "SIMPLE_RADIAL", 1024, 768, {800, 512, 384, 0.1}}};
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    io::ColmapImage image;
+    image.id = static_cast<std::uint32_t>(i + 10);
+    image.camera = 4;
+    image.name = bundle.images[i].name;
+    image.pose = bundle.images[i].pose;
+    model.images.push_back(image);
+  }
+  for (std::size_t i = 0; i < bundle.points.size(); ++i)
+    model.points.push_back({i + 1000, bundle.points[i].position, {1, 2, 3}, 0, {}});
+  const auto& lens = bundle.cameras[0].measured.lens;
+  for (const Observation& observation : bundle.observations) {
+    const Eigen::Vector3d bearing = lens.bearing(observation.pixel);
+    const Eigen::Vector2d pixel = io::image_direction(kLens, bearing.x(), bearing.y());
+    io::ColmapImage& image = model.images[observation.image];
+    io::ColmapPoint3D& point = model.points[observation.point];
+    point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+    image.points.push_back({pixel.x() + 0.5, pixel.y() + 0.5, point.id});
+  }
+  return model;
+}
+
+}  // namespace axial::pose::testing

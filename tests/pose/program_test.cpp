@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// RefinePoses on files.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "pose/adjust.h"
+#include "pose/colmap_survey.h"
+#include "pose/refine.h"
+#include "support/program_run.h"
+
+namespace axial::pose {
+namespace {
+
+using test::Outcome;
+using testing::camera_behind;
+using testing::flat_port;
+using testing::survey;
+
+class RefinePoses : public test::ProgramTest {
+ protected:
+  Bundle truth_ = survey(camera_behind(flat_port(2)), {.noise = 0.2});
+
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Bundle absorbed = truth_;
+    absorbed.cameras[0].measured.port.reset();
+    AdjustOptions options;
+    options.free[kFocalNumber] = true;
+    options.loss_sigmas = 10;
+    adjust(absorbed, options);
+    scale_places(absorbed, 7.3);
+    write("sparse", testing::model_of(absorbed));
+    io::ColmapModel lens;
+    lens.cameras = {testing::kLens};
+    write("lens", lens);
+    io::write_housing(folder_ / "housing.json", testing::housing());
+  }
+
+  void write(const std::string& name, const io::ColmapModel& model) {
+    make_folder(folder_ / name);
+    io::write_colmap_text(folder_ / name, model);
+  }
+
+  Outcome run(const std::string& arguments) const { return run_program("RefinePoses", arguments); }
+
+  std::string baseline() const {
+    return fmt::format("images:image0.jpg,image11.jpg,{}",
+                       (truth_.images[0].pose.centre - truth_.images[11].pose.centre).norm());
+  }
+};
+
+const std::string kInput = "-i . --lens lens/cameras.txt --housing housing.json ";
+
+TEST_F(RefinePoses, MakesAModelThatInterfaceColmapReads) {
+  const Outcome outcome = run(kInput + "-o out --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::ColmapModel refined = io::read_colmap_model(io::find_colmap_model(folder_ / "out"));
+  ASSERT_EQ(refined.cameras.size(), 1u);
+  EXPECT_EQ(refined.cameras[0].model, "OPENCV");
+  EXPECT_EQ(refined.cameras[0].params, testing::kLens.params);
+  Bundle found = truth_;
+  for (std::size_t i = 0; i < found.images.size(); ++i)
+    found.images[i].pose = refined.images[i].pose;
+  const auto errors = testing::pose_errors(found, truth_, false);
+  EXPECT_LT(errors.centre_rms, 0.001);
+  EXPECT_LT(errors.largest_angle, 0.05);
+  const io::Housing housing = io::read_housing(folder_ / "out" / "housing.json");
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(housing.ports.at("main")).distance, 0.02);
+}
+
+TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
+  const Outcome outcome =
+      run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr("distance"));
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg"));
+  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
+  EXPECT_LT(report["rms_after_px"].get<double>(), report["rms_before_px"].get<double>());
+  EXPECT_EQ(report["images"].size(), 12u);
+  const auto& free = report["cameras"][0]["free"];
+  ASSERT_EQ(free.size(), 3u);
+  EXPECT_EQ(free[2]["name"], "distance");
+  EXPECT_NEAR(free[2]["value"].get<double>(), 20, 3 * free[2]["sigma"].get<double>());
+}
+
+TEST_F(RefinePoses, TakesTheScaleFromPositions) {
+  std::string lines = "# name x y z\n";
+  for (const BundleImage& image : truth_.images)
+    lines += fmt::format("{} {} {} {}\n", image.name, image.pose.centre.x() + 1,
+                         image.pose.centre.y(), image.pose.centre.z());
+  write_atomically(folder_ / "positions.txt", lines);
+  const Outcome outcome = run(kInput + "-o out --scale-from positions:positions.txt");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  for (std::size_t i = 0; i < truth_.images.size(); ++i)
+    EXPECT_LT(
+        (refined.images[i].pose.centre - truth_.images[i].pose.centre - Eigen::Vector3d::UnitX())
+            .norm(),
+        0.002);
+}
+
+TEST_F(RefinePoses, GivesTheSameBytesForAnyNumberOfThreads) {
+  ASSERT_EQ(run(kInput + "-o one --max-threads 1").exit_code, 0);
+  ASSERT_EQ(run(kInput + "-o two --max-threads 2").exit_code, 0);
+  for (const char* name : {"sparse/images.txt", "sparse/points3D.txt", "report.json"})
+    EXPECT_EQ(read_file(folder_ / "one" / name), read_file(folder_ / "two" / name)) << name;
+}
+
+TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
+  const auto refuses = [&](const std::string& arguments, const std::string& expected) {
+    expect_refusal("RefinePoses", arguments, expected);
+  };
+  refuses("-i . --housing housing.json -o out", "--lens is missing");
+  refuses("-i . --lens lens -o out", "--housing is missing");
+  refuses("-i . --lens lens --housing housing.json", "--output-folder is missing");
+  refuses("-i nowhere --lens lens --housing housing.json -o out", "nowhere");
+  refuses(kInput + "-o out --refine tilt", "'tilt' is none of normal, distance");
+  refuses(kInput + "-o out --scale-from 3", "must begin with images:, points: or positions:");
+  refuses(kInput + "-o out --scale-from images:image0.jpg,lost.jpg,1", "no image 'lost.jpg'");
+  refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,-1", "-1 m is no distance");
+  refuses(kInput + "-o out --scale-from points:1000,7,1", "point 7 is not in the model");
+  refuses(kInput + "-o out --scale-from positions:lost.txt", "lost.txt");
+  refuses(kInput + "-o out --max-error 0", "--max-error 0: must be positive");
+  refuses(kInput + "-o out --scale-sigma nan", "--scale-sigma");
+  write_atomically(folder_ / "two.txt", "image0.jpg 1 2 3\nimage1.jpg 1 2\n");
+  refuses(kInput + "-o out --scale-from positions:two.txt", "two.txt:2: must be NAME X Y Z");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace axial::pose
