@@ -8,6 +8,7 @@
 #include "io/housing.h"
 #include "io/mvs.h"
 #include "options.h"
+#include "pose/colmap_bundle.h"
 
 namespace fs = std::filesystem;
 using namespace axial;
@@ -26,17 +27,33 @@ void make_parent_folder(const fs::path& file) {
   if (error) fail("{}: cannot be made: {}", file.parent_path().string(), error.message());
 }
 
+// Of the file, or else what the model's cameras carry. COLMAP-Underwater writes ports into models
+// whose poses it solved without refraction, too, and the files do not say so: the tracks do.
+io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
+  if (!options.housing_file.empty()) return io::read_housing(options.housing_file);
+  const io::Housing carried = io::housing_of(model);
+  if (carried.ports.empty()) return carried;
+  const pose::PortFit fit = pose::port_fit(model);
+  spdlog::info("The model's cameras carry ports: its points are {:.3f} px off behind them",
+               fit.behind_ports);
+  if (fit.behind_ports > fit.in_air)
+    spdlog::warn(
+        "The points are {:.3f} px off in air: the poses were solved without refraction. "
+        "RefinePoses makes refractive ones of them",
+        fit.in_air);
+  return carried;
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
 
-  io::Housing housing;
-  if (!options.housing_file.empty()) housing = io::read_housing(options.housing_file);
   const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
   const io::ColmapModel model = io::read_colmap_model(model_folder);
   spdlog::info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
                model.cameras.size(), model.points.size());
+  const io::Housing housing = load_housing(options, model);
   spdlog::info("Images in {}", options.image_folder.string());
 
   make_parent_folder(options.scene_file);
@@ -46,7 +63,7 @@ int run(int argc, char** argv) {
 
   // The housing goes first: a scene without the one it was made with would count as dry.
   const fs::path housing_file = io::housing_beside(options.scene_file);
-  if (options.housing_file.empty()) {
+  if (options.housing_file.empty() && housing.ports.empty()) {
     std::error_code error;
     if (fs::exists(housing_file, error))
       spdlog::warn("{}: is left as it is, and goes with this scene", housing_file.string());

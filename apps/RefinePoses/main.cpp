@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "io/colmap.h"
+#include "io/colmap_lens.h"
+#include "io/colmap_scene.h"
 #include "io/housing.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
@@ -17,33 +22,93 @@ namespace {
 
 pose::ColmapBundle load(const Options& options, const io::ColmapModel& model,
                         const io::Housing& housing) {
-  const auto lenses = io::read_colmap_cameras(options.lens);
-  if (lenses.empty()) fail("{}: no camera", options.lens.string());
+  const auto lenses = options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
+  const fs::path& from = options.lens.empty() ? options.model : options.lens;
+  if (lenses.empty()) fail("{}: no camera", from.string());
   try {
     return pose::to_bundle(model, lenses, housing);
   } catch (const Error& error) {
-    fail("{}: {}", options.lens.string(), error.what());
+    fail("{}: {}", from.string(), error.what());
   }
 }
 
+// Of the file, or else what the model's cameras carry.
+io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
+  const io::Housing carried = io::housing_of(model);
+  if (options.lens.empty() && carried.ports.empty())
+    fail("--lens is missing: the lens as calibrated in air");
+  if (!options.housing.empty()) return io::read_housing(options.housing);
+  if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
+  return carried;
+}
+
+// Before the work: that the output can be written, and is not the input.
+void check_output(const Options& options, const fs::path& model) {
+  make_folder(options.output);
+  std::error_code error;
+  if (fs::equivalent(options.output / "sparse", model, error) ||
+      fs::equivalent(options.output / "sparse", model.parent_path(), error))
+    fail("--output-folder {}: its sparse/ is the model that is read", options.output.string());
+  require_writable(options.output / "report.json");
+}
+
+// What is left of `images`, said where it is not all.
+void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] == 0)
+      spdlog::warn("{}: too few observations fit; it is left out", bundle.images[i].name);
+  if (4 * report.observations_after < 3 * report.observations_before)
+    spdlog::warn("{} of {} observations do not fit: is this the housing, and the lens in air?",
+                 report.observations_before - report.observations_after,
+                 report.observations_before);
+  if (!report.last.converged)
+    spdlog::warn("Not converged after {} iterations", report.last.iterations);
+}
+
+void check_focal(const pose::ColmapBundle& bundle, const pose::AdjustOptions& adjust) {
+  if (!adjust.free[pose::kFocalNumber]) return;
+  for (const io::ColmapCamera& lens : bundle.lenses)
+    if (!io::pinhole_lens(lens))
+      fail("--refine focal: camera {} has a {} lens, whose distortion belongs to its focal length",
+           lens.id, lens.model);
+}
+
+// The model last: it is not there without the housing it belongs to.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
-           const io::Housing& measured, const std::string& report) {
-  make_folder(options.output / "sparse");
-  io::write_colmap_text(options.output / "sparse", to_model(refined, model));
-  io::write_housing(options.output / "housing.json", to_housing(refined, measured));
+           const io::Housing& housing, const std::string& report) {
+  const io::ColmapModel result = to_model(refined, model);
+  io::write_housing(options.output / "housing.json", housing);
   write_atomically(options.output / "report.json", report);
+  if (options.underwater) {
+    make_folder(options.output / "colmap-underwater");
+    io::write_underwater_text(options.output / "colmap-underwater", result);
+    io::write_underwater_binary(options.output / "colmap-underwater", result);
+  }
+  make_folder(options.output / "sparse");
+  io::write_colmap_text(options.output / "sparse", result);
 }
 
 int run(int argc, char** argv) {
   Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const io::Housing housing = io::read_housing(options.housing);
+  const ThreadLimit threads(options.parsed.common.max_threads);
   const fs::path folder = io::find_colmap_model(options.model);
   const io::ColmapModel model = io::read_colmap_model(folder);
+  const io::Housing housing = load_housing(options, model);
   pose::ColmapBundle refined = load(options, model, housing);
+  for (const std::string& entry : io::unused_entries(housing, model))
+    spdlog::warn("{}: no image goes by {}", options.housing.string(), entry);
   pose::AdjustOptions& adjust = options.refine.adjust;
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
             refined.bundle, adjust);
+  if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
+        return camera.measured.port.has_value();
+      }))
+    fail("no image is behind a port: there is nothing to refine");
+  set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
+  check_focal(refined, adjust);
+  check_output(options, folder);
   spdlog::info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
                model.points.size(), refined.bundle.observations.size());
   if (refined.unseen > 0)
@@ -59,7 +124,10 @@ int run(int argc, char** argv) {
   for (const std::string& line :
        report_lines(report, images, refined.bundle, refined.ports, adjust))
     spdlog::info("{}", line);
-  write(options, refined, model, housing,
+  const io::Housing result = to_housing(refined, housing);
+  for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
+  warn(report, refined.bundle);
+  write(options, refined, model, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   spdlog::info("Refined model in {}", options.output.string());
   return 0;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/program.h"
+#include "free_numbers.h"
 #include "pose/refine.h"
 
 struct Options {
@@ -13,8 +14,11 @@ struct Options {
   std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
   std::filesystem::path housing;  // file
   std::filesystem::path output;   // folder
+  bool underwater = false;        // also write the model for COLMAP-Underwater
   std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
   double scale_sigma = 0;         // [m]
+  std::string refine_list;        // see free_numbers.h
+  Sigmas sigmas;
   axial::pose::RefineOptions refine;
 };
 

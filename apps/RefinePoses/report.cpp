@@ -127,5 +127,6 @@ std::string report_json(const pose::RefineReport& report, std::span<const ImageE
                                 {"sigma", value.sigma}});
     json["cameras"].push_back(camera);
   }
-  return json.dump(1) + "\n";
+  // Names in another encoding than UTF-8 are not worth the loss of the report.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

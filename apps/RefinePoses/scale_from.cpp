@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scale_from.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -20,6 +23,8 @@ T number(const std::string& text, const std::string& where) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || stop != end) fail("{}: '{}' is no number", where, text);
+  if constexpr (std::is_floating_point_v<T>)
+    if (!std::isfinite(value)) fail("{}: '{}' is not finite", where, text);
   return value;
 }
 
@@ -55,6 +60,29 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   return known;
 }
 
+// Second largest extent over the largest; 0 for points on a line.
+double spread(const Eigen::Matrix3Xd& points) {
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::VectorXd extents = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();
+  return extents(0) > 0 ? extents(1) / extents(0) : 0;
+}
+
+void check_positions(const std::vector<pose::KnownPosition>& positions, const pose::Bundle& bundle,
+                     const std::filesystem::path& file) {
+  Eigen::Matrix3Xd known(3, positions.size()), model(3, positions.size());
+  std::set<std::size_t> images;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const std::string& name = bundle.images[positions[i].image].name;
+    if (!images.insert(positions[i].image).second) fail("{}: {} occurs twice", file.string(), name);
+    known.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
+    model.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
+  }
+  constexpr double kLine = 1e-3;
+  if (spread(known) < kLine || spread(model) < kLine)
+    fail("{}: the positions lie on one line, which leaves the model free to roll about it",
+         file.string());
+}
+
 void read_positions(const std::filesystem::path& file, double sigma, const pose::Bundle& bundle,
                     pose::AdjustOptions& adjust) {
   std::istringstream lines(read_file(file));
@@ -73,6 +101,7 @@ void read_positions(const std::filesystem::path& file, double sigma, const pose:
   }
   if (adjust.positions.size() < 3)
     fail("{}: {} positions, at least 3 are needed", file.string(), adjust.positions.size());
+  check_positions(adjust.positions, bundle, file);
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "refractive/port.h"
 #include "scene/pose.h"
 #include "scene/scene.h"
 
@@ -22,6 +24,8 @@ struct ColmapCamera {
   std::string model;  // "PINHOLE", "OPENCV", ...
   std::uint64_t width = 0, height = 0;
   std::vector<double> params;  // pixel centres at 0.5, as in the file
+  // COLMAP-Underwater's files carry a port with the camera; `params` are then the lens in air.
+  std::optional<refractive::Port<double>> port = std::nullopt;
 };
 
 struct ColmapPoint2D {
@@ -60,17 +64,23 @@ struct ColmapModel {
 // file. Error listing the places looked in.
 std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 
-// Reads cameras, images, points3D, each from .txt or .bin (text preferred where both exist). All of
-// COLMAP's camera models are parsed; Error for an unknown model, a wrong number of parameters, a
-// NaN, a reference to a camera, image or point that does not exist, a truncated file.
+// Reads cameras, images, points3D, each from .txt or .bin (text preferred where both exist),
+// COLMAP's and COLMAP-Underwater's: binary cameras of the two differ in length. All of COLMAP's
+// camera models are parsed; Error for an unknown model, a wrong number of parameters, a NaN, a
+// reference to a camera, image or point that does not exist, a truncated file.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
 // The cameras alone: of a model's folder, or a file cameras.txt or cameras.bin by any name with
 // that extension.
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
+// For COLMAP: ports are left out, which its readers cannot read.
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
+
+// For COLMAP-Underwater: cameras with their ports. Error for a camera whose model it lacks.
+void write_underwater_text(const std::filesystem::path& folder, const ColmapModel& model);
+void write_underwater_binary(const std::filesystem::path& folder, const ColmapModel& model);
 
 // How many of a camera model's parameters, the first ones, are focal lengths; -1 if unknown.
 int colmap_focal_count(std::string_view model);

@@ -3,6 +3,7 @@
 #include "io/byte_reader.h"
 #include "io/byte_writer.h"
 #include "io/colmap_parts.h"
+#include "io/colmap_port.h"
 
 namespace axial::io {
 namespace {
@@ -21,21 +22,29 @@ void require_finite(double value, const char* field, std::uint64_t id, const std
   if (!std::isfinite(value)) fail("{}: {} of record {} is {}", file, field, id, value);
 }
 
-ColmapCamera parse_camera(ByteReader& in) {
+std::optional<refractive::Port<double>> parse_port(ByteReader& in, const ColmapCamera& camera) {
+  const auto number = in.read<std::int32_t>("port");
+  if (number == -1) return std::nullopt;
+  const std::string where = fmt::format("{}: camera {}", in.file(), camera.id);
+  if (port_word(number).empty()) fail("{} has the unknown port number {}", where, number);
+  PortNumbers numbers;
+  in.read(std::span(numbers), "port parameters");
+  return port_from(port_word(number), numbers, where);
+}
+
+ColmapCamera parse_camera(ByteReader& in, Dialect dialect) {
   ColmapCamera camera;
   camera.id = in.read<std::uint32_t>("camera id");
   const auto model = in.read<std::int32_t>("camera model");
-  camera.model = colmap_model_name(model);
+  camera.model = colmap_model_name(model, dialect);
   if (camera.model.empty())
-    fail(
-        "{}: camera {} has the unknown model number {} (files of COLMAP-Underwater are read as "
-        "text only)",
-        in.file(), camera.id, model);
+    fail("{}: camera {} has the unknown model number {}", in.file(), camera.id, model);
   camera.width = in.read<std::uint64_t>("width");
   camera.height = in.read<std::uint64_t>("height");
   camera.params.resize(static_cast<std::size_t>(colmap_parameter_count(camera.model)));
   in.read(std::span(camera.params), "camera parameters");
   check_colmap_camera(camera, in.file());
+  if (dialect == Dialect::underwater) camera.port = parse_port(in, camera);
   return camera;
 }
 
@@ -87,19 +96,34 @@ std::vector<T> read_records(const fs::path& path, std::size_t min_bytes, const c
   return records;
 }
 
-std::string cameras_as_bytes(const ColmapModel& model, const std::string& file) {
+std::vector<ColmapCamera> cameras_from(const std::string& bytes, const fs::path& path,
+                                       Dialect dialect) {
+  ByteReader in(bytes, path.string());
+  std::vector<ColmapCamera> cameras(in.count(kMinCamera, "cameras"));
+  for (ColmapCamera& camera : cameras) camera = parse_camera(in, dialect);
+  in.require_end();
+  return cameras;
+}
+
+std::string cameras_as_bytes(const ColmapModel& model, const std::string& file, Dialect dialect) {
   ByteWriter out;
   out.count(model.cameras.size());
   for (const ColmapCamera& camera : model.cameras) {
-    const int id = colmap_model_id(camera.model);
+    const int id = colmap_model_id(camera.model, dialect);
     if (id < 0)
-      fail("{}: camera {} has model '{}', which binary files lack", file, camera.id, camera.model);
+      fail("{}: camera {} has model '{}', which these binary files lack", file, camera.id,
+           camera.model);
     check_colmap_camera(camera, file);
     out.write(camera.id);
     out.write(static_cast<std::int32_t>(id));
     out.write(camera.width);
     out.write(camera.height);
     out.write(std::span(camera.params));
+    if (dialect == Dialect::colmap) continue;
+    out.write(static_cast<std::int32_t>(camera.port ? port_number(*camera.port) : -1));
+    if (!camera.port) continue;
+    const PortNumbers numbers = port_numbers(*camera.port);
+    out.write(std::span(numbers));
   }
   return out.bytes();
 }
@@ -145,8 +169,19 @@ std::string points_as_bytes(const ColmapModel& model) {
 
 }  // namespace
 
+// The dialects do not say which they are. A file of one, read as the other, is out of step from the
+// first camera's end on: it names no models, or does not end where its cameras do.
 std::vector<ColmapCamera> read_cameras_binary(const fs::path& path) {
-  return read_records<ColmapCamera>(path, kMinCamera, "cameras", parse_camera);
+  const std::string bytes = read_file(path);
+  try {
+    return cameras_from(bytes, path, Dialect::colmap);
+  } catch (const Error&) {
+    try {
+      return cameras_from(bytes, path, Dialect::underwater);
+    } catch (const Error&) {
+    }
+    throw;
+  }
 }
 
 std::vector<ColmapImage> read_images_binary(const fs::path& path) {
@@ -157,11 +192,23 @@ std::vector<ColmapPoint3D> read_points_binary(const fs::path& path) {
   return read_records<ColmapPoint3D>(path, kMinPoint, "points", parse_point);
 }
 
-void write_colmap_binary(const fs::path& folder, const ColmapModel& model) {
+namespace {
+
+void write_binary(const fs::path& folder, const ColmapModel& model, Dialect dialect) {
   const auto name = [&](const char* file) { return (folder / file).string(); };
-  write_atomically(name("cameras.bin"), cameras_as_bytes(model, name("cameras.bin")));
+  write_atomically(name("cameras.bin"), cameras_as_bytes(model, name("cameras.bin"), dialect));
   write_atomically(name("images.bin"), images_as_bytes(model, name("images.bin")));
   write_atomically(name("points3D.bin"), points_as_bytes(model));
+}
+
+}  // namespace
+
+void write_colmap_binary(const fs::path& folder, const ColmapModel& model) {
+  write_binary(folder, model, Dialect::colmap);
+}
+
+void write_underwater_binary(const fs::path& folder, const ColmapModel& model) {
+  write_binary(folder, model, Dialect::underwater);
 }
 
 }  // namespace axial::io

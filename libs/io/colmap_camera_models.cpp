@@ -34,9 +34,11 @@ constexpr std::array<Model, 19> kModels{{
     {15, "FISHEYE", 4, 2},
     {16, "EUCM", 6, 2},
     {17, "EQUIRECTANGULAR", 2, 2},
-    // COLMAP-Underwater's own; it shares number 11 in binary files, where COLMAP's meaning holds.
+    // COLMAP-Underwater's own: number 11 in its binary files, and the last that it has.
     {-1, "METASHAPE_FISHEYE", 10, 2},
 }};
+constexpr int kSharedId = 11;
+constexpr std::string_view kUnderwaterModel = "METASHAPE_FISHEYE";
 
 const Model* find_model(std::string_view name) {
   const auto found = std::ranges::find(kModels, name, &Model::name);
@@ -53,14 +55,18 @@ Eigen::Matrix3d rotation_from(double w, double x, double y, double z) {
 
 }  // namespace
 
-std::string_view colmap_model_name(int id) {
+std::string_view colmap_model_name(int id, Dialect dialect) {
+  if (id == kSharedId && dialect == Dialect::underwater) return kUnderwaterModel;
   const auto found = std::ranges::find(kModels, id, &Model::id);
   return id < 0 || found == kModels.end() ? std::string_view() : found->name;
 }
 
-int colmap_model_id(std::string_view name) {
+int colmap_model_id(std::string_view name, Dialect dialect) {
   const Model* model = find_model(name);
-  return model ? model->id : -1;
+  if (!model) return -1;
+  if (dialect == Dialect::colmap) return model->id;
+  if (name == kUnderwaterModel) return kSharedId;
+  return model->id < kSharedId ? model->id : -1;
 }
 
 int colmap_parameter_count(std::string_view name) {

@@ -2,7 +2,6 @@
 #include "io/colmap_lens.h"
 
 #include <Eigen/LU>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -151,22 +150,29 @@ bool inside(const ColmapCamera& camera, const Vector2d& pixel) {
          pixel.y() <= static_cast<double>(camera.height) - 1;  // false for NaN
 }
 
-// True if everything between the principal ray and (u, v) is imaged inside, ever farther from the
-// principal point: polynomials fold back beyond the field they were fitted to, and a folded ray
-// can land inside again.
-bool seen(const ColmapCamera& camera, const Parts& parts, const Vector2d& direction) {
+// True if everything between the principal ray and (u, v) is imaged ever farther from the principal
+// point: polynomials fold back beyond the field they were fitted to, and a folded ray can land
+// inside again. `wanted` is asked about every pixel on the way.
+template <class Wanted>
+bool grows_until(const Parts& parts, const Vector2d& direction, const Wanted& wanted) {
   constexpr int kSteps = 50;
   const Vector2d centre = image_point(parts, Vector2d::Zero());
+  if (direction.isZero(0)) return wanted(centre);
   double distance = 0;
   for (int i = 1; i <= kSteps; ++i) {
     const Vector2d pixel = image_point(parts, direction * (double(i) / kSteps));
     const double next = (pixel - centre).norm();
-    if (!inside(camera, pixel) || !(next > distance)) return false;
+    if (!wanted(pixel) || !(next > distance)) return false;
     distance = next;
   }
   // The steps are coarse: a fold within the last one shows only in the slope at its end.
   const Vector2d beyond = image_point(parts, direction * (1 + 1e-6));
   return (beyond - centre).norm() > distance;
+}
+
+bool seen(const ColmapCamera& camera, const Parts& parts, const Vector2d& direction) {
+  return grows_until(parts, direction,
+                     [&](const Vector2d& pixel) { return inside(camera, pixel); });
 }
 
 bool whole_border_seen(const ColmapCamera& camera, const Parts& parts,
@@ -207,7 +213,11 @@ std::optional<ImagedDirection> direction_at(const ColmapCamera& camera, const Ve
     const Vector2d miss = image_point(parts, direction) - pixel;
     const Eigen::Matrix2d derivative = derivative_at(parts, direction);
     if (!miss.allFinite() || !(derivative.determinant() > 0)) return std::nullopt;
-    if (miss.norm() < 1e-9 * (1 + pixel.norm())) return ImagedDirection{direction, derivative};
+    if (miss.norm() < 1e-9 * (1 + pixel.norm())) {
+      const auto any = [](const Vector2d&) { return true; };
+      if (!grows_until(parts, direction, any)) return std::nullopt;
+      return ImagedDirection{direction, derivative};
+    }
     Vector2d step = derivative.inverse() * miss;
     // A fisheye's edge is far out on the plane: not there in one leap.
     const double reach = 0.5 * (1 + direction.norm());

@@ -13,10 +13,14 @@
 
 namespace axial::io {
 
-// Name of a camera model by its number in binary files; empty if unknown.
-std::string_view colmap_model_name(int id);
-// The number by name; -1 for a model that has none.
-int colmap_model_id(std::string_view name);
+// COLMAP's own files, and those of COLMAP-Underwater, whose cameras may have ports.
+enum class Dialect { colmap, underwater };
+
+// Name of a camera model by its number in binary files; empty if unknown. Number 11 is another
+// model in each dialect.
+std::string_view colmap_model_name(int id, Dialect dialect);
+// The number by name; -1 for a model that the dialect does not have.
+int colmap_model_id(std::string_view name, Dialect dialect);
 
 // Quaternion w, x, y, z and translation, of camera from world.
 using ColmapPose = std::array<double, 7>;

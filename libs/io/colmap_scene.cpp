@@ -207,6 +207,17 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   return scene;
 }
 
+Housing housing_of(const ColmapModel& model) {
+  Housing housing;
+  for (const ColmapCamera& camera : model.cameras) {
+    if (!camera.port) continue;
+    const std::string name = fmt::format("camera_{}", camera.id);
+    housing.ports[name] = *camera.port;
+    housing.cameras[camera.id] = name;
+  }
+  return housing;
+}
+
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
                          const ColmapImport& import) {
   Housing resolved;

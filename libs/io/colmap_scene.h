@@ -28,6 +28,10 @@ struct ColmapImport {
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& progress = {});
 
+// The ports that the model's cameras carry, as files of COLMAP-Underwater do: "camera_1" for camera
+// 1, and so on. No port if none does.
+Housing housing_of(const ColmapModel& model);
+
 // `housing` with an entry for every image that would not get its port by the default, and none by
 // camera id: what attach_ports and programs that no longer know COLMAP's ids need. `scene` is the
 // one imported from `model`. Error if an image's path ends in the name of another one with another

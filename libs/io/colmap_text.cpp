@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/atomic_file.h"
 #include "io/colmap_parts.h"
+#include "io/colmap_port.h"
 #include "io/text_reader.h"
 
 namespace axial::io {
@@ -13,11 +14,14 @@ void require_no_rest(const TextLine& line) {
     fail("{}: unexpected '{}' at the end", line.where(), line.rest().substr(0, 40));
 }
 
-void refuse_port_tail(const TextLine& line) {
-  for (const std::string_view word : {"FLATPORT", "DOMEPORT"})
-    if (line.rest().starts_with(word))
-      fail("{}: ports inside COLMAP models ({}) are not read: give the port with --housing",
-           line.where(), word);
+// COLMAP-Underwater's tail, if there is one.
+std::optional<refractive::Port<double>> parse_port(TextLine& line) {
+  TextLine ahead = line;
+  if (line.empty() || !is_port_word(ahead.word("port"))) return std::nullopt;
+  const std::string word(line.word("port"));
+  PortNumbers numbers;
+  for (double& number : numbers) number = line.number<double>(word + " parameter");
+  return port_from(word, numbers, line.where());
 }
 
 ColmapCamera parse_camera(TextLine& line) {
@@ -31,7 +35,7 @@ ColmapCamera parse_camera(TextLine& line) {
     fail("{}: camera {} has the unknown model '{}'", line.where(), camera.id, camera.model);
   for (int i = 0; i < parameters; ++i)
     camera.params.push_back(line.number<double>(camera.model + " parameter"));
-  refuse_port_tail(line);
+  camera.port = parse_port(line);
   require_no_rest(line);
   check_colmap_camera(camera, line.where());
   return camera;
@@ -84,14 +88,20 @@ ColmapPoint3D parse_point(TextLine& line) {
   return point;
 }
 
-std::string cameras_as_text(const ColmapModel& model) {
-  std::string out =
-      "# Camera list with one line of data per camera:\n"
-      "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
+std::string cameras_as_text(const ColmapModel& model, Dialect dialect) {
+  const bool underwater = dialect == Dialect::underwater;
+  std::string out = "# Camera list with one line of data per camera:\n";
+  out += fmt::format("#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]{}\n",
+                     underwater ? ", OPTIONAL[REFRAC_MODEL REFRAC_PARAMS[]]" : "");
   out += fmt::format("# Number of cameras: {}\n", model.cameras.size());
-  for (const ColmapCamera& camera : model.cameras)
-    out += fmt::format("{} {} {} {} {}\n", camera.id, camera.model, camera.width, camera.height,
+  for (const ColmapCamera& camera : model.cameras) {
+    out += fmt::format("{} {} {} {} {}", camera.id, camera.model, camera.width, camera.height,
                        fmt::join(camera.params, " "));
+    if (underwater && camera.port)
+      out += fmt::format(" {} {}", port_word(*camera.port),
+                         fmt::join(port_numbers(*camera.port), " "));
+    out += '\n';
+  }
   return out;
 }
 
@@ -169,10 +179,22 @@ std::vector<ColmapPoint3D> read_points_text(const fs::path& path) {
   return points;
 }
 
-void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
-  write_atomically(folder / "cameras.txt", cameras_as_text(model));
+namespace {
+
+void write_text(const fs::path& folder, const ColmapModel& model, Dialect dialect) {
+  write_atomically(folder / "cameras.txt", cameras_as_text(model, dialect));
   write_atomically(folder / "images.txt", images_as_text(model, (folder / "images.txt").string()));
   write_atomically(folder / "points3D.txt", points_as_text(model));
+}
+
+}  // namespace
+
+void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
+  write_text(folder, model, Dialect::colmap);
+}
+
+void write_underwater_text(const fs::path& folder, const ColmapModel& model) {
+  write_text(folder, model, Dialect::underwater);
 }
 
 }  // namespace axial::io

@@ -26,6 +26,9 @@ struct Housing {
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
 };
 
+// Error that starts with `where` for values no port has.
+void check_port(const refractive::Port<double>& port, const std::string& where);
+
 // Error that names file, key and value: unknown keys, wrong types or units (an index below 1,
 // negative thickness, zero or backward normal, distance over 1 m, a dome centre outside the dome),
 // a port name that is not defined, a version other than 1, an unknown port type. A normal off unit

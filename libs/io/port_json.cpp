@@ -53,18 +53,6 @@ json to_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Eigen::Vector3d unit_normal(const JsonPlace& place) {
-  const JsonPlace normal = place.at("normal");
-  const Eigen::Vector3d n = vector(normal);
-  const double length = n.stableNorm();
-  if (!(length > 1e-6 && std::isfinite(length)))
-    fail("{} is {}, which is no direction", normal.where, normal.json.dump());
-  if (std::abs(length - 1) > 1e-6)
-    spdlog::warn("{} has length {}: normalised", normal.where, length);
-  // Left as it is where it is unit to rounding, so that writing what was read changes nothing.
-  return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
-}
-
 // What both kinds have.
 
 template <class Port>
@@ -100,7 +88,10 @@ refractive::FlatPort<double> flat_from_json(const JsonPlace& place) {
   refractive::FlatPort<double> port;
   port.distance = place.number("distance_m");
   read_glass(place, port);
-  if (place.has("normal")) port.normal = unit_normal(place);
+  if (place.has("normal")) {
+    const JsonPlace normal = place.at("normal");
+    port.normal = unit_normal(vector(normal), normal.where);
+  }
   return port;
 }
 
@@ -193,6 +184,15 @@ std::string JsonPlace::text(const char* key) const {
   const JsonPlace value = at(key);
   if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, value.json.dump());
   return value.json.get<std::string>();
+}
+
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
+  const double length = n.stableNorm();
+  if (!(length > 1e-6 && std::isfinite(length)))
+    fail("{} is [{},{},{}], which is no direction", where, n.x(), n.y(), n.z());
+  if (std::abs(length - 1) > 1e-6) spdlog::warn("{} has length {}: normalised", where, length);
+  // Left as it is where it is unit to rounding, so that writing what was read changes nothing.
+  return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
 }
 
 refractive::Port<double> port_from_json(const JsonPlace& place) {

@@ -35,6 +35,10 @@ struct JsonPlace {
 refractive::Port<double> port_from_json(const JsonPlace& place);
 nlohmann::json port_to_json(const refractive::Port<double>& port);
 
+// `n` with unit length, exactly as it is where it has that to rounding; with a warning where it is
+// off by more than 1e-6. Error that starts with `where` if it is no direction.
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
+
 // Error that starts with `where` for values no port has.
 void check_port(const refractive::Port<double>& port, const std::string& where);
 

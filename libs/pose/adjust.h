@@ -45,9 +45,9 @@ struct AdjustReport {
 };
 
 // Moves poses, points and the free numbers to where the observations' errors are least. The first
-// image stays where it is unless positions hold the model. One thread: the sums of several would
-// depend on which comes first. Error for a free number that the cameras' ports do not have, a
-// length or sigma that is not positive, a bundle without observations.
+// image with observations stays where it is unless positions hold the model. One thread: the sums
+// of several would depend on which comes first. Error for a free number that the cameras' ports do
+// not have, a length or sigma that is not positive, a bundle without observations.
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviation of the observations [px] that their errors tell: every unknown takes the noise
@@ -56,10 +56,11 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 
 // How well the adjusted bundle knows what it does not directly see.
 struct Uncertainty {
-  double pixel_sigma = 0;                            // of the observations, from their residuals
-  std::vector<HousingChange<double>> camera_sigmas;  // of the free numbers; 0 for the others
-  // Relative standard deviation of all lengths: of the distance from the first image to the one
-  // farthest from it. Infinite where nothing tells it, as for cameras in air.
+  double pixel_sigma = 0;  // of the observations, from their residuals
+  // Of the free numbers, infinite where nothing tells them; 0 for the others.
+  std::vector<HousingChange<double>> camera_sigmas;
+  // Of the scale, relative: of the distance from the first image to the one farthest from it.
+  // Infinite where nothing tells it, as for cameras in air.
   double scale_sigma = 0;
 };
 

@@ -138,9 +138,14 @@ void AdjustProblem::add_known_distance(const KnownDistance& known) {
                              nullptr, points_[first].data(), points_[second].data());
 }
 
+std::size_t AdjustProblem::anchor() const {
+  for (std::size_t i = 0; i < poses_.size(); ++i)
+    if (is_observed(i)) return i;
+  return 0;
+}
+
 void AdjustProblem::fix_what_stays() {
-  if (options_.positions.size() < 3 && problem_->HasParameterBlock(poses_[0].data()))
-    problem_->SetParameterBlockConstant(poses_[0].data());
+  if (options_.positions.size() < 3) problem_->SetParameterBlockConstant(image_block(anchor()));
   std::vector<int> fixed;
   for (int k = 0; k < kHousingNumbers; ++k)
     if (!options_.free[static_cast<std::size_t>(k)]) fixed.push_back(k);

@@ -24,6 +24,12 @@ class AdjustProblem {
   std::vector<double*> camera_blocks();  // images, changes of cameras, points of known lengths
   std::vector<double*> point_blocks();   // all other points, which are independent of each other
 
+  // The first image that is observed in: it stays where it is.
+  std::size_t anchor() const;
+  bool is_observed(std::size_t image) const {
+    return problem_->HasParameterBlock(poses_[image].data());
+  }
+
   double* image_block(std::size_t image) { return poses_[image].data(); }
   double* change_block(std::size_t camera) { return changes_[camera].data(); }
 

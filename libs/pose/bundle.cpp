@@ -31,6 +31,12 @@ std::size_t point_of(const Bundle& bundle, std::size_t source) {
   return static_cast<std::size_t>(found - bundle.points.begin());
 }
 
+std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
+  std::vector<std::size_t> counts(bundle.images.size());
+  for (const Observation& observation : bundle.observations) ++counts[observation.image];
+  return counts;
+}
+
 std::vector<double> reprojection_errors(const Bundle& bundle) {
   std::vector<CameraVariant<double>> cameras;
   for (const BundleCamera& camera : bundle.cameras)

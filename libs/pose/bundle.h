@@ -52,6 +52,8 @@ struct Bundle {
 // The index of the point that was `source`. Error if it is not, or no longer, in the bundle.
 std::size_t point_of(const Bundle& bundle, std::size_t source);
 
+std::vector<std::size_t> observations_by_image(const Bundle& bundle);  // their numbers
+
 // Reprojection errors [px of the photograph] of all observations, in their order; infinite where
 // the point's light does not reach the camera.
 std::vector<double> reprojection_errors(const Bundle& bundle);

@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "base/error.h"
 #include "io/colmap_lens.h"
+#include "io/colmap_scene.h"
 
 namespace axial::pose {
 namespace {
-
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
                                 std::span<const io::ColmapCamera> lenses) {
@@ -60,10 +58,9 @@ class Cameras {
  public:
   Cameras(ColmapBundle& result, const io::Housing& housing) : result_(result), housing_(housing) {}
 
-  std::size_t index(const io::ColmapCamera& camera, const io::ColmapCamera& lens,
-                    const std::string& port) {
+  std::size_t index(const io::ColmapCamera& lens, const std::string& port) {
     const auto [found, added] =
-        indices_.try_emplace({camera.id, port}, result_.bundle.cameras.size());
+        indices_.try_emplace({lens.id, port}, result_.bundle.cameras.size());
     if (added) add(lens, port);
     return found->second;
   }
@@ -100,10 +97,10 @@ bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& 
   return true;
 }
 
-template <class Range, class Id>
-std::map<Id, std::size_t> indices_by_id(const Range& range, Id) {
-  std::map<Id, std::size_t> indices;
-  for (std::size_t i = 0; i < range.size(); ++i) indices[range[i].id] = i;
+template <class Item>
+std::map<std::uint64_t, std::size_t> indices_by_id(const std::vector<Item>& items) {
+  std::map<std::uint64_t, std::size_t> indices;
+  for (std::size_t i = 0; i < items.size(); ++i) indices[items[i].id] = i;
   return indices;
 }
 
@@ -119,15 +116,15 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
   ColmapBundle result;
   Bundle& bundle = result.bundle;
   Cameras cameras(result, housing);
-  const auto camera_indices = indices_by_id(model.cameras, std::uint32_t{});
+  const auto camera_indices = indices_by_id(model.cameras);
   for (const io::ColmapImage& image : model.images) {
     const io::ColmapCamera& camera = model.cameras[camera_indices.at(image.camera)];
     bundle.images.push_back(
         {image.name,
-         cameras.index(camera, lens_of(camera, lenses), housing.port_of(image.name, image.camera)),
+         cameras.index(lens_of(camera, lenses), housing.port_of(image.name, image.camera)),
          image.pose});
   }
-  const auto image_indices = indices_by_id(model.images, std::uint32_t{});
+  const auto image_indices = indices_by_id(model.images);
   for (const io::ColmapPoint3D& point : model.points) {
     for (const io::ColmapTrackElement& element : point.track) {
       Observation observation;
@@ -146,21 +143,30 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
   return result;
 }
 
+PortFit port_fit(const io::ColmapModel& model) {
+  const auto rms = [&](const io::Housing& housing) {
+    return root_mean_square(reprojection_errors(to_bundle(model, model.cameras, housing).bundle));
+  };
+  return {rms(io::housing_of(model)), rms({})};
+}
+
 io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model) {
   const Bundle& bundle = refined.bundle;
   io::ColmapModel result;
   result.cameras = refined.lenses;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i)
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     scale_focal_lengths(result.cameras[i], std::exp(bundle.cameras[i].change(kFocalNumber)));
+    result.cameras[i].port = bundle.cameras[i].now().port;
+  }
   result.images = model.images;
   for (std::size_t i = 0; i < result.images.size(); ++i) {
     result.images[i].pose = bundle.images[i].pose;
     result.images[i].camera = result.cameras[bundle.images[i].camera].id;
     for (io::ColmapPoint2D& point : result.images[i].points) point.point3d = io::kNoPoint3D;
   }
-  const auto colors = indices_by_id(model.points, std::uint64_t{});
+  const auto sources = indices_by_id(model.points);
   for (const BundlePoint& point : bundle.points) {
-    io::ColmapPoint3D copy = model.points[colors.at(point.source)];
+    io::ColmapPoint3D copy = model.points[sources.at(point.source)];
     copy.position = point.position;
     copy.track.clear();
     copy.error = 0;
@@ -177,6 +183,9 @@ io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& mod
   }
   for (io::ColmapPoint3D& point : result.points)
     if (!point.track.empty()) point.error /= static_cast<double>(point.track.size());
+  const std::vector<std::size_t> seen = observations_by_image(bundle);
+  std::size_t image = 0;
+  std::erase_if(result.images, [&](const io::ColmapImage&) { return seen[image++] == 0; });
   return result;
 }
 

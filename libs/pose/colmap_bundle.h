@@ -25,7 +25,15 @@ struct ColmapBundle {
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
-// `model` with the bundle's poses, points, tracks and mean errors, and the in-air lenses.
+// Which cameras the poses of a model that carries ports were solved with: the RMS [px] of its own
+// tracks with the cameras behind their ports, and in air. 0 where a model has no tracks.
+struct PortFit {
+  double behind_ports = 0, in_air = 0;
+};
+PortFit port_fit(const io::ColmapModel& model);
+
+// `model` with the bundle's poses, points, tracks and mean errors, thein-air lenses and the ports.
+// Images without observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
 // The ports where the bundle has them now, by camera id; one that several cameras share, and that

@@ -8,8 +8,6 @@
 namespace axial::pose {
 namespace {
 
-constexpr double kUnseen = 100;  // [px], of a point whose light does not reach the camera
-
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -20,6 +18,13 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();
   return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+void set_zero(double** jacobians) {
+  if (!jacobians) return;
+  constexpr std::array<int, 3> kSizes{kPoseNumbers, 3, kHousingNumbers};
+  for (std::size_t block = 0; block < kSizes.size(); ++block)
+    if (jacobians[block]) std::fill_n(jacobians[block], 2 * kSizes[block], 0.0);
 }
 
 template <int Columns>
@@ -69,14 +74,15 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   const auto image =
       std::visit([&](const auto& camera) { return camera.project(X, &by_point, &origin); }, now_);
   Eigen::Map<Eigen::Vector2d> residual(residuals);
-  residual = image.visible
-                 ? Eigen::Vector2d(observation_.to_photograph * (image.pixel - observation_.pixel))
-                 : Eigen::Vector2d(kUnseen, kUnseen);
+  if (!image.visible) {
+    // No image of a point that is seen lies farther from its observation.
+    residual = Eigen::Vector2d(measured_.measured.width, measured_.measured.height);
+    set_zero(jacobians);
+    return true;
+  }
+  residual = observation_.to_photograph * (image.pixel - observation_.pixel);
   if (!jacobians) return true;
-  if (image.visible)
-    by_point = observation_.to_photograph * by_point;
-  else
-    by_point.setZero();
+  by_point = observation_.to_photograph * by_point;
   if (jacobians[0]) {
     RowMajor<kPoseNumbers> by_pose(jacobians[0]);
     by_pose.leftCols<3>() = -by_point * cross_matrix(X) *

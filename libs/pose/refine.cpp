@@ -27,7 +27,8 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
   for (const KnownDistance& known : options.distances) {
     const double length =
         (place_of(bundle, known, known.first) - place_of(bundle, known, known.second)).norm();
-    if (length > 0) return known.metres / length;
+    if (!(length > 0)) fail("a known length of {} m is none in the model", known.metres);
+    return known.metres / length;
   }
   return 0;
 }
@@ -85,13 +86,17 @@ double trial_cost(Bundle trial, double scale) {
   AdjustOptions options;
   options.max_iterations = 12;
   options.loss_sigmas = 4;
-  return adjust(trial, options).final_cost;
+  try {
+    return adjust(trial, options).final_cost;
+  } catch (const Error&) {
+    return std::numeric_limits<double>::infinity();  // another scale will do
+  }
 }
 
 double best_scale(const Bundle& bundle) {
   const Bundle part = sample(bundle);
   const double distance = median_distance(part);
-  double best = 1, least = std::numeric_limits<double>::max();
+  double best = 1, least = std::numeric_limits<double>::infinity();
   for (const double metres : kTrialDistances) {
     const double cost = trial_cost(part, metres / distance);
     if (cost < least) least = cost, best = metres / distance;
@@ -151,6 +156,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   report.last = adjust(bundle, adjusting);
+  filter(bundle, limits);
+  if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.uncertainty = uncertainty(bundle, adjusting);
   report.rms_after = root_mean_square(reprojection_errors(bundle));
   report.observations_after = bundle.observations.size();

@@ -57,6 +57,21 @@ void drop_points(Bundle& bundle, const std::vector<bool>& kept) {
   bundle.points = std::move(points);
 }
 
+void drop_weak_points(Bundle& bundle, double min_angle) {
+  const std::vector<Ray> rays = world_rays(bundle);
+  std::vector<bool> kept;
+  for (const auto& list : observations_by_point(bundle))
+    kept.push_back(list.size() >= 2 && widest_angle(list, rays) >= min_angle);
+  drop_points(bundle, kept);
+}
+
+void drop_weak_images(Bundle& bundle, std::size_t min_observations) {
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  std::erase_if(bundle.observations, [&](const Observation& observation) {
+    return counts[observation.image] < min_observations;
+  });
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector3d> triangulate(std::span<const Ray> rays) {
@@ -95,14 +110,11 @@ std::size_t filter(Bundle& bundle, const TrackLimits& limits) {
   for (std::size_t i = 0; i < errors.size(); ++i)
     if (errors[i] <= limits.max_error) believed.push_back(bundle.observations[i]);
   bundle.observations = std::move(believed);
-
-  const std::vector<Ray> rays = world_rays(bundle);
-  const auto lists = observations_by_point(bundle);
-  std::vector<bool> kept;
-  for (const auto& list : lists)
-    kept.push_back(list.size() >= 2 &&
-                   widest_angle(list, rays) >= limits.min_angle * std::numbers::pi / 180);
-  drop_points(bundle, kept);
+  for (std::size_t left = bundle.observations.size() + 1; left != bundle.observations.size();) {
+    left = bundle.observations.size();
+    drop_weak_images(bundle, limits.min_observations);
+    drop_weak_points(bundle, limits.min_angle * std::numbers::pi / 180);
+  }
   return before - bundle.observations.size();
 }
 

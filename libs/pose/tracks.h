@@ -18,12 +18,13 @@ std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<
 void triangulate(Bundle& bundle);
 
 struct TrackLimits {
-  double max_error = 4;    // [px]
-  double min_angle = 1.5;  // [degrees] between some two rays of a point
+  double max_error = 4;               // [px]
+  double min_angle = 1.5;             // [degrees] between some two rays of a point
+  std::size_t min_observations = 30;  // of an image: fewer may fit a wrong pose
 };
 
-// Drops observations with larger errors, then points with fewer than two observations or too
-// narrow an angle. The number of observations dropped.
+// Drops observations with larger errors, then all those of images with too few, and of points with
+// fewer than two or too narrow an angle, until nothing is left to drop. The number dropped.
 std::size_t filter(Bundle& bundle, const TrackLimits& limits);
 
 }  // namespace axial::pose

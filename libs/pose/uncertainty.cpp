@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <ceres/crs_matrix.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -42,8 +43,9 @@ Sparse inverse_of_blocks(const Sparse& blocks) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int start = 0; start < blocks.cols(); start += 3) {
     const Eigen::Matrix3d block = blocks.block(start, start, 3, 3);
-    // A point at infinity knows nothing of the cameras' places.
+    // A point that nothing sees, or that is at infinity, knows nothing of the cameras' places.
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(block);
+    if (!(eigen.eigenvalues()(2) > 0)) continue;
     const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1e-12 * eigen.eigenvalues()(2));
     const Eigen::Matrix3d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *
                                     eigen.eigenvectors().transpose();
@@ -65,42 +67,33 @@ Eigen::MatrixXd reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camer
   return Eigen::MatrixXd(Sparse(cameras.transpose() * cameras)) - Eigen::MatrixXd(eliminated);
 }
 
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
 // Covariance of a vector whose normal matrix is given; scaled first, since metres, radians and
-// indices differ by orders of magnitude. What nothing determines has an infinite variance.
+// indices differ by orders of magnitude.
 class Covariance {
  public:
   explicit Covariance(const Eigen::MatrixXd& normal)
-      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
-        eigen_(scale_.asDiagonal() * normal * scale_.asDiagonal()) {}
+      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    Eigen::MatrixXd scaled = scale_.asDiagonal() * normal * scale_.asDiagonal();
+    scaled.diagonal().array() += kDamping;
+    factor_.compute(scaled);
+  }
 
+  // Infinite along what nothing determines: there, the damping alone answers.
   double variance(const Eigen::VectorXd& direction) const {
-    const Eigen::VectorXd along =
-        eigen_.eigenvectors().transpose() * (scale_.asDiagonal() * direction);
-    double sum = 0;
-    for (Eigen::Index i = 0; i < along.size(); ++i) {
-      if (std::abs(along(i)) < 1e-9 * along.norm()) continue;
-      if (!(eigen_.eigenvalues()(i) > kUndetermined)) return kInfinite;
-      sum += along(i) * along(i) / eigen_.eigenvalues()(i);
-    }
-    return sum;
+    const Eigen::VectorXd scaled = scale_.asDiagonal() * direction;
+    if (factor_.info() != Eigen::Success || scaled.isZero(0)) return kInfinite;
+    const double variance = factor_.matrixL().solve(scaled).squaredNorm();
+    const bool determined = variance < 1e-3 / kDamping * scaled.squaredNorm();
+    return determined ? variance : kInfinite;
   }
 
  private:
-  static constexpr double kUndetermined = 1e-12;
-  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  static constexpr double kDamping = 1e-12;
   Eigen::VectorXd scale_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
 };
-
-std::size_t farthest_image(const Bundle& bundle) {
-  std::size_t farthest = 0;
-  double largest = 0;
-  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
-    const double distance = (bundle.images[i].pose.centre - bundle.images[0].pose.centre).norm();
-    if (distance > largest) largest = distance, farthest = i;
-  }
-  return farthest;
-}
 
 // The normal equations at the solution, and which of their columns is what.
 class Normal {
@@ -120,17 +113,22 @@ class Normal {
   HousingChange<double> sigmas_of_camera(std::size_t camera) {
     HousingChange<double> sigmas = HousingChange<double>::Zero();
     const auto found = columns_.find(problem_.change_block(camera));
-    if (found == columns_.end()) return sigmas;
-    Eigen::Index column = found->second;
-    for (int k = 0; k < kHousingNumbers; ++k)
-      if (options_.free[static_cast<std::size_t>(k)])
+    const bool observed = found != columns_.end();
+    Eigen::Index column = observed ? found->second : 0;
+    for (int k = 0; k < kHousingNumbers; ++k) {
+      if (!options_.free[static_cast<std::size_t>(k)]) continue;
+      sigmas(k) = kInfinite;
+      if (observed)
         sigmas(k) =
             std::sqrt(covariance_->variance(Eigen::VectorXd::Unit(camera_columns_, column++)));
+    }
     return sigmas;
   }
 
-  // Relative, of the distance between two images.
-  double sigma_of_distance(std::size_t from, std::size_t to) {
+  // Relative, of the distance between the first image and the one farthest from it.
+  double sigma_of_scale() {
+    const std::size_t from = problem_.anchor(), to = farthest_from(from);
+    if (from == to) return kInfinite;
     const Eigen::Vector3d baseline =
         bundle_.images[to].pose.centre - bundle_.images[from].pose.centre;
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(camera_columns_);
@@ -140,6 +138,17 @@ class Normal {
   }
 
  private:
+  std::size_t farthest_from(std::size_t from) const {
+    std::size_t farthest = from;
+    double largest = 0;
+    for (std::size_t i = 0; i < bundle_.images.size(); ++i) {
+      const double distance =
+          (bundle_.images[i].pose.centre - bundle_.images[from].pose.centre).norm();
+      if (problem_.is_observed(i) && distance > largest) largest = distance, farthest = i;
+    }
+    return farthest;
+  }
+
   void add_centre(std::size_t image, const Eigen::Vector3d& along, Eigen::VectorXd& direction) {
     const auto found = columns_.find(problem_.image_block(image));
     if (found != columns_.end()) direction.segment<3>(found->second + 3) += along;
@@ -171,7 +180,7 @@ Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options) {
   Normal normal(bundle, weighed);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
-  result.scale_sigma = normal.sigma_of_distance(0, farthest_image(bundle));
+  result.scale_sigma = normal.sigma_of_scale();
   return result;
 }
 

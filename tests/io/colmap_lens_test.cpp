@@ -136,6 +136,48 @@ RC_GTEST_PROP(ColmapLens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
   RC_ASSERT(nearest < 0.1);
 }
 
+RC_GTEST_PROP(ColmapLens, DirectionsAreFoundAgain, ()) {
+  const std::vector<ColmapCamera> cameras{
+      two_focal_camera("PINHOLE", {}),
+      one_focal_camera("SIMPLE_RADIAL", {-0.1}),
+      one_focal_camera("RADIAL", {-0.1, 0.02}),
+      two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -1e-3}),
+      two_focal_camera("FULL_OPENCV", {-0.1, 0.02, 1e-3, -1e-3, 0.01, 0.02, 0.01, 0}),
+      two_focal_camera("OPENCV_FISHEYE", {0.02, -0.01, 0.002, 0}),
+      one_focal_camera("SIMPLE_RADIAL_FISHEYE", {0.02}),
+      two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-3, 1e-3, 0, 0, 1e-3, 1e-3})};
+  const double u = within(0.6), v = within(0.6);
+  for (const ColmapCamera& camera : cameras) {
+    const auto found = direction_at(camera, image_direction(camera, u, v));
+    RC_ASSERT(found.has_value());
+    RC_ASSERT((found->direction - Vector2d(u, v)).norm() < 1e-9);
+    const double h = 1e-5;
+    const Vector2d slope =
+        (image_direction(camera, u + h, v) - image_direction(camera, u - h, v)) / (2 * h);
+    RC_ASSERT((found->derivative.col(0) - slope).norm() < 1e-4 * slope.norm());
+  }
+}
+
+// At the edge of a fisheye's view the plane of directions is far out.
+TEST(ColmapLens, DirectionsAtAFisheyesEdgeAreFound) {
+  const ColmapCamera camera = two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0});
+  for (const double degrees : {60.0, 80.0, 88.0}) {
+    const double u = std::tan(degrees * M_PI / 180);
+    const auto found = direction_at(camera, image_direction(camera, u, 0));
+    ASSERT_TRUE(found) << degrees;
+    EXPECT_NEAR(found->direction.x() / u, 1, 1e-6) << degrees;
+  }
+}
+
+TEST(ColmapLens, NoDirectionIsFoundBeyondTheFold) {
+  // Images nothing between 0.6 and where the polynomial rises again.
+  const ColmapCamera camera = one_focal_camera("RADIAL", {-0.5, 0.1});
+  const Vector2d centre = image_direction(camera, 0, 0);
+  EXPECT_TRUE(direction_at(camera, centre + Vector2d(0.5 * kFx, 0)));
+  EXPECT_FALSE(direction_at(camera, centre + Vector2d(0.65 * kFx, 0)));
+  EXPECT_TRUE(direction_at(camera, centre));
+}
+
 TEST(ColmapLens, LensesThatFoldBackAreNotFollowedPastTheFold) {
   // 1 - 0.5 r^2 folds at r = 0.816: a corner of an image with this focal length is beyond it.
   ColmapCamera camera{7, "SIMPLE_RADIAL", 640, 480, {300, 320, 240, -0.5}};

@@ -216,9 +216,6 @@ TEST_F(ColmapTest, NamesWhatIsWrongInCameras) {
   EXPECT_THAT(message("4294967296 PINHOLE 640 480 500 500 320 240"), HasSubstr("4294967296"));
   EXPECT_THAT(message("2 PINHOLE 640 480 500 500 320 240"), HasSubstr("camera 1"));
   EXPECT_THAT(message("1 PINHOLE 6 4 5 5 3 2\n1 PINHOLE 6 4 5 5 3 2"), HasSubstr("occurs twice"));
-  for (const std::string port :
-       {"FLATPORT 0 0 1 0.02 0.01 1 1.5 1.33", "DOMEPORT 0 0 0 0.05 0.01 1 1.5 1.33"})
-    EXPECT_THAT(message("1 PINHOLE 640 480 500 500 320 240 " + port), HasSubstr("--housing"));
 }
 
 TEST_F(ColmapTest, NamesWhatIsWrongInImagesAndPoints) {
@@ -245,21 +242,6 @@ TEST_F(ColmapTest, NamesWhatIsWrongInImagesAndPoints) {
   EXPECT_THAT(points("9 1 2 3 10 20 30 0.5 5\n"), HasSubstr("2D point of the track is missing"));
   EXPECT_THAT(points("9 1 2 3 10 20 30 0.5 5 2\n"), HasSubstr("2D point 2"));
   EXPECT_THAT(points("9 1 2 3 10 20 30 0.5 7 0\n"), HasSubstr("image 7"));
-}
-
-TEST_F(ColmapTest, RefusesOtherBinaryDialects) {
-  // COLMAP-Underwater adds the number of a port model (-1: none) behind every camera.
-  ColmapModel model = small_model();
-  model.cameras.resize(1);
-  write_colmap_binary(folder_, model);
-  const std::string upstream = read_file(folder_ / "cameras.bin");
-  test::put(folder_ / "cameras.bin", upstream + "\xFF\xFF\xFF\xFF");
-  EXPECT_THAT(error(), HasSubstr("4 bytes follow"));
-  write_colmap_binary(folder_, small_model());
-  const std::string two = read_file(folder_ / "cameras.bin");
-  test::put(folder_ / "cameras.bin", two.substr(0, upstream.size()) + "\xFF\xFF\xFF\xFF" +
-                                         two.substr(upstream.size()) + "\xFF\xFF\xFF\xFF");
-  EXPECT_THAT(error(), HasSubstr("cameras.bin"));
 }
 
 TEST_F(ColmapTest, RefusesToWriteWhatCannotBeRead) {

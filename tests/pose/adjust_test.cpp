@@ -70,14 +70,32 @@ INSTANTIATE_TEST_SUITE_P(Ports, AdjustBehind,
 
 TEST(Adjust, OutliersHaveLittleSay) {
   const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
-  Bundle bundle = truth;
-  for (std::size_t i = 0; i < bundle.observations.size(); i += 50)
-    bundle.observations[i].pixel += Eigen::Vector2d(40, -30);
-  AdjustOptions options;
-  options.pixel_sigma = 0.3;
-  adjust(bundle, options);
-  const auto errors = pose_errors(bundle, truth);
-  EXPECT_LT(errors.centre_rms, 0.001);  // 0.1 px of 610 at 0.8 m is 0.13 mm
+  const auto error_with = [&](double loss_sigmas) {
+    Bundle bundle = truth;
+    for (std::size_t i = 0; i < bundle.observations.size(); i += 50)
+      bundle.observations[i].pixel += Eigen::Vector2d(40, -30);
+    AdjustOptions options;
+    options.pixel_sigma = 0.3;
+    options.loss_sigmas = loss_sigmas;
+    adjust(bundle, options);
+    return pose_errors(bundle, truth).centre_rms;
+  };
+  EXPECT_LT(error_with(2), 0.2 * error_with(1e9));
+}
+
+// An image that nothing is left of, first or farthest, says nothing of the scale.
+TEST(Uncertainty, IsNotMistakenByAnImageWithoutObservations) {
+  const Bundle whole = survey(camera_behind(flat_port()), {.noise = 0.5});
+  for (const std::size_t lost : {std::size_t{0}, std::size_t{11}}) {
+    Bundle bundle = whole;
+    std::erase_if(bundle.observations, [&](const Observation& o) { return o.image == lost; });
+    bundle.images[lost].pose.centre.x() += lost == 0 ? -100 : 100;
+    AdjustOptions options;
+    adjust(bundle, options);
+    const double sigma = uncertainty(bundle, options).scale_sigma;
+    EXPECT_GT(sigma, 0.8 * uncertainty(whole, options).scale_sigma);
+    EXPECT_LT(sigma, 2 * uncertainty(whole, options).scale_sigma);
+  }
 }
 
 TEST(Adjust, KnownPositionsHoldTheModel) {

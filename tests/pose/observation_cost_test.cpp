@@ -142,12 +142,13 @@ TEST(ObservationCost, APointThatIsNotSeenMovesNothing) {
   const HousingChange<double> change = HousingChange<double>::Zero();
   const double* blocks[] = {pose.data(), behind.data(), change.data()};
   std::array<double, 2> residual;
-  std::array<double, 2 * kPoseNumbers> by_pose;
-  by_pose.fill(1);
-  double* jacobians[] = {by_pose.data(), nullptr, nullptr};
+  std::vector<double> by_pose(2 * kPoseNumbers, 1), by_point(6, 1),
+      by_change(2 * kHousingNumbers, 1);
+  double* jacobians[] = {by_pose.data(), by_point.data(), by_change.data()};
   ASSERT_TRUE(cost.Evaluate(blocks, residual.data(), jacobians));
-  EXPECT_GT(std::hypot(residual[0], residual[1]), 50);
-  for (const double derivative : by_pose) EXPECT_EQ(derivative, 0);
+  EXPECT_GT(std::hypot(residual[0], residual[1]), 1024);
+  for (const auto& derivatives : {by_pose, by_point, by_change})
+    for (const double derivative : derivatives) EXPECT_EQ(derivative, 0);
 }
 
 TEST(LeftJacobian, TurnsSmoothlyIntoTheIdentity) {

@@ -102,11 +102,32 @@ TEST_F(RefinePoses, TakesTheScaleFromPositions) {
         0.002);
 }
 
-TEST_F(RefinePoses, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST_F(RefinePoses, GivesTheSameBytesEachTime) {
   ASSERT_EQ(run(kInput + "-o one --max-threads 1").exit_code, 0);
-  ASSERT_EQ(run(kInput + "-o two --max-threads 2").exit_code, 0);
+  ASSERT_EQ(run(kInput + "-o two").exit_code, 0);
   for (const char* name : {"sparse/images.txt", "sparse/points3D.txt", "report.json"})
     EXPECT_EQ(read_file(folder_ / "one" / name), read_file(folder_ / "two" / name)) << name;
+}
+
+TEST_F(RefinePoses, LeavesOutAnImageOfWhichNothingFits) {
+  io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
+  for (io::ColmapPoint2D& point : model.images[11].points) point.x = 1024 - point.x;
+  write("sparse", model);
+  const Outcome outcome = run(kInput + "-o out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg: too few observations fit"));
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  EXPECT_EQ(refined.images.size(), 11u);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  ASSERT_TRUE(report["scale_sigma"].is_number());
+  EXPECT_GT(report["scale_sigma"].get<double>(), 1e-4);
+}
+
+TEST_F(RefinePoses, TakesAModelOfColmapUnderwater) {
+  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1").exit_code, 0);
+  const Outcome outcome = run("-i out/colmap-underwater -o again");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(io::read_housing(folder_ / "again" / "housing.json").ports.size(), 1u);
 }
 
 TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
@@ -123,11 +144,21 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,-1", "-1 m is no distance");
   refuses(kInput + "-o out --scale-from points:1000,7,1", "point 7 is not in the model");
   refuses(kInput + "-o out --scale-from positions:lost.txt", "lost.txt");
+  refuses(kInput + "-o out --refine centre", "there is a flat port");
+  refuses(kInput + "-o out --refine focal", "OPENCV lens");
+  refuses(kInput + "-o out --refine distance", "needs --distance-sigma or --scale-from");
+  refuses(kInput + "-o out --normal-sigma 1", "--refine does not name normal");
+  refuses(kInput + "-o . ", "is the model that is read");
+  refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,inf", "'inf' is not finite");
   refuses(kInput + "-o out --max-error 0", "--max-error 0: must be positive");
   refuses(kInput + "-o out --scale-sigma nan", "--scale-sigma");
   write_atomically(folder_ / "two.txt", "image0.jpg 1 2 3\nimage1.jpg 1 2\n");
   refuses(kInput + "-o out --scale-from positions:two.txt", "two.txt:2: must be NAME X Y Z");
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  write_atomically(folder_ / "line.txt", "image0.jpg 1 0 0\nimage1.jpg 2 0 0\nimage2.jpg 3 0 0\n");
+  refuses(kInput + "-o out --scale-from positions:line.txt", "lie on one line");
+  write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");
+  refuses("-i . --lens lens --housing dry.json -o out", "no image is behind a port");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "sparse"));
 }
 
 }  // namespace

@@ -54,9 +54,9 @@ TEST(Filter, DropsWhatDoesNotFitAndKeepsTheRest) {
   bundle.observations[5].pixel.x() += 6;
   bundle.observations[50].pixel.y() -= 5;
   bundle.observations[100].pixel.y() -= 3;
-  EXPECT_EQ(filter(bundle, {4, 0}), 2u);
+  EXPECT_EQ(filter(bundle, {4, 0, 1}), 2u);
   EXPECT_EQ(bundle.observations.size(), before - 2);
-  EXPECT_EQ(filter(bundle, {4, 0}), 0u);
+  EXPECT_EQ(filter(bundle, {4, 0, 1}), 0u);
 }
 
 TEST(Filter, ClosesRanksWhereAPointGoes) {
@@ -65,7 +65,7 @@ TEST(Filter, ClosesRanksWhereAPointGoes) {
   std::size_t of_third = 0;
   for (Observation& observation : bundle.observations)
     if (observation.point == 3) observation.pixel.x() += 20, ++of_third;
-  EXPECT_EQ(filter(bundle, {4, 0}), of_third);
+  EXPECT_EQ(filter(bundle, {4, 0, 1}), of_third);
   ASSERT_EQ(bundle.points.size(), points - 1);
   EXPECT_EQ(bundle.points[2].source, 2u);
   EXPECT_EQ(bundle.points[3].source, 4u);
@@ -90,9 +90,19 @@ TEST(Filter, DropsPointsSeenUnderNarrowAngles) {
         camera);
     bundle.observations.push_back(seen);
   }
-  EXPECT_EQ(filter(bundle, {4, 5.7}), 0u);
-  EXPECT_EQ(filter(bundle, {4, 5.8}), 2u);
+  EXPECT_EQ(filter(bundle, {4, 5.7, 1}), 0u);
+  EXPECT_EQ(filter(bundle, {4, 5.8, 1}), 2u);
   EXPECT_TRUE(bundle.points.empty());
+}
+
+TEST(Filter, DropsImagesThatAreHardlySeen) {
+  Bundle bundle = survey(camera_behind(flat_port()), {});
+  std::size_t kept = 0;
+  std::erase_if(bundle.observations, [&](const Observation& observation) {
+    return observation.image == 4 && ++kept > 29;
+  });
+  EXPECT_GE(filter(bundle, {4, 0, 30}), 29u);
+  EXPECT_EQ(observations_by_image(bundle)[4], 0u);
 }
 
 TEST(ReprojectionErrors, AreInfiniteForWhatIsNotSeen) {
