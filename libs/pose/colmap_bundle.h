@@ -32,7 +32,7 @@ struct PortFit {
 };
 PortFit port_fit(const io::ColmapModel& model);
 
-// `model` with the bundle's poses, points, tracks and mean errors, thein-air lenses and the ports.
+// `model` with the bundle's poses, points, tracks and mean errors, the in-air lenses and the ports.
 // Images without observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
