@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/program.h"
 #include "evaluate/alignment.h"
@@ -59,9 +60,7 @@ int run(int argc, char** argv) {
   const auto reference = io::read_colmap_model(io::find_colmap_model(options.reference));
   const evaluate::CentreAlignment alignment = align(model, reference, options.model);
   evaluate::apply(alignment.similarity, model);
-  std::error_code error;
-  fs::create_directories(options.output, error);
-  if (error) fail("{}: cannot be made: {}", options.output.string(), error.message());
+  make_folder(options.output);
   io::write_colmap_text(options.output, model);
   spdlog::info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
                model.images.size(), alignment.similarity.scale);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <spdlog/spdlog.h>
 
-#include "base/error.h"
+#include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "io/colmap.h"
 #include "io/colmap_scene.h"
@@ -19,12 +19,6 @@ std::size_t count_behind_ports(const Scene& scene) {
   std::size_t count = 0;
   for (const SceneImage& image : scene.images) count += image.camera.port.has_value();
   return count;
-}
-
-void make_parent_folder(const fs::path& file) {
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  if (error) fail("{}: cannot be made: {}", file.parent_path().string(), error.message());
 }
 
 // Of the file, or else what the model's cameras carry. COLMAP-Underwater writes ports into models
@@ -56,8 +50,8 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, model);
   spdlog::info("Images in {}", options.image_folder.string());
 
-  make_parent_folder(options.scene_file);
   const fs::path folder = options.scene_file.parent_path();
+  make_folder(folder);
   const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted"};
   Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"));
 
