@@ -31,9 +31,11 @@ class LaneScorer final : public Scorer {
   using Projector = typename Camera<T>::Projector;
   using Image = decltype(std::declval<Projector>().image(std::declval<Vector>()));
 
-  // A source view in every lane.
+  // A source view in every lane. Where all have the same projector, that one is referred to:
+  // copying it would be a good part of the work.
   struct Views {
-    Projector projector;
+    Projector dealt;
+    const Projector* projector;
     refractive::Matrix3<T> rotation;
     Vector translation;
     LaneImages<Abi> image;
@@ -51,10 +53,16 @@ class LaneScorer final : public Scorer {
     fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
-  void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
-             std::span<const SurfacePoint> neighbours, LaneScores& scores) const override {
+  // Looks with all packs before it compares with any: projecting is one long chain of operations
+  // that wait for each other, and the processor fills the waits of one pack with another's work.
+  AXIAL_FLATTEN void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
+                           std::span<const SurfacePoint> neighbours,
+                           LaneScores& scores) const override {
+    std::array<Seen, kLanes / T::kWidth> seen;
     for (std::size_t first = 0; first < pairs.count; first += T::kWidth)
-      score_pack(pixel, planes, pairs, neighbours, first, scores);
+      look(pixel, planes, pairs, neighbours, first, scores, seen[first / T::kWidth]);
+    for (std::size_t first = 0; first < pairs.count; first += T::kWidth)
+      compare(pixel, seen[first / T::kWidth], first, scores);
   }
 
   void rays(float x, float y, LaneRays& rays) const override {
@@ -78,13 +86,22 @@ class LaneScorer final : public Scorer {
       vectors[k / 3](static_cast<Eigen::Index>(k % 3)).store(rays[k].data() + first);
   }
 
-  // The pairs from `first` on, as many as a pack holds.
-  AXIAL_FLATTEN void score_pack(const LanePixel& pixel, const LanePlanes& lane_planes,
-                                const LanePairs& pairs, std::span<const SurfacePoint> neighbours,
-                                std::size_t first, LaneScores& scores) const {
+  // How the source views see the planes: all that is known before any texel is read.
+  struct Seen {
+    LaneImages<Abi> image;
+    refractive::Projection<T> centre;
+    refractive::Matrix2<T> warp;
+    T depth, inconsistency;
+  };
+
+  // The pairs from `first` on, as many as a pack holds. Stores all scores but the cost.
+  void look(const LanePixel& pixel, const LanePlanes& lane_planes, const LanePairs& pairs,
+            std::span<const SurfacePoint> neighbours, std::size_t first, LaneScores& scores,
+            Seen& seen) const {
     const Planes planes = deal_planes(lane_planes, Lookup<Abi>(pairs.plane.data() + first));
     const Lookup<Abi> of_view(pairs.view.data() + first);
-    const Views views = deal_views(of_view, pairs.view.data() + first);
+    Views views;
+    deal_views(of_view, pairs.view.data() + first, views);
     const refractive::AxialRay<T> ray{vector(pixel.origin), vector(pixel.direction)};
     const Vector surface = ray.at(planes.depth);
     depth::smoothness<T>(surface, planes.normal, neighbours, tables_.smoothness)
@@ -94,22 +111,30 @@ class LaneScorer final : public Scorer {
     const refractive::Matrix32<T> slide =
         views.rotation *
         refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal);
-    const Image image = views.projector.image(point);
-    refractive::Matrix2<T> warp;
-    for (int k = 0; k < 2; ++k) warp.col(k) = image.moved(slide.col(k));
-
-    const refractive::Projection<T>& centre = image.projection;
-    const T correlation = lane_zncc(*pixel.patch, tables_.words.data(), views.image, centre, warp);
-    T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
+    const Image image = views.projector->image(point);
+    for (int k = 0; k < 2; ++k) seen.warp.col(k) = image.moved(slide.col(k));
+    seen.image = views.image;
+    seen.centre = image.projection;
+    seen.depth = planes.depth;
+    seen.inconsistency = T(0);
     if (!tables_.depths.empty())
-      cost += inconsistency(pixel, ray, planes.depth, of_view, views, point, image);
+      seen.inconsistency = inconsistency(pixel, ray, planes.depth, of_view, views, point, image);
+    const refractive::Vector2<T> motion = image.moved(views.rotation * ray.direction);
+    select(image.projection.visible, sqrt(motion.dot(motion)), T(0))
+        .store(scores.motion.data() + first);
+  }
+
+  void compare(const LanePixel& pixel, const Seen& seen, std::size_t first,
+               LaneScores& scores) const {
+    const T correlation =
+        lane_zncc(*pixel.patch, tables_.words.data(), seen.image, seen.centre, seen.warp);
+    T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
+    cost += seen.inconsistency;
     if (pixel.prior_weight > 0) {
-      const T off = abs(planes.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
+      const T off = abs(seen.depth - T(pixel.prior_depth)) / T(pixel.prior_depth);
       cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
     }
     min(cost, T(kMaxCost)).store(scores.cost.data() + first);
-    const refractive::Vector2<T> motion = image.moved(views.rotation * ray.direction);
-    select(centre.visible, sqrt(motion.dot(motion)), T(0)).store(scores.motion.data() + first);
   }
 
   static Vector vector(const std::array<float, 3>& v) { return {T(v[0]), T(v[1]), T(v[2])}; }
@@ -139,13 +164,13 @@ class LaneScorer final : public Scorer {
             {of(planes.nx.data()), of(planes.ny.data()), of(planes.nz.data())}};
   }
 
-  Views deal_views(const Lookup<Abi>& of, const std::int32_t* view) const {
-    Views views;
-    if (tables_.same_projector)
-      views.projector = first_projector_;
-    else
-      fill(views.projector, tables_.steps,
+  void deal_views(const Lookup<Abi>& of, const std::int32_t* view, Views& views) const {
+    views.projector = &first_projector_;
+    if (!tables_.same_projector) {
+      fill(views.dealt, tables_.steps,
            [&](std::size_t k) { return of(tables_.projector[k].data()); });
+      views.projector = &views.dealt;
+    }
     for (int i = 0; i < 9; ++i)
       views.rotation(i / 3, i % 3) = of(tables_.rotation[static_cast<std::size_t>(i)].data());
     for (int i = 0; i < 3; ++i)
@@ -154,7 +179,6 @@ class LaneScorer final : public Scorer {
     views.image.height = of(tables_.height.data());
     views.image.begin =
         Ints([&](auto k) { return tables_.image_begin[static_cast<std::size_t>(view[k])]; });
-    return views;
   }
 
   // inconsistency() of geometric_check.h, times its weight.
