@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From raw underwater photographs to a cloud in one command, killed at every step."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from programs import BIN, main, read, run
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
+STEPS = ["features", "matches", "poses", "refine", "import", "densify", "evaluate"]
+
+
+@unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
+class Reconstruct(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.scene = pathlib.Path(cls.folder.name) / "scene"
+        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 6, "--width", 640,
+                   "--height", 480, "--samples", 4, "--medium", "water", "-o", cls.scene)
+        assert made.returncode == 0, made.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def command(self, out, *more):
+        return [sys.executable, str(SCRIPT), "--images", str(self.scene / "water"), "--lens",
+                str(self.scene / "sparse" / "cameras.txt"), "--housing",
+                str(self.scene / "housing.json"), "-o", str(out), "--truth",
+                str(self.scene / "mesh.ply"), "--programs", BIN, *more]
+
+    def killed_at(self, step, out):
+        """What the pipeline said until it was killed, with all its children, soon after `step`
+        began."""
+        process = subprocess.Popen(self.command(out), stdout=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        said = ""
+        for line in process.stdout:
+            said += line
+            if f"] {step}" in line and "done before" not in line:
+                break
+        time.sleep(0.1)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.stdout.close()
+        process.wait()
+        return said
+
+    def test_goes_on_where_it_was_killed(self):
+        out = pathlib.Path(self.folder.name) / "killed"
+        for number, step in enumerate(STEPS):
+            said = self.killed_at(step, out)
+            self.assertEqual(said.count("done before"), number, said)
+        ended = subprocess.run(self.command(out), capture_output=True, text=True, timeout=600)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual(ended.stdout.count("done before"), len(STEPS) - 1, ended.stdout)
+        self.check(out)
+        again = subprocess.run(self.command(out), capture_output=True, text=True, timeout=60)
+        self.assertEqual(again.stdout.count("done before"), len(STEPS), again.stdout)
+        self.other_options_redo_what_differs(out)
+
+    def check(self, out):
+        report = json.loads((out / "refined" / "report.json").read_text())
+        self.assertLess(report["rms_after_px"], 1)
+        self.assertEqual(len(report["images"]), 6)
+        self.assertIn("mean distance to the truth", read(out / "report.md").decode())
+        evaluation = json.loads((out / "evaluation.json").read_text())
+        self.assertGreater(evaluation["accuracy"]["count"], 50000)
+        self.assertLess(evaluation["accuracy"]["median"], 0.002)
+
+    def other_options_redo_what_differs(self, out):
+        ended = subprocess.run(self.command(out, "--densify=--resolution-level 1"),
+                               capture_output=True, text=True, timeout=600)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual(ended.stdout.count("done before"), 5, ended.stdout)
+
+    def test_says_what_is_missing(self):
+        out = pathlib.Path(self.folder.name) / "missing"
+        ended = subprocess.run([*self.command(out), "--lens", "nowhere.txt"], capture_output=True,
+                               text=True)
+        self.assertEqual(ended.returncode, 1)
+        self.assertEqual(ended.stderr, "reconstruct: --lens nowhere.txt: is not there\n")
+        self.assertFalse(out.exists())
+
+
+if __name__ == "__main__":
+    main()
