@@ -18,6 +18,18 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "re
 STEPS = ["features", "matches", "poses", "refine", "import", "densify", "evaluate"]
 
 
+def camera_centres(images):
+    """-R^T t of every image of a COLMAP model, as a position file's lines."""
+    lines = [line.split() for line in images.read_text().splitlines() if not line.startswith("#")]
+    for _, w, x, y, z, *rest in lines[::2]:
+        w, x, y, z, *t = map(float, (w, x, y, z, *rest[:3]))
+        rotation = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+        centre = [-sum(rotation[row][column] * t[row] for row in range(3)) for column in range(3)]
+        yield " ".join([rest[-1], *map(str, centre)]) + "\n"
+
+
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
 class Reconstruct(unittest.TestCase):
     @classmethod
@@ -27,6 +39,8 @@ class Reconstruct(unittest.TestCase):
         made = run("SimulateUnderwater", "--preset", "closeup", "--views", 6, "--width", 640,
                    "--height", 480, "--coarseness", 4, "--medium", "water", "-o", cls.scene)
         assert made.returncode == 0, made.stderr
+        cls.positions = cls.scene / "positions.txt"
+        cls.positions.write_text("".join(camera_centres(cls.scene / "sparse" / "images.txt")))
 
     @classmethod
     def tearDownClass(cls):
@@ -36,7 +50,8 @@ class Reconstruct(unittest.TestCase):
         return [sys.executable, str(SCRIPT), "--images", str(self.scene / "water"), "--lens",
                 str(self.scene / "sparse" / "cameras.txt"), "--housing",
                 str(self.scene / "housing.json"), "-o", str(out), "--truth",
-                str(self.scene / "mesh.ply"), "--programs", BIN, *more]
+                str(self.scene / "mesh.ply"), "--scale-from", f"positions:{self.positions}",
+                "--programs", BIN, *more]
 
     def killed_at(self, step, out):
         """What the pipeline said until it was killed, with all its children, soon after `step`
