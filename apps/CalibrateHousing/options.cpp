@@ -31,9 +31,9 @@ void declare(po::options_description& visible, Options& options, Texts& texts,
        "the port as far as it is known: a housing file or a calibration.yaml; default: that in "
        "the lens's file")  //
       ("board", po::value(&texts.board),
-       "checkerboard:COLUMNSxROWS:SQUARE (inner corners), charuco:COLUMNSxROWS:SQUARE:MARKER "
-       "(squares) or apriltags:COLUMNSxROWS:TAG:GAP, in metres; the last two may end in "
-       ":DICTIONARY")                                                                         //
+       "columns, rows and metres: checkerboard:9x6:0.03 (inner corners, square), "
+       "charuco:8x6:0.03:0.02 (squares, square, marker) or apriltags:5x4:0.03:0.01 (tags, tag, "
+       "gap); the last two may end in :DICTIONARY")                                           //
       ("output-file,o", po::value(&texts.output), "housing file to write (.json)")            //
       ("calibmar", po::value(&texts.calibmar), "also write a calibration.yaml for Calibmar")  //
       ("report", po::value(&texts.report), "write all numbers there (.json)")                 //
@@ -54,9 +54,9 @@ void declare(po::options_description& visible, Options& options, Texts& texts,
        "corners with larger errors are dropped [px]")  //
       ("max-distance-sigma", po::value(&options.limits.place)->default_value(0.001),
        "refuse if the distance, or a dome's centre, is known worse than this [m]")  //
-      ("max-normal-sigma", po::value(&max_normal_degrees)->default_value(0.1),
+      ("max-normal-sigma", po::value(&max_normal_degrees)->default_value(0.1, "0.1"),
        "refuse if the normal is known worse than this [degrees]")  //
-      ("max-index-sigma", po::value(&options.limits.index)->default_value(0.005),
+      ("max-index-sigma", po::value(&options.limits.index)->default_value(0.005, "0.005"),
        "refuse if the water's index is known worse than this")  //
       ("max-thickness-sigma", po::value(&options.limits.thickness)->default_value(0.002),
        "refuse if the thickness is known worse than this [m]");
