@@ -106,7 +106,7 @@ int run(int argc, char** argv) {
         return camera.measured.port.has_value();
       }))
     fail("no image is behind a port: there is nothing to refine");
-  set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
+  pose::set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
   check_focal(refined, adjust);
   check_output(options, folder);
   spdlog::info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),

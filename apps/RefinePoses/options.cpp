@@ -11,22 +11,14 @@ using axial::fail;
 
 namespace {
 
-void check_not_negative(const std::string& option, double value) {
-  if (!(value >= 0 && std::isfinite(value))) fail("--{} {}: must be 0 or more", option, value);
-}
-
 void check(const Options& options) {
-  const Sigmas& sigmas = options.sigmas;
-  check_not_negative("normal-sigma", sigmas.normal_degrees);
-  check_not_negative("distance-sigma", sigmas.distance);
-  check_not_negative("centre-sigma", sigmas.centre);
-  check_not_negative("index-sigma", sigmas.index);
-  check_not_negative("focal-sigma", sigmas.focal);
   if (!(options.scale_sigma > 0 && std::isfinite(options.scale_sigma)))
     fail("--scale-sigma {}: must be positive", options.scale_sigma);
   if (!(options.refine.tracks.max_error > 0))
     fail("--max-error {}: must be positive", options.refine.tracks.max_error);
-  check_not_negative("min-angle", options.refine.tracks.min_angle);
+  const double min_angle = options.refine.tracks.min_angle;
+  if (!(min_angle >= 0 && std::isfinite(min_angle)))
+    fail("--min-angle {}: must be 0 or more", min_angle);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -35,7 +27,7 @@ void check(const Options& options) {
 Options parse_command_line(int argc, const char* const* argv) {
   std::string input, lens, housing, output;
   Options options;
-  Sigmas& sigmas = options.sigmas;
+  axial::pose::Sigmas& sigmas = options.sigmas;
   axial::ProgramOptions program{
       "RefinePoses",
       "turns poses that COLMAP found in photographs taken under water into refractive ones",
@@ -53,11 +45,15 @@ Options parse_command_line(int argc, const char* const* argv) {
       ("output-folder,o", po::value(&output),
        "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")  //
       ("refine", po::value(&options.refine_list)->default_value(""),
-       "what else is unknown: any of normal, distance (flat ports), centre (domes), index, focal")(
+       "what else is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
+       "the "
+       "glass), index (of the water), focal")(
           "normal-sigma", po::value(&sigmas.normal_degrees)->default_value(0),
           "how well the normal was measured [degrees]; 0: not at all")(
           "distance-sigma", po::value(&sigmas.distance)->default_value(0), "the distance [m]")(
           "centre-sigma", po::value(&sigmas.centre)->default_value(0), "a dome's centre [m]")(
+          "thickness-sigma", po::value(&sigmas.thickness)->default_value(0),
+          "the thickness of the glass [m]")(
           "index-sigma", po::value(&sigmas.index)->default_value(0), "the water's index")(
           "focal-sigma", po::value(&sigmas.focal)->default_value(0), "focal lengths, relative")(
           "scale-from", po::value(&options.scale_from),

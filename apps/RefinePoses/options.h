@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/program.h"
-#include "free_numbers.h"
+#include "pose/free_numbers.h"
 #include "pose/refine.h"
 
 struct Options {
@@ -17,8 +17,8 @@ struct Options {
   bool underwater = false;        // also write the model for COLMAP-Underwater
   std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
   double scale_sigma = 0;         // [m]
-  std::string refine_list;        // see free_numbers.h
-  Sigmas sigmas;
+  std::string refine_list;        // see pose/free_numbers.h
+  axial::pose::Sigmas sigmas;
   axial::pose::RefineOptions refine;
 };
 

@@ -5,13 +5,13 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "pose/free_numbers.h"
 
 namespace {
 
 using namespace axial;
 using pose::Bundle;
-using pose::BundleCamera;
 
 std::vector<std::vector<double>> errors_of_images(const Bundle& bundle) {
   std::vector<std::vector<double>> errors(bundle.images.size());
@@ -19,48 +19,6 @@ std::vector<std::vector<double>> errors_of_images(const Bundle& bundle) {
   for (std::size_t i = 0; i < all.size(); ++i)
     errors[bundle.observations[i].image].push_back(all[i]);
   return errors;
-}
-
-// One number of a camera as people know it.
-struct Value {
-  std::string name, unit;
-  double now, sigma;
-};
-
-constexpr double kDegrees = 180 / std::numbers::pi;
-
-struct ValuesOfPort {
-  const pose::HousingChange<double>& sigmas;
-
-  std::vector<Value> operator()(const refractive::FlatPort<double>& port) const {
-    const double tilt_x = std::atan2(port.normal.x(), port.normal.z()) * kDegrees;
-    const double tilt_y = std::atan2(port.normal.y(), port.normal.z()) * kDegrees;
-    return {{"normal to the right", "degrees", tilt_x, sigmas(0) * kDegrees},
-            {"normal downwards", "degrees", tilt_y, sigmas(1) * kDegrees},
-            {"distance", "mm", port.distance * 1e3, sigmas(2) * 1e3},
-            {"index of water", "", port.n_water, sigmas(3)}};
-  }
-  std::vector<Value> operator()(const refractive::DomePort<double>& port) const {
-    return {{"centre x", "mm", port.centre.x() * 1e3, sigmas(0) * 1e3},
-            {"centre y", "mm", port.centre.y() * 1e3, sigmas(1) * 1e3},
-            {"centre z", "mm", port.centre.z() * 1e3, sigmas(2) * 1e3},
-            {"index of water", "", port.n_water, sigmas(3)}};
-  }
-};
-
-// Those under adjustment.
-std::vector<Value> free_values(const BundleCamera& camera,
-                               const pose::HousingChange<double>& sigmas,
-                               const pose::AdjustOptions& options) {
-  const CameraModel now = camera.now();
-  std::vector<Value> all(pose::kFocalNumber);
-  if (now.port) all = std::visit(ValuesOfPort{sigmas}, *now.port);
-  const double factor = std::exp(camera.change(pose::kFocalNumber));
-  all.push_back({"focal length, factor", "", factor, sigmas(pose::kFocalNumber) * factor});
-  std::vector<Value> chosen;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (options.free[k]) chosen.push_back(all[k]);
-  return chosen;
 }
 
 }  // namespace
@@ -87,8 +45,8 @@ std::vector<std::string> report_lines(const pose::RefineReport& report,
   lines.push_back(fmt::format("{:<32} {:>12} {:>11.3f} {:>11.3f}", "all", report.observations_after,
                               report.rms_before, report.rms_after));
   for (std::size_t i = 0; i < bundle.cameras.size(); ++i)
-    for (const Value& value :
-         free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
+    for (const pose::FreeValue& value :
+         pose::free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
       lines.push_back(fmt::format("Camera {} behind {}: {} {:.6g} +- {:.2g} {}", i + 1, ports[i],
                                   value.name, value.now, value.sigma, value.unit));
   lines.push_back(fmt::format("All lengths are known to {:.3g} % (one standard deviation)",
@@ -119,8 +77,8 @@ std::string report_json(const pose::RefineReport& report, std::span<const ImageE
                               {"rms_after_px", image.rms_after}});
   for (std::size_t i = 0; i < bundle.cameras.size(); ++i) {
     Json camera{{"id", i + 1}, {"port", ports[i]}, {"free", Json::array()}};
-    for (const Value& value :
-         free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
+    for (const pose::FreeValue& value :
+         pose::free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
       camera["free"].push_back({{"name", value.name},
                                 {"unit", value.unit},
                                 {"value", value.now},

@@ -13,11 +13,11 @@
 #include "base/subprocess.h"
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/statistics.h"
-#include "experiments/svg.h"
 #include "io/colmap.h"
 #include "io/dmap.h"
 #include "io/housing.h"
 #include "io/image.h"
+#include "io/svg.h"
 #include "results.h"
 
 namespace axial {
@@ -142,7 +142,7 @@ std::string small_picture(const fs::path& png) {
   if (picture.empty()) fail("{}: cannot be read", png.string());
   const double factor = std::min(1.0, static_cast<double>(kPictureWidth) / picture.cols);
   cv::resize(picture, picture, {}, factor, factor, cv::INTER_AREA);
-  return experiments::png_in_base64(picture);
+  return io::png_in_base64(picture);
 }
 
 fs::path truth_of(const SimulatedScene& scene, const std::string& medium, const fs::path& image) {

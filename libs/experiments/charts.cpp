@@ -8,10 +8,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "experiments/svg.h"
+#include "io/svg.h"
 
 namespace axial::experiments {
 namespace {
+
+using io::Anchor;
+using io::Rectangle;
+using io::Svg;
 
 // Of Okabe and Ito, told apart by colour-blind readers too.
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",

@@ -11,11 +11,14 @@ namespace {
 
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_SCHUR;
-  auto* ordering = new ceres::ParameterBlockOrdering;
-  for (double* block : adjusted.point_blocks()) ordering->AddElementToGroup(block, 0);
-  for (double* block : adjusted.camera_blocks()) ordering->AddElementToGroup(block, 1);
-  options.linear_solver_ordering.reset(ordering);
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  if (const std::vector<double*> points = adjusted.point_blocks(); !points.empty()) {
+    options.linear_solver_type = ceres::SPARSE_SCHUR;
+    auto* ordering = new ceres::ParameterBlockOrdering;
+    for (double* block : points) ordering->AddElementToGroup(block, 0);
+    for (double* block : adjusted.camera_blocks()) ordering->AddElementToGroup(block, 1);
+    options.linear_solver_ordering.reset(ordering);
+  }
   options.num_threads = 1;
   options.max_num_iterations = max_iterations;
   // Refraction tells the scale, and little else does: it converges last and moves the cost least.

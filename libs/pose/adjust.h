@@ -32,6 +32,7 @@ struct AdjustOptions {
 
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;  // three or more also hold the model in place
+  bool points_known = false;             // they stay where they are, and hold the model in place
 
   double pixel_sigma = 1;  // of the observations [px]: weighs them against what is known
   double loss_sigmas = 2;  // errors beyond count linearly (Huber)
@@ -45,9 +46,9 @@ struct AdjustReport {
 };
 
 // Moves poses, points and the free numbers to where the observations' errors are least. The first
-// image with observations stays where it is unless positions hold the model. One thread: the sums
-// of several would depend on which comes first. Error for a free number that the cameras' ports do
-// not have, a length or sigma that is not positive, a bundle without observations.
+// image with observations stays where it is unless positions or points hold the model. One thread:
+// the sums of several would depend on which comes first. Error for a free number that the cameras'
+// ports do not have, a length or sigma that is not positive, a bundle without observations.
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviation of the observations [px] that their errors tell: every unknown takes the noise

@@ -144,8 +144,17 @@ std::size_t AdjustProblem::anchor() const {
   return 0;
 }
 
+void AdjustProblem::fix_points() {
+  for (Eigen::Vector3d& point : points_)
+    if (problem_->HasParameterBlock(point.data()))
+      problem_->SetParameterBlockConstant(point.data());
+}
+
 void AdjustProblem::fix_what_stays() {
-  if (options_.positions.size() < 3) problem_->SetParameterBlockConstant(image_block(anchor()));
+  if (options_.points_known)
+    fix_points();
+  else if (options_.positions.size() < 3)
+    problem_->SetParameterBlockConstant(image_block(anchor()));
   std::vector<int> fixed;
   for (int k = 0; k < kHousingNumbers; ++k)
     if (!options_.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
@@ -173,6 +182,7 @@ std::vector<double*> AdjustProblem::camera_blocks() {
 
 std::vector<double*> AdjustProblem::point_blocks() {
   std::vector<double*> blocks;
+  if (options_.points_known) return blocks;
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (!tied_[i] && problem_->HasParameterBlock(points_[i].data()))
       blocks.push_back(points_[i].data());

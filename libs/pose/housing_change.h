@@ -11,11 +11,11 @@
 
 namespace axial::pose {
 
-// Of a flat port: tilts [rad] of the normal about the two axes across it, distance [m], refractive
-// index of the water. Of a dome: its centre [m], the index. Of a camera in air: nothing. Last, of
-// all of them: the logarithm of the factor of both focal lengths.
-inline constexpr int kHousingNumbers = 5;
-inline constexpr int kIndexNumber = 3, kFocalNumber = 4;
+// Of a flat port: tilts [rad] of the normal about the two axes across it, distance [m]; of a dome:
+// its centre [m]. Of both: refractive index of the water, thickness of the glass [m]. Of a camera
+// in air: nothing. Last, of all of them: the logarithm of the factor of both focal lengths.
+inline constexpr int kHousingNumbers = 6;
+inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 
 template <class T>
 using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
@@ -30,6 +30,7 @@ refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
   port.normal.normalize();
   port.distance += change(2);
   port.n_water += change(kIndexNumber);
+  port.thickness += change(kThicknessNumber);
   return port;
 }
 
@@ -39,6 +40,7 @@ refractive::DomePort<T> moved(const refractive::DomePort<double>& measured,
   refractive::DomePort<T> port = measured.cast<T>();
   port.centre += change.template head<3>();
   port.n_water += change(kIndexNumber);
+  port.thickness += change(kThicknessNumber);
   return port;
 }
 

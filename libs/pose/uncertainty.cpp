@@ -19,11 +19,13 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
-  const std::size_t fixed_images = options.positions.size() < 3 ? 1 : 0;
+  const bool held = options.points_known || options.positions.size() >= 3;
+  const std::size_t fixed_images = held ? 0 : 1;
+  const std::size_t points = options.points_known ? 0 : bundle.points.size();
   const auto free =
       static_cast<std::size_t>(std::count(options.free.begin(), options.free.end(), true));
   return kPoseNumbers * (bundle.images.size() - fixed_images) + free * bundle.cameras.size() +
-         3 * bundle.points.size();
+         3 * points;
 }
 
 Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {

@@ -44,7 +44,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
     const Pose& pose = bundle_.images[observation.image].pose;
     Numbers x;
     x << 0.02, -0.03, 0.05, pose.centre, bundle_.points[observation.point].position, 0.002, -0.003,
-        0.001, 0.004, -0.01;
+        0.001, 0.004, 0.0005, -0.01;
     return x;
   }
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace axial::experiments {
+namespace axial::io {
 
 struct Rectangle {
   double x, y, width, height;
@@ -41,4 +41,4 @@ class Svg {
   std::string body_;
 };
 
-}  // namespace axial::experiments
+}  // namespace axial::io

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/svg.h"
+#include "io/svg.h"
 
 #include <fmt/format.h>
 
 #include <opencv2/imgcodecs.hpp>
 
-namespace axial::experiments {
+namespace axial::io {
 namespace {
 
 constexpr std::string_view kStyle = R"(
@@ -112,4 +112,4 @@ std::string Svg::str() const {
       width_, height_, kStyle, body_);
 }
 
-}  // namespace axial::experiments
+}  // namespace axial::io

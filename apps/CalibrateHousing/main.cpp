@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "calibrate/coverage.h"
+#include "io/calibmar.h"
+#include "io/housing.h"
+#include "options.h"
+#include "photographs.h"
+#include "report.h"
+
+namespace fs = std::filesystem;
+using namespace axial;
+
+namespace {
+
+io::ColmapCamera load_lens(const fs::path& path) {
+  if (io::is_calibmar(path)) return io::read_calibmar(path);
+  const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
+  if (cameras.size() != 1)
+    fail("{}: has {} cameras, expected the one that is calibrated", path.string(), cameras.size());
+  return cameras.front();
+}
+
+io::Housing housing_with(const refractive::Port<double>& port) {
+  io::Housing housing;
+  housing.ports["main"] = port;
+  housing.default_port = "main";
+  return housing;
+}
+
+// The housing as far as it is known: its default port is the one to calibrate.
+io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
+  if (options.housing.empty()) {
+    if (!lens.port) fail("--housing is missing: the port as far as it is known");
+    return housing_with(*lens.port);
+  }
+  if (io::is_calibmar(options.housing)) {
+    const io::ColmapCamera camera = io::read_calibmar(options.housing);
+    if (!camera.port) fail("{}: key 'non_svp_model' is missing", options.housing.string());
+    return housing_with(*camera.port);
+  }
+  const io::Housing housing = io::read_housing(options.housing);
+  if (housing.default_port == "none")
+    fail("{}: housing.default is 'none', expected the port to calibrate", options.housing.string());
+  return housing;
+}
+
+// What is unknown, into `options`.
+void set_unknown(Options& options, const refractive::Port<double>& port) {
+  if (options.refine_list.empty())
+    options.refine_list =
+        std::holds_alternative<refractive::FlatPort<double>>(port) ? "normal,distance" : "centre";
+  pose::Bundle camera;
+  camera.cameras.resize(1);
+  camera.cameras[0].measured.port = port;
+  pose::AdjustOptions& adjust = options.calibrate.adjust;
+  adjust.points_known = true;
+  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust);
+  if (adjust.free[pose::kFocalNumber])
+    fail("--refine {}: the focal length stays as calibrated in air", options.refine_list);
+}
+
+// Before the work.
+void check_outputs(const Options& options) {
+  for (const fs::path& path : {options.output, options.calibmar, options.report, options.coverage})
+    if (!path.empty()) require_writable(path);
+}
+
+void warn(const calibrate::Calibration& calibration) {
+  for (const std::string& image : calibration.left_out)
+    spdlog::warn("{}: too few corners found, or too few that fit; it is left out", image);
+  for (const std::string& gap : calibrate::gaps(calibration))
+    spdlog::warn("No photograph shows {}", gap);
+  if (!calibration.last.converged)
+    spdlog::warn("Not converged after {} iterations", calibration.last.iterations);
+}
+
+std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
+  std::vector<std::string> comments{"By CalibrateHousing of AxialMVS."};
+  comments.insert(comments.end(), lines.begin(), lines.end());
+  return comments;
+}
+
+// The report and the drawing in any case: they show what is missing. The port only if it is known.
+void write(const Options& options, const calibrate::Calibration& calibration, io::Housing housing,
+           const std::vector<std::string>& lines) {
+  if (!options.report.empty())
+    write_atomically(options.report, report_json(calibration, options.limits));
+  if (!options.coverage.empty())
+    write_atomically(options.coverage, calibrate::coverage_svg(calibration));
+  calibrate::require_known(calibration, options.limits);
+  const refractive::Port<double> port = *calibration.camera().now().port;
+  io::check_port(port, "The calibrated port");
+  if (!options.calibmar.empty()) {
+    io::ColmapCamera camera = calibration.bundle.lenses[0];
+    camera.port = port;
+    io::write_calibmar(options.calibmar, camera, comments_for(lines));
+  }
+  housing.ports[housing.default_port] = port;
+  io::write_housing(options.output, housing);
+}
+
+int run(int argc, char** argv) {
+  Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const ThreadLimit threads(options.parsed.common.max_threads);
+  const io::ColmapCamera lens = load_lens(options.lens);
+  const io::Housing housing = load_housing(options, lens);
+  const refractive::Port<double>& port = housing.ports.at(housing.default_port);
+  set_unknown(options, port);
+  check_outputs(options);
+  const std::vector<fs::path> photographs = photographs_in(options.input);
+  const auto views = find_views(photographs, options.board, lens);
+  const auto calibration = calibrate::calibrate(
+      lens, port, views, calibrate::corners_of(options.board), options.calibrate);
+  const std::vector<std::string> lines = report_lines(calibration);
+  for (const std::string& line : lines) spdlog::info("{}", line);
+  warn(calibration);
+  write(options, calibration, housing, lines);
+  spdlog::info("Housing in {}", options.output.string());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_program("CalibrateHousing", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pose/free_numbers.h"
+
+namespace {
+
+using namespace axial;
+using calibrate::Calibration;
+using Json = nlohmann::ordered_json;
+
+struct Photograph {
+  std::string name;
+  std::size_t found = 0, used = 0;  // corners
+  double rms = 0;                   // [px]
+  calibrate::BoardPlace place;
+};
+
+std::vector<Photograph> photographs_of(const Calibration& calibration) {
+  const pose::Bundle& bundle = calibration.bundle.bundle;
+  std::vector<std::vector<double>> errors(bundle.images.size());
+  const std::vector<double> all = reprojection_errors(bundle);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    errors[bundle.observations[i].image].push_back(all[i]);
+  std::vector<Photograph> rows;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    rows.push_back({bundle.images[i].name, calibration.views[i].corners.size(), errors[i].size(),
+                    pose::root_mean_square(errors[i]), calibrate::board_place(bundle, i)});
+  return rows;
+}
+
+std::vector<pose::FreeValue> values_of(const Calibration& calibration) {
+  return pose::free_values(calibration.camera(), calibration.uncertainty.camera_sigmas[0],
+                           calibration.adjust);
+}
+
+double rms_of(const Calibration& calibration) {
+  return pose::root_mean_square(reprojection_errors(calibration.bundle.bundle));
+}
+
+// JSON has no infinity: null says that nothing tells the number.
+Json finite_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+}  // namespace
+
+std::vector<std::string> report_lines(const Calibration& calibration) {
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("{:<32} {:>8} {:>9} {:>13} {:>15}", "photograph", "corners",
+                              "RMS [px]", "distance [m]", "tilt [degrees]"));
+  for (const Photograph& row : photographs_of(calibration))
+    lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f} {:>13.3f} {:>15.1f}", row.name, row.used,
+                                row.rms, row.place.distance, row.place.tilt_degrees));
+  lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f}", "all",
+                              calibration.bundle.bundle.observations.size(), rms_of(calibration)));
+  for (const pose::FreeValue& value : values_of(calibration))
+    lines.push_back(
+        fmt::format("{} {:.6g} +- {:.2g} {}", value.name, value.now, value.sigma, value.unit));
+  return lines;
+}
+
+std::string report_json(const Calibration& calibration, const calibrate::Limits& limits) {
+  Json json{{"rms_px", rms_of(calibration)},
+            {"pixel_sigma", calibration.uncertainty.pixel_sigma},
+            {"converged", calibration.last.converged}};
+  json["free"] = Json::array();
+  for (const pose::FreeValue& value : values_of(calibration))
+    json["free"].push_back({{"name", value.name},
+                            {"unit", value.unit},
+                            {"value", value.now},
+                            {"sigma", finite_or_null(value.sigma)}});
+  json["photographs"] = Json::array();
+  for (const Photograph& row : photographs_of(calibration))
+    json["photographs"].push_back({{"name", row.name},
+                                   {"corners_found", row.found},
+                                   {"corners_used", row.used},
+                                   {"rms_px", row.rms},
+                                   {"distance_m", row.place.distance},
+                                   {"tilt_degrees", row.place.tilt_degrees}});
+  json["left_out"] = calibration.left_out;
+  json["missing"] = calibrate::gaps(calibration);
+  if (const auto next = calibrate::next_photograph(calibration, limits))
+    json["next_photograph"] = calibrate::words_for(next->board);
+  // Names in another encoding than UTF-8 are not worth the loss of the report.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}

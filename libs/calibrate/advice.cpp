@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/advice.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "calibrate/information.h"
+#include "io/housing.h"
+#include "pose/free_numbers.h"
+
+namespace axial::calibrate {
+namespace {
+
+std::vector<Eigen::Vector3d> corners_of(const pose::Bundle& bundle) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const pose::BundlePoint& point : bundle.points) corners.push_back(point.position);
+  return corners;
+}
+
+double limit_of(std::size_t number, const Calibration& calibration, const Limits& limits) {
+  const bool dome =
+      std::holds_alternative<refractive::DomePort<double>>(*calibration.camera().measured.port);
+  if (number == pose::kIndexNumber) return limits.index;
+  if (number == pose::kThicknessNumber) return limits.thickness;
+  return dome || number == 2 ? limits.place : limits.normal;
+}
+
+struct Worst {
+  std::size_t number = 0;
+  double ratio = 0;  // of the standard deviation to its limit
+};
+
+Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& calibration,
+               const Limits& limits) {
+  Worst worst;
+  for (std::size_t k = 0; k < pose::kHousingNumbers; ++k) {
+    if (!calibration.adjust.free[k]) continue;
+    const double ratio = sigmas(static_cast<Eigen::Index>(k)) / limit_of(k, calibration, limits);
+    if (!(ratio <= worst.ratio)) worst = {k, ratio};
+  }
+  return worst;
+}
+
+// The photographs behind the port as calibrated; where that is no port, as it was before.
+pose::ColmapBundle believable(const Calibration& calibration) {
+  const CameraModel now = calibration.camera().now();
+  try {
+    io::check_port(*now.port, "port");
+    return calibration.bundle;
+  } catch (const Error&) {
+    return board_bundle(calibration.bundle.lenses[0], *calibration.camera().measured.port,
+                        calibration.views, corners_of(calibration.bundle.bundle));
+  }
+}
+
+double nearest(const pose::Bundle& bundle) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < bundle.images.size(); ++i)
+    least = std::min(least, board_place(bundle, i).distance);
+  return least;
+}
+
+void add_edges(const Calibration& calibration, std::vector<std::string>& missing) {
+  const io::ColmapCamera& lens = calibration.bundle.lenses[0];
+  const double width = static_cast<double>(lens.width), height = static_cast<double>(lens.height);
+  double left = width, right = width, upper = height, lower = height;  // free margins
+  for (const pose::Observation& observation : calibration.bundle.bundle.observations) {
+    const Eigen::Vector2d& at =
+        calibration.views[observation.image].corners[observation.source].pixel;
+    left = std::min(left, at.x());
+    right = std::min(right, width - 1 - at.x());
+    upper = std::min(upper, at.y());
+    lower = std::min(lower, height - 1 - at.y());
+  }
+  constexpr double kNear = 0.15;
+  const auto check = [&](double margin, double size, const char* edge) {
+    if (margin > kNear * size)
+      missing.push_back(fmt::format("corners near the image's {} edge", edge));
+  };
+  check(left, width, "left");
+  check(right, width, "right");
+  check(upper, height, "upper");
+  check(lower, height, "lower");
+}
+
+}  // namespace
+
+BoardPlace board_place(const pose::Bundle& bundle, std::size_t image) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const pose::BundlePoint& point : bundle.points) middle += point.position;
+  middle /= static_cast<double>(bundle.points.size());
+  const Pose& pose = bundle.images[image].pose;
+  const double cosine = std::min(1.0, std::abs(pose.rotation(2, 2)));
+  return {pose.to_camera(middle).norm(), std::acos(cosine) * 180 / std::numbers::pi};
+}
+
+std::vector<std::string> gaps(const Calibration& calibration) {
+  std::vector<std::string> missing;
+  add_edges(calibration, missing);
+  const pose::Bundle& bundle = calibration.bundle.bundle;
+  double steepest = 0, near = std::numeric_limits<double>::infinity(), far = 0;
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    const BoardPlace place = board_place(bundle, i);
+    steepest = std::max(steepest, place.tilt_degrees);
+    near = std::min(near, place.distance);
+    far = std::max(far, place.distance);
+  }
+  constexpr double kSteepEnough = 20, kFarEnough = 1.3;
+  if (steepest < kSteepEnough)
+    missing.push_back(fmt::format("a board tilted by {} degrees or more", kSteepEnough));
+  if (far < kFarEnough * near)
+    missing.push_back(fmt::format("another distance than {:.2f} m", near));
+  return missing;
+}
+
+std::optional<NextPhotograph> next_photograph(const Calibration& calibration,
+                                              const Limits& limits) {
+  const pose::ColmapBundle bundle = believable(calibration);
+  const std::vector<Eigen::Vector3d> corners = corners_of(bundle.bundle);
+  constexpr double kNoLess = 0.1;  // [px]: a few photographs may fit better than corners are found
+  const double noise = std::max(kNoLess, calibration.uncertainty.pixel_sigma);
+  const Information known = total_information(bundle.bundle, calibration.adjust, noise);
+  const auto boards = placed_boards(bundle, corners, 0.8 * nearest(bundle.bundle));
+  std::vector<View> views;
+  std::vector<Pose> poses;
+  for (const PlacedBoard& board : boards) {
+    views.push_back({"", board.corners});
+    poses.push_back(board.pose);
+  }
+  const pose::ColmapBundle added =
+      board_bundle(bundle.lenses[0], *bundle.bundle.cameras[0].now().port, views, corners, poses);
+  std::optional<NextPhotograph> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < boards.size(); ++i) {
+    const Information with = known + information(added.bundle, i) / (noise * noise);
+    const auto sigmas = sigmas_from(with, calibration.adjust);
+    const double ratio = worst_of(sigmas, calibration, limits).ratio;
+    if (ratio < least) least = ratio, best = NextPhotograph{boards[i], sigmas};
+  }
+  return best;
+}
+
+void require_known(const Calibration& calibration, const Limits& limits) {
+  const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
+  const Worst worst = worst_of(sigmas, calibration, limits);
+  if (worst.ratio <= 1) return;
+  const auto values = pose::free_values(calibration.camera(), sigmas, calibration.adjust);
+  const auto value = std::ranges::find(values, worst.number, &pose::FreeValue::number);
+  std::string said =
+      fmt::format("{} photographs leave the {} known to +- {:.2g} {}, allowed are {:.2g}",
+                  calibration.views.size(), value->name, value->sigma, value->unit,
+                  limit_of(worst.number, calibration, limits) * value->scale);
+  if (const auto missing = gaps(calibration); !missing.empty())
+    said += fmt::format("; no photograph shows {}", fmt::join(missing, ", nor "));
+  if (const auto next = next_photograph(calibration, limits))
+    said += fmt::format("; what would help most is {} (then +- {:.2g})", words_for(next->board),
+                        next->sigmas(static_cast<Eigen::Index>(worst.number)) * value->scale);
+  throw Error(said);
+}
+
+}  // namespace axial::calibrate

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/board.h"
+
+#include <array>
+#include <charconv>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+#include "calibrate/marker_board.h"
+
+namespace axial::calibrate {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, at);) parts.push_back(part);
+  return parts;
+}
+
+template <class T>
+T number(const std::string& word, const std::string& text) {
+  T value{};
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || stop != end) fail("{}: '{}' is no number", text, word);
+  return value;
+}
+
+double metres(const std::string& word, const std::string& text) {
+  const auto length = number<double>(word, text);
+  constexpr double kLargest = 10;
+  if (!(length > 0 && length <= kLargest))
+    fail("{}: '{}' is no length in metres from 0 to {}", text, word, kLargest);
+  return length;
+}
+
+void read_counts(const std::string& word, const std::string& text, Board& board) {
+  const std::vector<std::string> counts = split(word, 'x');
+  if (counts.size() != 2) fail("{}: '{}' is not COLUMNSxROWS", text, word);
+  board.columns = number<int>(counts[0], text);
+  board.rows = number<int>(counts[1], text);
+  // OpenCV finds no checkerboard, and makes no ChArUco board, of fewer.
+  const int least = board.kind == BoardKind::apriltags ? 1 : 3;
+  constexpr int kMost = 100;
+  for (const int count : {board.columns, board.rows})
+    if (count < least || count > kMost)
+      fail("{}: {} columns and {} rows, expected {} to {} of each", text, board.columns, board.rows,
+           least, kMost);
+}
+
+constexpr std::array<std::pair<std::string_view, BoardKind>, 3> kKinds{
+    {{"checkerboard", BoardKind::checkerboard},
+     {"charuco", BoardKind::charuco},
+     {"apriltags", BoardKind::apriltags}}};
+
+BoardKind kind_of(const std::string& word, const std::string& text) {
+  for (const auto& [name, kind] : kKinds)
+    if (name == word) return kind;
+  fail("{}: must begin with checkerboard:, charuco: or apriltags:", text);
+}
+
+}  // namespace
+
+Board parse_board(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  Board board;
+  board.kind = kind_of(parts.empty() ? "" : parts[0], text);
+  const bool markers = board.kind != BoardKind::checkerboard;
+  const std::size_t least = markers ? 4 : 3, most = markers ? 5 : 3;
+  if (parts.size() < least || parts.size() > most)
+    fail(
+        "{}: must be checkerboard:COLUMNSxROWS:SQUARE, charuco:COLUMNSxROWS:SQUARE:MARKER or "
+        "apriltags:COLUMNSxROWS:TAG:GAP, in metres",
+        text);
+  read_counts(parts[1], text, board);
+  board.size = metres(parts[2], text);
+  if (!markers) return board;
+  board.second = metres(parts[3], text);
+  if (board.kind == BoardKind::charuco && board.second >= board.size)
+    fail("{}: a marker of {} m does not fit into a square of {} m", text, board.second, board.size);
+  const bool tags = board.kind == BoardKind::apriltags;
+  board.dictionary = parts.size() > 4 ? parts[4] : tags ? "APRILTAG_36h11" : "4X4_50";
+  check_markers(board, text);
+  return board;
+}
+
+std::vector<Eigen::Vector3d> corners_of(const Board& board) {
+  if (board.kind != BoardKind::checkerboard) return marker_board_corners(board);
+  std::vector<Eigen::Vector3d> corners;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
+      corners.emplace_back(column * board.size, row * board.size, 0);
+  return corners;
+}
+
+}  // namespace axial::calibrate

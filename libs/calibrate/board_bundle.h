@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photographs of a board as a bundle, whose points are the board's corners.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibrate/board.h"
+#include "io/colmap.h"
+#include "pose/colmap_bundle.h"
+
+namespace axial::calibrate {
+
+// One photograph and the board's corners in it.
+struct View {
+  std::string image;
+  std::vector<Corner> corners;
+};
+
+// The views as images of one camera behind `port`, with `poses` (world: the board) or, without
+// any, where the board seems to be: by perspective of the rays in water, as though they met in one
+// point. An observation's `source` is the corner's index within its view. Error for a view without
+// a pose (fewer than four corners that the lens images).
+pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::Port<double>& port,
+                                std::span<const View> views,
+                                std::span<const Eigen::Vector3d> corners,
+                                std::span<const Pose> poses = {});
+
+// The corners of the board that the camera of `bundle` would image, each well inside the
+// photograph.
+std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
+                                 std::span<const Eigen::Vector3d> corners, const Pose& pose);
+
+}  // namespace axial::calibrate

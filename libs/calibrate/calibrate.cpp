@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/calibrate.h"
+
+#include <Eigen/SVD>
+
+#include "base/error.h"
+
+namespace axial::calibrate {
+namespace {
+
+void require_views(std::size_t count, const CalibrateOptions& options) {
+  if (count < options.min_views)
+    fail(
+        "{} photographs show {} corners of the board or more, at least {} are needed, better 15: "
+        "near each edge of the image, tilted, near and far",
+        count, options.min_corners, options.min_views);
+}
+
+// A line of corners may be turned about itself.
+bool spans_a_plane(const View& view, std::span<const Eigen::Vector3d> corners) {
+  Eigen::Matrix3Xd places(3, view.corners.size());
+  for (std::size_t i = 0; i < view.corners.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) = corners[view.corners[i].number];
+  const Eigen::Matrix3Xd centred = places.colwise() - places.rowwise().mean();
+  const Eigen::Vector3d extents = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
+  return extents(1) > 1e-3 * extents(0);
+}
+
+// Drops corners that do not fit, and all those of photographs with too few that do.
+void drop_misfits(pose::Bundle& bundle, double max_error, std::size_t min_corners) {
+  const std::vector<double> errors = reprojection_errors(bundle);
+  std::vector<pose::Observation> believed;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i] <= max_error) believed.push_back(bundle.observations[i]);
+  bundle.observations = std::move(believed);
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  std::erase_if(bundle.observations, [&](const pose::Observation& observation) {
+    return counts[observation.image] < min_corners;
+  });
+}
+
+// The boards to their places behind the port as it was measured, then all of it.
+void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options) {
+  pose::Bundle& bundle = calibration.bundle.bundle;
+  pose::AdjustOptions& adjusting = calibration.adjust;
+  adjusting = options.adjust;
+  adjusting.points_known = true;
+  adjusting.loss_sigmas *= 4;
+  adjusting.free.fill(false);
+  adjust(bundle, adjusting);
+  adjusting.free = options.adjust.free;
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    // Wide at first: what a wrong port leaves is no outlier yet.
+    const double lenience = round == 0 ? 4 : 1;
+    adjust(bundle, adjusting);
+    drop_misfits(bundle, lenience * options.max_error, options.min_corners);
+    if (bundle.observations.empty())
+      fail("no corner fits: are this the board, the lens in air and the kind of port?");
+    adjusting.loss_sigmas = options.adjust.loss_sigmas;
+    adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
+  }
+  calibration.last = adjust(bundle, adjusting);
+}
+
+// A bundle without those images of which nothing is left.
+void leave_out_misfits(Calibration& calibration) {
+  pose::Bundle& bundle = calibration.bundle.bundle;
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  std::vector<std::size_t> place(counts.size());
+  std::vector<View> views;
+  std::vector<pose::BundleImage> images;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    place[i] = images.size();
+    if (counts[i] == 0) {
+      calibration.left_out.push_back(calibration.views[i].image);
+      continue;
+    }
+    images.push_back(bundle.images[i]);
+    views.push_back(std::move(calibration.views[i]));
+  }
+  for (pose::Observation& observation : bundle.observations)
+    observation.image = place[observation.image];
+  bundle.images = std::move(images);
+  calibration.views = std::move(views);
+}
+
+}  // namespace
+
+Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<double>& port,
+                      std::span<const View> views, std::span<const Eigen::Vector3d> corners,
+                      const CalibrateOptions& options) {
+  Calibration calibration;
+  for (const View& view : views) {
+    if (view.corners.size() >= options.min_corners && spans_a_plane(view, corners))
+      calibration.views.push_back(view);
+    else
+      calibration.left_out.push_back(view.image);
+  }
+  require_views(calibration.views.size(), options);
+  calibration.bundle = board_bundle(lens, port, calibration.views, corners);
+  adjust_in_rounds(calibration, options);
+  leave_out_misfits(calibration);
+  require_views(calibration.views.size(), options);
+  calibration.uncertainty = uncertainty(calibration.bundle.bundle, calibration.adjust);
+  return calibration;
+}
+
+}  // namespace axial::calibrate

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/marker_board.h"
+
+#include <array>
+#include <cmath>
+#include <opencv2/aruco/charuco.hpp>
+#include <string_view>
+#include <utility>
+
+#include "base/error.h"
+
+namespace axial::calibrate {
+namespace {
+
+using cv::aruco::CharucoBoard;
+
+constexpr std::array<std::pair<std::string_view, int>, 21> kDictionaries{
+    {{"4X4_50", cv::aruco::DICT_4X4_50},
+     {"4X4_100", cv::aruco::DICT_4X4_100},
+     {"4X4_250", cv::aruco::DICT_4X4_250},
+     {"4X4_1000", cv::aruco::DICT_4X4_1000},
+     {"5X5_50", cv::aruco::DICT_5X5_50},
+     {"5X5_100", cv::aruco::DICT_5X5_100},
+     {"5X5_250", cv::aruco::DICT_5X5_250},
+     {"5X5_1000", cv::aruco::DICT_5X5_1000},
+     {"6X6_50", cv::aruco::DICT_6X6_50},
+     {"6X6_100", cv::aruco::DICT_6X6_100},
+     {"6X6_250", cv::aruco::DICT_6X6_250},
+     {"6X6_1000", cv::aruco::DICT_6X6_1000},
+     {"7X7_50", cv::aruco::DICT_7X7_50},
+     {"7X7_100", cv::aruco::DICT_7X7_100},
+     {"7X7_250", cv::aruco::DICT_7X7_250},
+     {"7X7_1000", cv::aruco::DICT_7X7_1000},
+     {"ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
+     {"APRILTAG_16h5", cv::aruco::DICT_APRILTAG_16h5},
+     {"APRILTAG_25h9", cv::aruco::DICT_APRILTAG_25h9},
+     {"APRILTAG_36h10", cv::aruco::DICT_APRILTAG_36h10},
+     {"APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11}}};
+
+cv::Ptr<cv::aruco::Dictionary> dictionary_of(const Board& board, const std::string& where) {
+  for (const auto& [name, number] : kDictionaries)
+    if (name == board.dictionary) return cv::aruco::getPredefinedDictionary(number);
+  fail("{}: '{}' is none of OpenCV's dictionaries of markers (4X4_50, APRILTAG_36h11, ...)", where,
+       board.dictionary);
+}
+
+cv::Ptr<CharucoBoard> charuco(const Board& board) {
+  return CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.size),
+                              static_cast<float>(board.second), dictionary_of(board, "board"));
+}
+
+struct Markers {
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> ids;
+};
+
+Markers find_markers(const cv::Mat1b& photograph, const Board& board, int refinement) {
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = refinement;
+  Markers markers;
+  cv::aruco::detectMarkers(photograph, dictionary_of(board, "board"), markers.corners, markers.ids,
+                           parameters);
+  return markers;
+}
+
+Eigen::Vector2d pixel_of(const cv::Point2f& p) {
+  return {p.x, p.y};
+}
+
+std::vector<Corner> find_charuco(const cv::Mat1b& photograph, const Board& board) {
+  // Corners of squares are refined by themselves; those of markers only lead to them.
+  const Markers markers = find_markers(photograph, board, cv::aruco::CORNER_REFINE_NONE);
+  std::vector<Corner> found;
+  if (markers.ids.empty()) return found;
+  std::vector<cv::Point2f> corners;
+  std::vector<int> numbers;
+  cv::aruco::interpolateCornersCharuco(markers.corners, markers.ids, photograph, charuco(board),
+                                       corners, numbers);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    found.push_back({static_cast<std::size_t>(numbers[i]), pixel_of(corners[i])});
+  return found;
+}
+
+std::vector<Corner> find_tags(const cv::Mat1b& photograph, const Board& board) {
+  const Markers markers = find_markers(photograph, board, cv::aruco::CORNER_REFINE_SUBPIX);
+  std::vector<Corner> found;
+  for (std::size_t i = 0; i < markers.ids.size(); ++i) {
+    if (markers.ids[i] >= board.columns * board.rows) continue;  // of another board
+    for (std::size_t k = 0; k < 4; ++k)
+      found.push_back(
+          {4 * static_cast<std::size_t>(markers.ids[i]) + k, pixel_of(markers.corners[i][k])});
+  }
+  return found;
+}
+
+}  // namespace
+
+void check_markers(const Board& board, const std::string& where) {
+  const int squares = board.columns * board.rows;
+  const int needed = board.kind == BoardKind::charuco ? squares / 2 : squares;
+  const int there = dictionary_of(board, where)->bytesList.rows;
+  if (needed > there)
+    fail("{}: {} markers, but the dictionary {} has {}", where, needed, board.dictionary, there);
+}
+
+// OpenCV has these places in single precision: whole multiples of the lengths are exact again when
+// they are computed here.
+std::vector<Eigen::Vector3d> marker_board_corners(const Board& board) {
+  std::vector<Eigen::Vector3d> corners;
+  if (board.kind == BoardKind::charuco) {
+    const cv::Ptr<CharucoBoard> squares = charuco(board);
+    for (const cv::Point3f& p : squares->chessboardCorners)
+      corners.emplace_back(std::round(p.x / board.size) * board.size,
+                           std::round(p.y / board.size) * board.size, 0);
+    return corners;
+  }
+  constexpr std::array<std::array<int, 2>, 4> kAround{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  const double pitch = board.size + board.second;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column)
+      for (const auto& [right, down] : kAround)
+        corners.emplace_back(column * pitch + right * board.size, row * pitch + down * board.size,
+                             0);
+  return corners;
+}
+
+std::vector<Corner> find_marker_corners(const cv::Mat1b& photograph, const Board& board) {
+  return board.kind == BoardKind::charuco ? find_charuco(photograph, board)
+                                          : find_tags(photograph, board);
+}
+
+}  // namespace axial::calibrate

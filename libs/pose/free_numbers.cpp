@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/free_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace axial::pose {
+namespace {
+
+using Words = std::set<std::string>;
+
+Words words_of(const std::string& list) {
+  const Words known{"normal", "distance", "centre", "thickness", "index", "focal"};
+  Words words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) {
+    if (word == "center") word = "centre";
+    if (!known.contains(word))
+      fail("--refine {}: '{}' is none of normal, distance, centre, thickness, index, focal", list,
+           word);
+    words.insert(word);
+  }
+  return words;
+}
+
+template <class Kind>
+bool any_behind(const Bundle& bundle) {
+  return std::ranges::any_of(bundle.cameras, [](const BundleCamera& camera) {
+    return camera.measured.port && std::holds_alternative<Kind>(*camera.measured.port);
+  });
+}
+
+void check_ports(const std::string& refine, const Words& words, const Bundle& bundle) {
+  const bool of_flat = words.contains("normal") || words.contains("distance");
+  if (of_flat && words.contains("centre"))
+    fail("--refine {}: a flat port has no centre, and a dome only that", refine);
+  if (of_flat && any_behind<refractive::DomePort<double>>(bundle))
+    fail("--refine {}: there is a dome, which has a centre instead", refine);
+  if (words.contains("centre") && any_behind<refractive::FlatPort<double>>(bundle))
+    fail("--refine {}: there is a flat port, which has a normal and a distance instead", refine);
+}
+
+void check_known(const std::string& refine, const Words& words, const Sigmas& sigmas,
+                 const AdjustOptions& adjust) {
+  const bool metric = adjust.points_known || !adjust.distances.empty() || !adjust.positions.empty();
+  if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
+    fail(
+        "--refine {}: the distance needs --distance-sigma or --scale-from, since the photographs "
+        "show only its ratio to other lengths",
+        refine);
+  if (words.contains("thickness") && !(sigmas.thickness > 0))
+    fail("--refine {}: the thickness needs --thickness-sigma, since it looks like distance",
+         refine);
+}
+
+void set(const Words& words, const std::string& word, double sigma, double scale,
+         std::initializer_list<std::size_t> numbers, AdjustOptions& adjust) {
+  if (!(sigma >= 0 && std::isfinite(sigma))) fail("--{}-sigma {}: must be 0 or more", word, sigma);
+  if (sigma > 0 && !words.contains(word))
+    fail("--{}-sigma {}: --refine does not name {}", word, sigma, word);
+  if (!words.contains(word)) return;
+  for (const std::size_t number : numbers) {
+    adjust.free[number] = true;
+    adjust.prior_sigma[number] = sigma * scale;
+  }
+}
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+struct ValuesOfPort {
+  std::vector<FreeValue> operator()(const refractive::FlatPort<double>& port) const {
+    const double tilt_x = std::atan2(port.normal.x(), port.normal.z()) * kDegrees;
+    const double tilt_y = std::atan2(port.normal.y(), port.normal.z()) * kDegrees;
+    return {{0, "normal to the right", "degrees", tilt_x, 0, kDegrees},
+            {1, "normal downwards", "degrees", tilt_y, 0, kDegrees},
+            {2, "distance", "mm", port.distance * 1e3, 0, 1e3},
+            {kIndexNumber, "index of water", "", port.n_water, 0, 1},
+            {kThicknessNumber, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
+  }
+  std::vector<FreeValue> operator()(const refractive::DomePort<double>& port) const {
+    return {{0, "centre x", "mm", port.centre.x() * 1e3, 0, 1e3},
+            {1, "centre y", "mm", port.centre.y() * 1e3, 0, 1e3},
+            {2, "centre z", "mm", port.centre.z() * 1e3, 0, 1e3},
+            {kIndexNumber, "index of water", "", port.n_water, 0, 1},
+            {kThicknessNumber, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
+  }
+};
+
+}  // namespace
+
+void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
+                      AdjustOptions& adjust) {
+  const Words words = words_of(refine);
+  check_ports(refine, words, bundle);
+  set(words, "normal", sigmas.normal_degrees, 1 / kDegrees, {0, 1}, adjust);
+  set(words, "distance", sigmas.distance, 1, {2}, adjust);
+  set(words, "centre", sigmas.centre, 1, {0, 1, 2}, adjust);
+  set(words, "thickness", sigmas.thickness, 1, {kThicknessNumber}, adjust);
+  set(words, "index", sigmas.index, 1, {kIndexNumber}, adjust);
+  set(words, "focal", sigmas.focal, 1, {kFocalNumber}, adjust);
+  check_known(refine, words, sigmas, adjust);
+}
+
+std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
+                                   const AdjustOptions& options) {
+  const CameraModel now = camera.now();
+  std::vector<FreeValue> values;
+  if (now.port) values = std::visit(ValuesOfPort{}, *now.port);
+  const double factor = std::exp(camera.change(kFocalNumber));
+  values.push_back({kFocalNumber, "focal length, factor", "", factor, 0, factor});
+  std::erase_if(values, [&](const FreeValue& value) { return !options.free[value.number]; });
+  for (FreeValue& value : values)
+    value.sigma = sigmas(static_cast<Eigen::Index>(value.number)) * value.scale;
+  return values;
+}
+
+}  // namespace axial::pose

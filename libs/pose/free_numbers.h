@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers of a camera that are under adjustment, as people name them and know them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pose/adjust.h"
+
+namespace axial::pose {
+
+// How well the free numbers were measured; 0: not at all.
+struct Sigmas {
+  double normal_degrees = 0;
+  double distance = 0, centre = 0, thickness = 0;  // [m]
+  double index = 0;
+  double focal = 0;  // relative
+};
+
+// What --refine says, a list of normal, distance, centre, thickness, index and focal, and how well
+// that was measured, into `adjust`. Error for another word; for normal or distance of a dome, or
+// the centre of a flat port; for a sigma that is negative, or of what is not refined; for a
+// thickness without one, since it looks like distance; for the distance of a flat port where
+// neither it nor any length is known, since only their ratio is seen.
+void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
+                      AdjustOptions& adjust);
+
+// One number of a camera.
+struct FreeValue {
+  std::size_t number = 0;  // housing_change.h
+  std::string name, unit;
+  double now = 0, sigma = 0;  // [unit]
+  double scale = 1;           // of the unit, in that of housing_change.h: 1000 for mm
+};
+
+// Those under adjustment, with standard deviations `sigmas` as uncertainty() has them.
+std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
+                                   const AdjustOptions& options);
+
+}  // namespace axial::pose

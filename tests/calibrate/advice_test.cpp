@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/advice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calibrate/board_survey.h"
+#include "calibrate/information.h"
+#include "support/error_of.h"
+
+namespace axial::calibrate {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using testing::flat_port;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::kBoard;
+using testing::kPinhole;
+using ::testing::Not;
+using testing::survey;
+using testing::SurveyOptions;
+
+Calibration calibrated(const SurveyOptions& taken) {
+  CalibrateOptions options;
+  options.adjust.free = {true, true, true};
+  return calibrate(kPinhole, flat_port(), survey(kPinhole, flat_port(), taken).views,
+                   corners_of(kBoard), options);
+}
+
+std::string refusal(const SurveyOptions& taken) {
+  const Calibration found = calibrated(taken);
+  return test::error_of([&] { require_known(found, Limits()); });
+}
+
+Eigen::AlignedBox2d box(double left, double top, double right, double bottom) {
+  return {Eigen::Vector2d(left, top), Eigen::Vector2d(right, bottom)};
+}
+
+TEST(Advice, AGoodSetNeedsNone) {
+  const Calibration found = calibrated({.noise = 0.2});
+  EXPECT_THAT(gaps(found), IsEmpty());
+  EXPECT_NO_THROW(require_known(found, Limits()));
+}
+
+TEST(Advice, NamesTheEdgeThatNoPhotographReaches) {
+  EXPECT_THAT(gaps(calibrated({.within = box(0.2, 0.01, 0.99, 0.99)})),
+              ElementsAre("corners near the image's left edge"));
+  EXPECT_THAT(gaps(calibrated({.within = box(0.01, 0.01, 0.8, 0.99)})),
+              ElementsAre("corners near the image's right edge"));
+  EXPECT_THAT(gaps(calibrated({.within = box(0.01, 0.2, 0.99, 0.99)})),
+              ElementsAre("corners near the image's upper edge"));
+  EXPECT_THAT(gaps(calibrated({.within = box(0.01, 0.01, 0.99, 0.8)})),
+              ElementsAre("corners near the image's lower edge"));
+}
+
+TEST(Advice, NamesThatNoBoardIsTilted) {
+  EXPECT_THAT(gaps(calibrated({.views = 15, .steepest = 5, .noise = 0.1})),
+              Contains("a board tilted by 20 degrees or more"));
+}
+
+TEST(Advice, NamesThatAllDistancesAreOne) {
+  EXPECT_THAT(gaps(calibrated({.nearest = 0.36, .farthest = 0.38})),
+              Contains(HasSubstr("another distance than 0.3")));
+}
+
+TEST(Advice, RefusesBoardsInTheMiddleOfTheImageAndSaysWhatIsMissing) {
+  const std::string said = refusal(
+      {.views = 5, .nearest = 0.8, .farthest = 1, .noise = 0.2, .within = box(0.3, 0.3, 0.7, 0.7)});
+  EXPECT_THAT(said, HasSubstr("5 photographs leave "));
+  for (const char* edge : {"left", "right", "upper", "lower"})
+    EXPECT_THAT(said, HasSubstr(std::string("corners near the image's ") + edge + " edge"));
+  EXPECT_THAT(said, HasSubstr("what would help most is the board at the image's "));
+  EXPECT_THAT(said, Not(HasSubstr("tilted by")));  // that, they are
+  EXPECT_THAT(said, Not(HasSubstr("\n")));
+}
+
+TEST(Advice, RefusesBoardsThatAllFaceTheCamera) {
+  const std::string said = refusal({.views = 3,
+                                    .nearest = 0.8,
+                                    .farthest = 0.81,
+                                    .steepest = 1,
+                                    .noise = 0.2,
+                                    .within = box(0.25, 0.25, 0.75, 0.75)});
+  EXPECT_THAT(said, HasSubstr("a board tilted by 20 degrees or more"));
+  EXPECT_THAT(said, HasSubstr("nor another distance than 0."));
+}
+
+// The advice is followed: the photograph it asks for is taken, and does what it promised.
+TEST(Advice, TheNextPhotographHelpsAsPromised) {
+  const Calibration found = calibrated({.views = 5,
+                                        .nearest = 0.5,
+                                        .farthest = 0.8,
+                                        .noise = 0.2,
+                                        .within = box(0.2, 0.2, 0.8, 0.8)});
+  const auto next = next_photograph(found, Limits());
+  ASSERT_TRUE(next);
+  std::vector<View> views = found.views;
+  views.push_back({"next.png", next->board.corners});
+  std::vector<Pose> poses;
+  for (const pose::BundleImage& image : found.bundle.bundle.images) poses.push_back(image.pose);
+  poses.push_back(next->board.pose);
+  const auto with =
+      board_bundle(kPinhole, *found.camera().now().port, views, corners_of(kBoard), poses);
+  pose::AdjustOptions options = found.adjust;
+  const auto before = sigmas_from(
+      total_information(found.bundle.bundle, options, found.uncertainty.pixel_sigma), options);
+  const auto after =
+      sigmas_from(total_information(with.bundle, options, found.uncertainty.pixel_sigma), options);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(after(k), next->sigmas(k), 1e-3 * after(k)) << k;
+    EXPECT_LE(after(k), before(k)) << k;
+  }
+  EXPECT_LT((after.head<3>().cwiseQuotient(before.head<3>())).minCoeff(), 0.8);
+}
+
+// A board that is said to be at an edge is there, and whole.
+TEST(PlacedBoards, AreWhereTheyAreSaidToBe) {
+  const Calibration found = calibrated({.views = 5});
+  const auto boards = placed_boards(found.bundle, corners_of(kBoard), 0.2);
+  EXPECT_GT(boards.size(), 50u);
+  for (const PlacedBoard& board : boards) {
+    double left = 1e9, right = 0, upper = 1e9, lower = 0;
+    for (const Corner& corner : board.corners) {
+      left = std::min(left, corner.pixel.x());
+      right = std::max(right, corner.pixel.x());
+      upper = std::min(upper, corner.pixel.y());
+      lower = std::max(lower, corner.pixel.y());
+    }
+    EXPECT_EQ(board.corners.size(), 54u);
+    if (board.column < 0) {
+      EXPECT_LT(left, 60) << words_for(board);
+    }
+    if (board.column > 0) {
+      EXPECT_GT(right, 1023 - 60) << words_for(board);
+    }
+    if (board.row < 0) {
+      EXPECT_LT(upper, 60) << words_for(board);
+    }
+    if (board.row > 0) {
+      EXPECT_GT(lower, 767 - 60) << words_for(board);
+    }
+    const auto depth = [&](std::size_t corner) {
+      return board.pose.to_camera(corners_of(kBoard)[corner]).z();
+    };
+    // Corner 0 is the upper left one, 8 the upper right, 45 the lower left.
+    const double nearer_right = depth(0) - depth(8), nearer_below = depth(0) - depth(45);
+    EXPECT_EQ(board.turned, nearer_right > 0.01 ? 1 : nearer_right < -0.01 ? -1 : 0);
+    EXPECT_EQ(board.tipped, nearer_below > 0.01 ? 1 : nearer_below < -0.01 ? -1 : 0);
+  }
+}
+
+}  // namespace
+}  // namespace axial::calibrate

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/board.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/aruco/charuco.hpp>
+
+#include "calibrate/board_survey.h"
+#include "calibrate/calibrate.h"
+#include "support/error_of.h"
+#include "support/photograph.h"
+
+namespace axial::calibrate {
+namespace {
+
+using testing::flat_port;
+using ::testing::HasSubstr;
+using testing::kPinhole;
+
+TEST(Board, IsReadFromItsDescription) {
+  const Board checkers = parse_board("checkerboard:9x6:0.03");
+  EXPECT_EQ(checkers.kind, BoardKind::checkerboard);
+  const auto corners = corners_of(checkers);
+  ASSERT_EQ(corners.size(), 54u);
+  EXPECT_EQ(corners[10], Eigen::Vector3d(0.03, 0.03, 0));
+  EXPECT_EQ(corners_of(parse_board("charuco:8x6:0.03:0.02")).size(), 35u);
+  const auto tags = corners_of(parse_board("apriltags:3x2:0.04:0.01"));
+  ASSERT_EQ(tags.size(), 24u);
+  EXPECT_LT((tags[4 * 4 + 2] - Eigen::Vector3d(0.09, 0.09, 0)).norm(), 1e-15);
+  EXPECT_EQ(parse_board("charuco:8x6:0.03:0.02:5X5_100").dictionary, "5X5_100");
+}
+
+TEST(Board, WrongDescriptionsAreNamed) {
+  const auto error = [](const std::string& text) {
+    return test::error_of([&] { parse_board(text); });
+  };
+  EXPECT_THAT(error(""), HasSubstr("must begin with checkerboard:"));
+  EXPECT_THAT(error("chess:9x6:0.03"), HasSubstr("chess:9x6:0.03: must begin with"));
+  EXPECT_THAT(error("checkerboard:9x6"), HasSubstr("COLUMNSxROWS:SQUARE"));
+  EXPECT_THAT(error("checkerboard:9:0.03"), HasSubstr("'9' is not COLUMNSxROWS"));
+  EXPECT_THAT(error("checkerboard:9x2:0.03"), HasSubstr("9 columns and 2 rows"));
+  EXPECT_THAT(error("checkerboard:9x6:30"), HasSubstr("'30' is no length in metres"));
+  EXPECT_THAT(error("checkerboard:9x6:nan"), HasSubstr("'nan' is no length"));
+  EXPECT_THAT(error("checkerboard:9x6:3cm"), HasSubstr("'3cm' is no number"));
+  EXPECT_THAT(error("charuco:8x6:0.03"), HasSubstr("SQUARE:MARKER"));
+  EXPECT_THAT(error("charuco:8x6:0.03:0.04"), HasSubstr("does not fit into a square"));
+  EXPECT_THAT(error("charuco:8x6:0.03:0.02:9X9"), HasSubstr("'9X9' is none of OpenCV's"));
+  EXPECT_THAT(error("charuco:20x20:0.03:0.02"), HasSubstr("200 markers, but"));
+}
+
+// A board that is wide in the image and tilted, behind the port.
+Pose pose_before(const Board& board) {
+  const auto corners = corners_of(board);
+  const Eigen::Vector3d middle = (corners.front() + corners.back()) / 2;
+  Pose pose;
+  pose.rotation =
+      Eigen::AngleAxisd(0.4, Eigen::Vector3d(0.5, 0.8, 0.1).normalized()).toRotationMatrix();
+  pose.centre = middle - pose.rotation.transpose() * Eigen::Vector3d(0.02, -0.01, 0.35);
+  return pose;
+}
+
+TEST(FindCorners, OfACheckerboardAreWhereTheExactProjectionPutsThem) {
+  const Board board = testing::kBoard;
+  const Pose pose = pose_before(board);
+  const auto camera = testing::camera_of(kPinhole, flat_port());
+  const cv::Mat1b image =
+      test::photograph(camera, pose, test::checkerboard(board.columns, board.rows, board.size));
+  const auto found = find_corners(image, board);
+  const auto expected =
+      testing::seen_corners(kPinhole, flat_port(), pose, board, testing::SurveyOptions().within);
+  ASSERT_EQ(found.size(), 54u);
+  ASSERT_EQ(expected.size(), 54u);
+  // The board looks the same upside down.
+  const bool same_way = (found[0].pixel - expected[0].pixel).norm() < 100;
+  double sum2 = 0;
+  for (std::size_t i = 0; i < 54; ++i)
+    sum2 += (found[i].pixel - expected[same_way ? i : 53 - i].pixel).squaredNorm();
+  // Of noise-free corners OpenCV finds a tenth of a pixel and better.
+  EXPECT_LT(std::sqrt(sum2 / 54), 0.1);
+}
+
+TEST(FindCorners, NoneInAnEmptyPhotograph) {
+  const cv::Mat1b grey(480, 640, static_cast<unsigned char>(128));
+  EXPECT_TRUE(find_corners(grey, testing::kBoard).empty());
+  EXPECT_TRUE(find_corners(grey, parse_board("charuco:8x6:0.03:0.02")).empty());
+  EXPECT_TRUE(find_corners(grey, parse_board("apriltags:4x3:0.04:0.01")).empty());
+}
+
+// Boards of markers may be seen in part: what is found still lies on one board behind the port.
+double rms_behind_port(const Board& board, const cv::Mat1b& print, double width, double height,
+                       std::size_t least_corners) {
+  Pose pose;
+  pose.rotation =
+      Eigen::AngleAxisd(0.4, Eigen::Vector3d(0.5, 0.8, 0.1).normalized()).toRotationMatrix();
+  const auto camera = testing::camera_of(kPinhole, flat_port());
+  std::vector<View> views;
+  for (const double aside : {-0.06, 0.0, 0.12}) {
+    pose.centre = Eigen::Vector3d(width / 2, height / 2, 0) -
+                  pose.rotation.transpose() * Eigen::Vector3d(aside, 0.01, 0.3);
+    const cv::Mat1b image = test::photograph(camera, pose, test::picture(print, width, height));
+    views.push_back({"view", find_corners(image, board)});
+    EXPECT_GE(views.back().corners.size(), least_corners);
+  }
+  CalibrateOptions options;
+  const auto found = calibrate(kPinhole, flat_port(), views, corners_of(board), options);
+  EXPECT_EQ(found.views.size(), 3u);
+  return pose::root_mean_square(reprojection_errors(found.bundle.bundle));
+}
+
+TEST(FindCorners, OfACharucoBoardFitTheBoard) {
+  const Board board = parse_board("charuco:8x6:0.025:0.018");
+  const auto printed = cv::aruco::CharucoBoard::create(
+      8, 6, 0.025f, 0.018f, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50));
+  cv::Mat print;
+  printed->draw({1600, 1200}, print);
+  EXPECT_LT(rms_behind_port(board, print, 0.2, 0.15, 20), 0.15);
+}
+
+TEST(FindCorners, OfAprilTagsFitTheBoard) {
+  const Board board = parse_board("apriltags:5x4:0.03:0.01");
+  const auto printed = cv::aruco::GridBoard::create(
+      5, 4, 0.03f, 0.01f, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_APRILTAG_36h11));
+  cv::Mat print;
+  printed->draw({1900, 1500}, print);
+  EXPECT_LT(rms_behind_port(board, print, 0.19, 0.15, 40), 0.3);
+}
+
+}  // namespace
+}  // namespace axial::calibrate

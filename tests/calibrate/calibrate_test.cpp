@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include "calibrate/board_survey.h"
+#include "calibrate/information.h"
+#include "support/error_of.h"
+
+namespace axial::calibrate {
+namespace {
+
+using refractive::DomePort;
+using refractive::FlatPort;
+using testing::angle_degrees;
+using testing::dome_port;
+using testing::flat_port;
+using testing::kBoard;
+using testing::kDistorting;
+using testing::kPinhole;
+using testing::kUsual;
+using testing::kUsualBoard;
+using testing::survey;
+
+CalibrateOptions unknown(std::initializer_list<std::size_t> numbers) {
+  CalibrateOptions options;
+  for (const std::size_t number : numbers) options.adjust.free[number] = true;
+  return options;
+}
+
+const std::initializer_list<std::size_t> kPlace{0, 1, 2};  // normal and distance, or centre
+
+template <class Port>
+Port found_port(const Calibration& calibration) {
+  return std::get<Port>(*calibration.camera().now().port);
+}
+
+// Half a centimetre and 1.5 degrees off.
+FlatPort<double> rough_flat_port() {
+  return flat_port(0, 0.03);
+}
+
+class CalibrateWith : public ::testing::TestWithParam<io::ColmapCamera> {};
+
+// What is left is the lens's inversion, good to 1e-9 of a pixel's place, and rounding.
+TEST_P(CalibrateWith, FindsAFlatPortExactlyInPerfectPhotographs) {
+  const auto taken = survey(GetParam(), flat_port());
+  const Calibration found =
+      calibrate(GetParam(), rough_flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
+  const auto port = found_port<FlatPort<double>>(found);
+  EXPECT_NEAR(port.distance, 0.025, 1e-7);
+  EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 1e-5);
+  ASSERT_EQ(found.views.size(), 25u);
+  for (std::size_t i = 0; i < taken.poses.size(); ++i)
+    EXPECT_LT((found.bundle.bundle.images[i].pose.centre - taken.poses[i].centre).norm(), 1e-6);
+  EXPECT_LT(pose::root_mean_square(reprojection_errors(found.bundle.bundle)), 1e-5);
+}
+
+TEST_P(CalibrateWith, FindsADomeExactlyInPerfectPhotographs) {
+  const auto taken = survey(GetParam(), dome_port());
+  DomePort<double> rough = dome_port();
+  rough.centre.setZero();
+  const Calibration found =
+      calibrate(GetParam(), rough, taken.views, corners_of(kBoard), unknown(kPlace));
+  EXPECT_LT((found_port<DomePort<double>>(found).centre - dome_port().centre).norm(), 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, CalibrateWith, ::testing::Values(kPinhole, kDistorting),
+                         [](const auto& tested) { return tested.param.model; });
+
+// The standard deviations are 0.1 mm and 0.012 degrees.
+TEST(Calibrate, FindsThePortToHalfAMillimetreInTwentyFiveNoisyPhotographs) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const auto taken =
+        survey(kUsual, flat_port(), {.steepest = 45, .noise = 0.2, .seed = seed}, kUsualBoard);
+    const Calibration found =
+        calibrate(kUsual, rough_flat_port(), taken.views, corners_of(kUsualBoard), unknown(kPlace));
+    const auto port = found_port<FlatPort<double>>(found);
+    EXPECT_NEAR(port.distance, 0.025, 0.0005) << seed;
+    EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 0.05) << seed;
+    EXPECT_NEAR(found.uncertainty.pixel_sigma, 0.2, 0.02) << seed;
+  }
+}
+
+TEST(Calibrate, FindsADomeToHalfAMillimetreInTwentyFiveNoisyPhotographs) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const auto taken = survey(kPinhole, dome_port(), {.noise = 0.2, .seed = seed});
+    DomePort<double> rough = dome_port();
+    rough.centre.setZero();
+    const Calibration found =
+        calibrate(kPinhole, rough, taken.views, corners_of(kBoard), unknown(kPlace));
+    EXPECT_LT((found_port<DomePort<double>>(found).centre - dome_port().centre).norm(), 0.0005)
+        << seed;
+  }
+}
+
+// Many calibrations that differ in noise alone: results scatter as their standard deviations say.
+TEST(Calibrate, StandardDeviationsAreHonest) {
+  constexpr int kRuns = 30;
+  const auto exact = survey(kPinhole, flat_port(), {.views = 10});
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.3);
+  CalibrateOptions options = unknown(kPlace);
+  options.adjust.loss_sigmas = 100;
+  pose::HousingChange<double> sum2 = pose::HousingChange<double>::Zero(), predicted2 = sum2;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<View> views = exact.views;
+    for (View& view : views)
+      for (Corner& corner : view.corners)
+        corner.pixel += Eigen::Vector2d(noise(random), noise(random));
+    const Calibration found = calibrate(kPinhole, flat_port(), views, corners_of(kBoard), options);
+    sum2 += found.camera().change.cwiseAbs2();
+    predicted2 += found.uncertainty.camera_sigmas[0].cwiseAbs2();
+  }
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_GT(sum2(k) / predicted2(k), 0.3) << k;
+    EXPECT_LT(sum2(k) / predicted2(k), 1.9) << k;
+  }
+  for (int k = 3; k < pose::kHousingNumbers; ++k) EXPECT_EQ(sum2(k) + predicted2(k), 0) << k;
+}
+
+// Two ways to the same numbers: all normal equations at once, and one photograph after the other.
+TEST(Calibrate, WhatPhotographsTellAddsUp) {
+  const auto taken = survey(kPinhole, flat_port(), {.views = 8, .noise = 0.2});
+  CalibrateOptions options = unknown({0, 1, 2, pose::kThicknessNumber});
+  options.adjust.prior_sigma[pose::kThicknessNumber] = 0.0005;
+  options.adjust.loss_sigmas = 100;
+  const Calibration found =
+      calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), options);
+  const double noise = found.uncertainty.pixel_sigma;
+  const auto sigmas =
+      sigmas_from(total_information(found.bundle.bundle, found.adjust, noise), found.adjust);
+  const auto& expected = found.uncertainty.camera_sigmas[0];
+  for (int k = 0; k < pose::kHousingNumbers; ++k)
+    EXPECT_NEAR(sigmas(k), expected(k), 1e-4 * expected(k)) << k;
+}
+
+// Glass and gap look alike: the thickness is known about as well as it was measured.
+TEST(Calibrate, AMeasuredThicknessStaysAboutAsItWasMeasured) {
+  const auto taken = survey(kPinhole, flat_port(), {.noise = 0.2});
+  FlatPort<double> rough = rough_flat_port();
+  rough.thickness = 0.0103;
+  CalibrateOptions options = unknown({0, 1, 2, pose::kThicknessNumber});
+  options.adjust.prior_sigma[pose::kThicknessNumber] = 0.0003;
+  const Calibration found = calibrate(kPinhole, rough, taken.views, corners_of(kBoard), options);
+  const auto& sigmas = found.uncertainty.camera_sigmas[0];
+  EXPECT_LE(sigmas(pose::kThicknessNumber), 0.0003 * 1.0001);
+  EXPECT_GT(sigmas(pose::kThicknessNumber), 0.0001);
+  const auto port = found_port<FlatPort<double>>(found);
+  EXPECT_NEAR(port.thickness, 0.01, 4 * sigmas(pose::kThicknessNumber));
+  EXPECT_NEAR(port.distance, 0.025, 4 * sigmas(2));
+}
+
+TEST(Calibrate, FindsTheIndexOfTheWater) {
+  const auto taken = survey(kPinhole, flat_port(), {.noise = 0.1});
+  FlatPort<double> rough = rough_flat_port();
+  rough.n_water = 1.34;
+  const Calibration found = calibrate(kPinhole, rough, taken.views, corners_of(kBoard),
+                                      unknown({0, 1, 2, pose::kIndexNumber}));
+  const double sigma = found.uncertainty.camera_sigmas[0](pose::kIndexNumber);
+  EXPECT_NEAR(found_port<FlatPort<double>>(found).n_water, 1.334, 4 * sigma);
+  EXPECT_LT(sigma, 0.005);
+}
+
+TEST(Calibrate, LeavesOutWhatDoesNotFit) {
+  auto taken = survey(kPinhole, flat_port(), {.noise = 0.2});
+  for (std::size_t i = 0; i < taken.views[3].corners.size(); i += 9)
+    taken.views[3].corners[i].pixel.x() += 30;  // some corners mistaken
+  std::swap(taken.views[7].corners[10].pixel, taken.views[7].corners[30].pixel);
+  taken.views[9].corners.resize(5);
+  const Calibration found =
+      calibrate(kPinhole, rough_flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
+  EXPECT_EQ(found.left_out, std::vector<std::string>{"view9.png"});
+  EXPECT_EQ(found.bundle.bundle.observations.size(), 24u * 54 - 6 - 2);
+  EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025, 0.0005);
+}
+
+TEST(Calibrate, RefusesTooFewPhotographs) {
+  auto taken = survey(kPinhole, flat_port(), {.views = 3});
+  taken.views[1].corners.clear();
+  const std::string error = test::error_of(
+      [&] { calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace)); });
+  EXPECT_NE(error.find("2 photographs show 8 corners of the board or more, at least 3"),
+            std::string::npos)
+      << error;
+}
+
+// A row of corners may be turned about itself.
+TEST(Calibrate, ARowOfCornersIsNoBoard) {
+  auto taken = survey(kPinhole, flat_port(), {.views = 4});
+  taken.views[2].corners.resize(9);
+  const Calibration found =
+      calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace));
+  EXPECT_EQ(found.left_out, std::vector<std::string>{"view2.png"});
+}
+
+}  // namespace
+}  // namespace axial::calibrate

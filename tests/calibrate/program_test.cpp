@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CalibrateHousing on photographs that are files.
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "calibrate/board_survey.h"
+#include "io/calibmar.h"
+#include "io/housing.h"
+#include "io/image.h"
+#include "support/photograph.h"
+#include "support/program_run.h"
+
+namespace axial::calibrate {
+namespace {
+
+using test::Outcome;
+using testing::angle_degrees;
+using testing::dome_port;
+using testing::flat_port;
+using ::testing::HasSubstr;
+
+// Smaller than real photographs, so that they are drawn in no time.
+const io::ColmapCamera kLens{1, "PINHOLE", 640, 480, {380, 380, 320, 240}};
+const std::string kInput = "-i photos --board checkerboard:9x6:0.025 ";
+
+class CalibrateHousing : public test::ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_lens("lens.txt", {kLens});
+    write_port("flat.json", flat_port(0, 0.03));
+    auto dome = dome_port();
+    dome.centre.setZero();
+    write_port("dome.json", dome);
+  }
+
+  void write_lens(const std::string& name, const std::vector<io::ColmapCamera>& lenses) const {
+    std::string text;
+    for (const io::ColmapCamera& lens : lenses)
+      text += fmt::format("{} {} {} {} {}\n", lens.id, lens.model, lens.width, lens.height,
+                          fmt::join(lens.params, " "));
+    write_atomically(folder_ / name, text);
+  }
+
+  void write_port(const std::string& name, const refractive::Port<double>& port) const {
+    io::Housing housing;
+    housing.ports["front"] = port;
+    housing.default_port = "front";
+    io::write_housing(folder_ / name, housing);
+  }
+
+  void take_photographs(const refractive::Port<double>& port,
+                        const testing::SurveyOptions& options) const {
+    make_folder(folder_ / "photos");
+    const auto taken = testing::survey(kLens, port, options);
+    const Board& board = testing::kBoard;
+    for (std::size_t i = 0; i < taken.poses.size(); ++i)
+      io::write_png(folder_ / "photos" / taken.views[i].image,
+                    test::photograph(testing::camera_of(kLens, port), taken.poses[i],
+                                     test::checkerboard(board.columns, board.rows, board.size)));
+  }
+
+  // A photograph with a margin around the board.
+  static testing::SurveyOptions with_margin(int views) {
+    testing::SurveyOptions options{.views = views};
+    options.within = {Eigen::Vector2d(0.08, 0.08), Eigen::Vector2d(0.92, 0.92)};
+    return options;
+  }
+
+  Outcome run(const std::string& arguments) const {
+    return run_program("CalibrateHousing", kInput + "--lens lens.txt " + arguments);
+  }
+
+  refractive::Port<double> port_in(const std::string& name) const {
+    return io::read_housing(folder_ / name).ports.at("front");
+  }
+};
+
+TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFivePhotographs) {
+  take_photographs(flat_port(), with_margin(25));
+  const Outcome outcome =
+      run("--housing flat.json -o housing.json --report report.json --coverage coverage.svg "
+          "--calibmar calibration.yaml");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto port = std::get<refractive::FlatPort<double>>(port_in("housing.json"));
+  EXPECT_NEAR(port.distance, 0.025, 0.0005);
+  EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 0.05);
+  EXPECT_EQ(port.thickness, flat_port().thickness);
+
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  EXPECT_EQ(report["photographs"].size(), 25u);
+  EXPECT_LT(report["rms_px"].get<double>(), 0.2);
+  ASSERT_EQ(report["free"].size(), 3u);
+  EXPECT_EQ(report["free"][2]["name"], "distance");
+  EXPECT_NEAR(report["free"][2]["value"].get<double>(), 1e3 * port.distance, 1e-6);
+  EXPECT_TRUE(report["missing"].empty()) << report["missing"];
+  EXPECT_THAT(read_file(folder_ / "coverage.svg"), HasSubstr("1350 corners in 25 photographs"));
+
+  const io::ColmapCamera camera = io::read_calibmar(folder_ / "calibration.yaml");
+  EXPECT_EQ(camera.params, kLens.params);
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(*camera.port).distance, port.distance);
+
+  // From the file for Calibmar alone, which has the lens and a port to begin with.
+  const Outcome again =
+      run_program("CalibrateHousing", kInput + "--lens calibration.yaml -o again.json");
+  ASSERT_EQ(again.exit_code, 0) << again.output;
+  const auto same = std::get<refractive::FlatPort<double>>(
+      io::read_housing(folder_ / "again.json").ports.at("main"));
+  EXPECT_NEAR(same.distance, port.distance, 1e-5);
+}
+
+TEST_F(CalibrateHousing, FindsTheCentreOfADome) {
+  take_photographs(dome_port(), with_margin(15));
+  const Outcome outcome = run("--housing dome.json -o housing.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto port = std::get<refractive::DomePort<double>>(port_in("housing.json"));
+  EXPECT_LT((port.centre - dome_port().centre).norm(), 0.0005);
+}
+
+TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
+  testing::SurveyOptions middle{.views = 4, .nearest = 0.7, .farthest = 0.75, .steepest = 2};
+  middle.within = {Eigen::Vector2d(0.45, 0.1), Eigen::Vector2d(0.9, 0.9)};
+  take_photographs(flat_port(), middle);
+  const Outcome outcome =
+      run("--housing flat.json -o housing.json --report report.json --max-distance-sigma 0.0001");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("CalibrateHousing: 4 photographs leave "));
+  EXPECT_THAT(outcome.output, HasSubstr("no photograph shows corners near the image's left edge"));
+  EXPECT_THAT(outcome.output, HasSubstr("a board tilted by 20 degrees or more"));
+  EXPECT_THAT(outcome.output, HasSubstr("what would help most is the board "));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "housing.json"));
+  // What is missing can be looked up.
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  EXPECT_GE(report["missing"].size(), 2u);
+}
+
+TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
+  take_photographs(flat_port(), {.views = 1});
+  const auto refuses = [&](const std::string& arguments, const std::string& expected) {
+    expect_refusal("CalibrateHousing", arguments, expected);
+  };
+  const std::string lens = "--lens lens.txt ", housing = "--housing flat.json ";
+  const std::string all = kInput + lens + housing;
+  refuses(kInput + housing + "-o out.json", "--lens is missing");
+  refuses(kInput + lens + "-o out.json", "--housing is missing");
+  refuses(kInput + lens + housing, "--output-file is missing");
+  refuses("-i photos -o out.json " + lens + housing, "--board is missing");
+  refuses("-i photos -o out.json --board chess " + lens + housing,
+          "--board chess: must begin with checkerboard:");
+  refuses("-i nowhere -o out.json --board checkerboard:9x6:0.025 " + lens + housing,
+          "nowhere: does not exist");
+  refuses(all + "-o out.json", "1 photographs show 8 corners of the board or more, at least 3");
+  refuses(all + "-o out.json --refine tilt", "'tilt' is none of normal, distance");
+  refuses(all + "-o out.json --refine centre", "there is a flat port");
+  refuses(all + "-o out.json --refine focal", "stays as calibrated in air");
+  refuses(all + "-o out.json --refine thickness", "needs --thickness-sigma");
+  refuses(all + "-o out.json --index-sigma 0.1", "--refine does not name index");
+  refuses(all + "-o out.json --max-normal-sigma 0", "--max-normal-sigma 0: must be positive");
+  refuses(all + "-o nowhere/out.json", "nowhere/out.json");
+  write_lens("two.txt", {kLens, {2, "PINHOLE", 640, 480, {380, 380, 320, 240}}});
+  refuses(kInput + housing + "--lens two.txt -o out.json", "two.txt: has 2 cameras");
+  write_lens("large.txt", {{1, "PINHOLE", 1280, 960, {760, 760, 640, 480}}});
+  refuses(kInput + housing + "--lens large.txt -o out.json",
+          "view0.png: is 640 x 480, the lens 1280 x 960");
+  write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");
+  refuses(kInput + lens + "--housing dry.json -o out.json", "dry.json: housing.default is 'none'");
+  write_atomically(folder_ / "photos" / "cut.png", "\x89PNG\r\n\x1A\n");
+  refuses(all + "-o out.json", "cut.png");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.json"));
+}
+
+}  // namespace
+}  // namespace axial::calibrate
