@@ -20,14 +20,17 @@ GSD = 0.7 / 305
 QUICK = ("--resolution-level", "1", "--min-resolution", "200")
 
 
-class EndToEnd(ProgramTest):
+class SceneTest(ProgramTest):
+    """The close-up scene, photographed in air and through what SCENE says."""
+    SCENE = ()
+
     @classmethod
     def setUpClass(cls):
         cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(cls.shared.cleanup)
         cls.truth = os.path.join(cls.shared.name, "closeup")
         made = run("SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 512,
-                   "--height", 384, "--seed", 1, "--samples", 2, "-o", cls.truth)
+                   "--height", 384, "--seed", 1, "--samples", 2, *cls.SCENE, "-o", cls.truth)
         assert made.returncode == 0, made.stderr
 
     def import_scene(self, medium, folder, housing=True):
@@ -49,6 +52,8 @@ class EndToEnd(ProgramTest):
                       "--json", self.path(folder, "evaluation.json"))
         return json.loads(read(self.path(folder, "evaluation.json")))
 
+
+class EndToEnd(SceneTest):
     def check_cloud(self, result):
         # OpenMVS's mean on such scenes is half a GSD at full resolution; a quarter was measured here.
         self.assertLess(result["accuracy"]["mean"], 0.4 * GSD)
@@ -195,6 +200,26 @@ class EndToEnd(ProgramTest):
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
         self.assertEqual(process.wait(), -signal.SIGKILL, "the run ended before it could be killed")
+
+
+class ThroughTheWaterSurface(SceneTest):
+    """Cameras 20 to 45 cm above a calm surface, half a metre over the same bottom."""
+    SCENE = ("--water-level", "0.4")
+
+    def reconstructed(self, medium, folder, *arguments):
+        self.import_scene(medium, folder)
+        self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
+        return self.evaluate(medium, folder)
+
+    def test_refraction_counts(self):
+        air = self.reconstructed("air", "air")["accuracy"]
+        obeyed = self.reconstructed("water", "obeyed", "--refractive")["accuracy"]
+        ignored = self.reconstructed("water", "ignored", "--camera-model", "pinhole")["accuracy"]
+        # Refraction shortens the parallax by a quarter, and the water's way makes pixels smaller.
+        self.assertLess(obeyed["mean"], 1.25 * air["mean"])
+        self.assertGreater(obeyed["count"], 0.6 * air["count"])
+        # Half a metre of water looks a quarter shallower from above; matching leaves a millimetre.
+        self.assertGreater(ignored["median"], 5 * obeyed["median"])
 
 
 if __name__ == "__main__":
