@@ -203,23 +203,31 @@ class EndToEnd(SceneTest):
 
 
 class ThroughTheWaterSurface(SceneTest):
-    """Cameras 20 to 45 cm above a calm surface, half a metre over the same bottom."""
-    SCENE = ("--water-level", "0.4")
+    """Cameras in the air over the same scene, ten times as large: 3 to 4 m above a calm surface, and
+    4 m of water."""
+    SCENE = ("--scale", "10", "--water-level", "4")
+
+    def densify_quickly(self, folder, *arguments):
+        return self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
 
     def reconstructed(self, medium, folder, *arguments):
         self.import_scene(medium, folder)
-        self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
-        return self.evaluate(medium, folder)
+        self.densify_quickly(folder, *arguments)
+        return self.evaluate(medium, folder)["accuracy"]
 
     def test_refraction_counts(self):
-        air = self.reconstructed("air", "air")["accuracy"]
-        obeyed = self.reconstructed("water", "obeyed", "--refractive")["accuracy"]
-        ignored = self.reconstructed("water", "ignored", "--camera-model", "pinhole")["accuracy"]
-        # Refraction shortens the parallax by a quarter, and the water's way makes pixels smaller.
+        air = self.reconstructed("air", "air")
+        obeyed = self.reconstructed("water", "obeyed", "--refractive")
+        ignored = self.reconstructed("water", "ignored", "--camera-model", "pinhole")
+        # Water takes a quarter off the parallax over a part of the way, and makes pixels smaller.
         self.assertLess(obeyed["mean"], 1.25 * air["mean"])
-        self.assertGreater(obeyed["count"], 0.6 * air["count"])
-        # Half a metre of water looks a quarter shallower from above; matching leaves a millimetre.
-        self.assertGreater(ignored["median"], 5 * obeyed["median"])
+        self.assertGreater(obeyed["count"], 0.8 * air["count"])
+        # Four metres of water look one metre shallower from above; matching leaves a centimetre.
+        self.assertGreater(ignored["median"], 20 * obeyed["median"])
+        # A surface further away than any housing's glass is read again from beside the maps.
+        self.assertIn("All 4 depth maps are there already",
+                      self.densify_quickly("obeyed", "--refractive"))
+
 
 
 if __name__ == "__main__":
