@@ -45,18 +45,18 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
   axial::io::attach_ports(scene, housing);
-  std::size_t wet = 0, flat = 0;
+  std::size_t images = 0, wet = 0, flat = 0;
   for (const axial::SceneImage& image : scene.images) {
     const auto& port = image.camera.port;
+    images += image.calibrated ? 1 : 0;
     wet += port ? 1 : 0;
     flat += port && std::holds_alternative<axial::refractive::FlatPort<double>>(*port) ? 1 : 0;
   }
   if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
-  if (flat < scene.images.size() && options.camera == CameraChoice::flat_port)
+  if (flat < images && options.camera == CameraChoice::flat_port)
     fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
-         flat, scene.images.size());
-  spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
-               scene.images.size());
+         flat, images);
+  spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet, images);
   if (wet == 0) return {};
   return housing;
 }

@@ -37,7 +37,11 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   const io::Housing carried = io::housing_of(model);
   if (options.lens.empty() && carried.ports.empty())
     fail("--lens is missing: the lens as calibrated in air");
-  if (!options.housing.empty()) return io::read_housing(options.housing);
+  if (!options.housing.empty()) {
+    io::Housing housing = io::read_housing(options.housing);
+    io::refuse_water_surfaces(housing, options.housing);
+    return housing;
+  }
   if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
   return carried;
 }

@@ -33,6 +33,8 @@ ProgramOptions describe(Arguments& a) {
       "port-distance", po::value(&a.port_distance), "camera centre to glass [m]")(
       "port-thickness", po::value(&a.port_thickness), "of the glass [m]")(
       "tilt-degrees", po::value(&a.tilt_degrees), "of the port against the optical axis")(
+      "water-level", po::value(&a.water_level),
+      "height of a water surface that cameras in the air look through, in place of a port [m]")(
       "dome-radius", po::value(&a.dome_radius),
       "inner radius of a dome in place of the flat port [m]")(
       "dome-x", po::value(&a.dome_x)->default_value(0), "camera centre to dome centre [m]")(
@@ -63,7 +65,15 @@ void check(const Arguments& a) {
     fail("--tilt-degrees is {}: must be between -45 and 45", a.tilt_degrees);
 }
 
-void apply_port_options(simulate::Port& port, const Arguments& a, const po::variables_map& values) {
+void apply_port_options(simulate::Preset& preset, const Arguments& a,
+                        const po::variables_map& values) {
+  simulate::Port& port = preset.port;
+  const bool surface = given(values, "water-level");
+  for (const char* of_housing :
+       {"port-distance", "port-thickness", "tilt-degrees", "dome-radius", "n-glass"})
+    if (surface && given(values, of_housing))
+      fail("--{} is of a housing, and --water-level puts the cameras in the air", of_housing);
+  if (surface) preset.water_level = a.water_level;
   if (given(values, "port-distance")) port.distance = a.port_distance;
   if (given(values, "port-thickness")) port.thickness = a.port_thickness;
   if (given(values, "tilt-degrees")) port.normal = simulate::tilted_normal(a.tilt_degrees);

@@ -14,6 +14,7 @@ struct Arguments {
   int samples = 0, jpeg_quality = 0;
   double noise = 0;
   bool truth = true, truth_only = false;
+  double water_level = 0;
   double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
 };
@@ -24,8 +25,9 @@ ProgramOptions describe(Arguments& a);
 // Error that names the option and its value.
 void check(const Arguments& a);
 
-// Replaces those properties of the preset's port that the user gave.
-void apply_port_options(simulate::Port& port, const Arguments& a,
+// Replaces those properties of the preset's port that the user gave, or the port by the water's
+// surface.
+void apply_port_options(simulate::Preset& preset, const Arguments& a,
                         const boost::program_options::variables_map& values);
 
 }  // namespace axial

@@ -17,10 +17,11 @@ namespace {
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
   make_folder(folder);
-  const simulate::Port* port = water ? &preset.port : nullptr;
   const ProgressSink progress = console_progress(water ? "Images (water)" : "Images (air)");
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
     const simulate::View& view = preset.views[i];
+    const simulate::Port through = port_of_view(preset, view);
+    const simulate::Port* port = water ? &through : nullptr;
     if (a.truth)
       write_truth(folder, view_name(i), simulate::render_truth(scene, preset.lens, port, view));
     if (!a.truth_only) {
@@ -38,12 +39,13 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
                     const std::filesystem::path& folder) {
   make_folder(folder);
   const simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
+  check_submerged(preset, mesh);
   spdlog::info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
   const simulate::RayScene scene(mesh);
   const simulate::Shader shader = simulate::seabed_shader(mesh, scene, preset.texture);
   write_mesh(folder / "mesh.ply", mesh);
   if (!a.truth_only) {
-    write_port(folder / "housing.json", preset.port);
+    write_port(folder / "housing.json", preset);
     write_sparse_model(
         folder / "sparse", preset.lens, preset.views,
         simulate::true_points(scene, shader, preset.lens, preset.views, 400, a.preset.seed));
@@ -62,8 +64,8 @@ int main(int argc, char** argv) {
     check(arguments);
     const ThreadLimit limit(parsed.common.max_threads);
     simulate::Preset preset = simulate::make_preset(arguments.preset);
-    apply_port_options(preset.port, arguments, parsed.values);
-    simulate::check_port(preset.port, preset.lens);
+    apply_port_options(preset, arguments, parsed.values);
+    simulate::check_ports(preset);
     simulate_scene(arguments, preset, in_working_folder(parsed.common, arguments.output));
     return 0;
   });

@@ -64,9 +64,13 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
   io::write_colmap_text(folder, model);
 }
 
-void write_port(const std::filesystem::path& file, const simulate::Port& port) {
+void write_port(const std::filesystem::path& file, const simulate::Preset& preset) {
+  const simulate::Port& port = preset.port;
   io::Housing housing;
-  if (port.dome)
+  if (preset.water_level)
+    housing.ports["main"] =
+        WaterSurface{{0, 0, -1}, {0, 0, *preset.water_level}, port.n_air, port.n_water};
+  else if (port.dome)
     housing.ports["main"] = refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
                                                          port.thickness,    port.n_air,
                                                          port.n_glass,      port.n_water};

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "simulate/optics.h"
+#include "simulate/presets.h"
 #include "simulate/render.h"
 #include "simulate/sparse_points.h"
 #include "simulate/triangle_mesh.h"
@@ -20,8 +20,8 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
                         std::span<const simulate::View> views,
                         std::span<const simulate::SparsePoint> points);
 
-// One port, "main", for every image.
-void write_port(const std::filesystem::path& file, const simulate::Port& port);
+// One port, "main", for every image, or the water surface.
+void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);
 

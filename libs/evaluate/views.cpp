@@ -65,10 +65,9 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
     if (camera == cameras.end())
       fail("image {} names camera {}, which the model does not have", image.name, image.camera);
     View view{image.name, camera->second, image.pose};
-    if (housing) {
-      const std::string& port = housing->port_of(image.name, image.camera);
-      if (port != "none") view.camera.port = housing->ports.at(port);
-    }
+    if (housing)
+      view.camera.port =
+          housing->port_at(housing->port_of(image.name, image.camera), image.pose, image.name);
     views.push_back(std::move(view));
   }
   return views;

@@ -22,8 +22,8 @@ struct View {
   Pose pose;
 };
 
-// One view an image of the model, ports from `housing` (null: dry). Error if there is no image or a
-// camera is no pinhole.
+// One view an image of the model, ports from `housing` (null: dry). Error if there is no image, a
+// camera is no pinhole, or an image has no port by Housing::port_at.
 std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing* housing);
 
 // How many views see each point [world]: the point's image lies in the image rectangle, and nothing

@@ -212,7 +212,7 @@ Housing housing_of(const ColmapModel& model) {
   for (const ColmapCamera& camera : model.cameras) {
     if (!camera.port) continue;
     const std::string name = fmt::format("camera_{}", camera.id);
-    housing.ports[name] = *camera.port;
+    housing.ports[name] = to_housing_port(*camera.port);
     housing.cameras[camera.id] = name;
   }
   return housing;

@@ -2,6 +2,7 @@
 #include "io/dmap_side_file.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "io/port_json.h"
@@ -50,7 +51,8 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   side.camera.height = read_side(root, "height");
   side.camera.lens = read_lens(root.at("lens"));
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
-    side.camera.port = port_from_json(port);
+    // A water surface is a flat port as far away as the camera is high.
+    side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());
   side.min_depth = static_cast<float>(root.number("min_depth_m"));
   side.max_depth = static_cast<float>(root.number("max_depth_m"));
   side.made_from = root.text("made_from");

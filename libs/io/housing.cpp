@@ -28,7 +28,9 @@ void read_ports(const JsonPlace& place, Housing& housing) {
   for (const auto& [name, unused] : place.json.items()) {
     if (name == kDry || name.empty())
       fail("{}: '{}' cannot be the name of a port ('none' means dry)", place.where, name);
-    housing.ports[name] = port_from_json(place.at(name));
+    const JsonPlace port = place.at(name);
+    housing.ports[name] = is_water_surface(port) ? HousingPort(water_surface_from_json(port))
+                                                 : to_housing_port(port_from_json(port));
   }
 }
 
@@ -53,14 +55,51 @@ void read_images(const JsonPlace& place, Housing& housing) {
 void attach(SceneImage& image, const std::string& name, const Housing& housing) {
   image.camera.port.reset();
   image.port_name.clear();
-  if (name == kDry) return;
-  const auto port = housing.ports.find(name);
-  if (port == housing.ports.end()) fail("{}: its port '{}' is not defined", image.path, name);
-  image.camera.port = port->second;
+  if (name == kDry || !image.calibrated) return;
+  image.camera.port = housing.port_at(name, image.pose, image.path);
   image.port_name = name;
 }
 
+struct ToJson {
+  nlohmann::json operator()(const WaterSurface& surface) const {
+    return water_surface_to_json(surface);
+  }
+  nlohmann::json operator()(const refractive::Port<double>& port) const {
+    return port_to_json(port);
+  }
+};
+
+struct Check {
+  const std::string& where;
+
+  void operator()(const WaterSurface& surface) const { check_water_surface(surface, where); }
+  void operator()(const refractive::Port<double>& port) const { check_port(port, where); }
+};
+
+struct SeenFrom {
+  const Pose& pose;
+  const std::string where;
+
+  refractive::Port<double> operator()(const WaterSurface& surface) const {
+    return port_seen_from(pose, surface, where);
+  }
+  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
+};
+
+struct Carried {
+  const std::string& name;
+
+  refractive::Port<double> operator()(const WaterSurface&) const {
+    fail("port '{}' is a water surface, which is another port for every pose", name);
+  }
+  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
+};
+
 }  // namespace
+
+HousingPort to_housing_port(const refractive::Port<double>& port) {
+  return std::visit([](const auto& kind) -> HousingPort { return kind; }, port);
+}
 
 std::map<std::string, std::string>::const_iterator Housing::entry_of(
     const std::string& image_name) const {
@@ -75,6 +114,32 @@ const std::string& Housing::port_of(const std::string& image_name, std::uint32_t
   if (const auto entry = entry_of(image_name); entry != images.end()) return entry->second;
   if (const auto camera = cameras.find(camera_id); camera != cameras.end()) return camera->second;
   return default_port;
+}
+
+std::optional<refractive::Port<double>> Housing::port_at(const std::string& name, const Pose& pose,
+                                                         const std::string& image) const {
+  if (name == kDry) return std::nullopt;
+  const auto port = ports.find(name);
+  if (port == ports.end()) fail("{}: its port '{}' is not defined", image, name);
+  return std::visit(SeenFrom{pose, fmt::format("{}: its port '{}'", image, name)}, port->second);
+}
+
+std::optional<refractive::Port<double>> Housing::carried_port(const std::string& name) const {
+  if (name == kDry) return std::nullopt;
+  const auto port = ports.find(name);
+  if (port == ports.end()) fail("port '{}' is not defined", name);
+  return std::visit(Carried{name}, port->second);
+}
+
+void check_port(const HousingPort& port, const std::string& where) {
+  std::visit(Check{where}, port);
+}
+
+void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
+  for (const auto& [name, port] : housing.ports)
+    if (std::holds_alternative<WaterSurface>(port))
+      fail("{}: housing.ports.{} is a water surface, expected ports that go with the camera",
+           file.string(), name);
 }
 
 Housing read_housing(const fs::path& path) {
@@ -97,7 +162,7 @@ void write_housing(const fs::path& path, const Housing& housing) {
   json["ports"] = nlohmann::json::object();
   for (const auto& [name, port] : housing.ports) {
     check_port(port, fmt::format("{}.ports.{}", where, name));
-    json["ports"][name] = port_to_json(port);
+    json["ports"][name] = std::visit(ToJson{}, port);
   }
   const auto checked = [&](const std::string& name) {
     if (name != kDry && !housing.ports.contains(name))

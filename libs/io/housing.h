@@ -6,14 +6,23 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "refractive/port.h"
 #include "scene/scene.h"
+#include "scene/water_surface.h"
 
 namespace axial::io {
 
+// What images look through: a port, which goes with its camera, or the surface of the water, which
+// stays where it is in the world.
+using HousingPort =
+    std::variant<refractive::FlatPort<double>, refractive::DomePort<double>, WaterSurface>;
+
+HousingPort to_housing_port(const refractive::Port<double>& port);
+
 struct Housing {
-  std::map<std::string, refractive::Port<double>> ports;
+  std::map<std::string, HousingPort> ports;
   std::string default_port = "none";             // "none": dry
   std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name
   std::map<std::string, std::string> images;     // image name -> port name
@@ -24,15 +33,30 @@ struct Housing {
 
   // The port name for an image: its own entry, else its camera's, else the default.
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
+
+  // The port `name` of the image `image` taken at `pose`; nothing for "none". Error that starts
+  // with the image's name for a port that is not defined, and for a water surface that the camera
+  // is not above or looks away from (port_seen_from).
+  std::optional<refractive::Port<double>> port_at(const std::string& name, const Pose& pose,
+                                                  const std::string& image) const;
+
+  // The port `name` where poses do not count; nothing for "none". Error for a port that is not
+  // defined, and for a water surface.
+  std::optional<refractive::Port<double>> carried_port(const std::string& name) const;
 };
 
 // Error that starts with `where` for values no port has.
 void check_port(const refractive::Port<double>& port, const std::string& where);
+void check_port(const HousingPort& port, const std::string& where);
+
+// Error that names `file` and the port if one is a water surface: for programs that work on what
+// goes with a camera.
+void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& file);
 
 // Error that names file, key and value: unknown keys, wrong types or units (an index below 1,
-// negative thickness, zero or backward normal, distance over 1 m, a dome centre outside the dome),
-// a port name that is not defined, a version other than 1, an unknown port type. A normal off unit
-// length by more than 1e-6 is normalised with a warning.
+// negative thickness, zero or backward normal, distance over 1 m, a dome centre outside the dome,
+// water less dense than air), a port name that is not defined, a version other than 1, an unknown
+// port type. A normal off unit length by more than 1e-6 is normalised with a warning.
 Housing read_housing(const std::filesystem::path& path);
 
 void write_housing(const std::filesystem::path& path, const Housing& housing);
@@ -40,8 +64,9 @@ void write_housing(const std::filesystem::path& path, const Housing& housing);
 // "<scene without extension>.housing.json".
 std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
 
-// Attaches ports to the scene's images by their paths. `cameras` must be resolved already
-// (InterfaceCOLMAP writes entries by image where cameras differ).
+// Attaches ports to the scene's calibrated images by their paths, and a water surface as each
+// image's pose has it. `cameras` must be resolved already (InterfaceCOLMAP writes entries by image
+// where cameras differ). Error that names the image, as port_at.
 void attach_ports(Scene& scene, const Housing& housing);
 
 }  // namespace axial::io

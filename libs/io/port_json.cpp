@@ -36,9 +36,14 @@ void require_index(double n, const char* key, const std::string& where) {
   if (!(n >= 1 && n <= 3)) fail("{}.{} is {}, expected an index from 1 to 3", where, key, n);
 }
 
-void require_length(double metres, const char* key, const std::string& where) {
-  if (!(metres >= 0 && metres <= 1))
-    fail("{}.{} is {}, expected metres from 0 to 1", where, key, metres);
+void require_length(double metres, const char* key, const std::string& where, double longest = 1) {
+  if (!(metres >= 0 && metres <= longest))
+    fail("{}.{} is {}, expected metres from 0 to {}", where, key, metres, longest);
+}
+
+void require_unit(const Eigen::Vector3d& normal, const std::string& where) {
+  if (!(std::abs(normal.norm() - 1) < 1e-6))
+    fail("{}.normal has length {}, expected 1", where, normal.norm());
 }
 
 Eigen::Vector3d vector(const JsonPlace& place) {
@@ -47,6 +52,10 @@ Eigen::Vector3d vector(const JsonPlace& place) {
       !std::ranges::all_of(v, [](const json& number) { return number.is_number(); }))
     fail("{} is {}, expected three numbers", place.where, v.dump());
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+}
+
+Eigen::Vector3d unit_normal(const JsonPlace& place) {
+  return io::unit_normal(vector(place), place.where);
 }
 
 json to_json(const Eigen::Vector3d& v) {
@@ -88,10 +97,7 @@ refractive::FlatPort<double> flat_from_json(const JsonPlace& place) {
   refractive::FlatPort<double> port;
   port.distance = place.number("distance_m");
   read_glass(place, port);
-  if (place.has("normal")) {
-    const JsonPlace normal = place.at("normal");
-    port.normal = unit_normal(vector(normal), normal.where);
-  }
+  if (place.has("normal")) port.normal = unit_normal(place.at("normal"));
   return port;
 }
 
@@ -118,17 +124,17 @@ json as_json(const refractive::DomePort<double>& port) {
   return object;
 }
 
-void check(const refractive::FlatPort<double>& port, const std::string& where) {
-  require_length(port.distance, "distance_m", where);
+void check(const refractive::FlatPort<double>& port, const std::string& where, double longest_gap) {
+  require_length(port.distance, "distance_m", where, longest_gap);
   check_glass(port, where);
-  if (!(std::abs(port.normal.norm() - 1) < 1e-6))
-    fail("{}.normal has length {}, expected 1", where, port.normal.norm());
+  require_unit(port.normal, where);
   if (!(port.normal.z() > 0))
     fail("{}.normal points backwards: z is {}, it must be positive (from the camera to the water)",
          where, port.normal.z());
 }
 
-void check(const refractive::DomePort<double>& port, const std::string& where) {
+void check(const refractive::DomePort<double>& port, const std::string& where,
+           double /*longest_gap*/) {
   require_length(port.inner_radius, "inner_radius_m", where);
   check_glass(port, where);
   // Beyond this the light of some pixel may graze the glass.
@@ -195,17 +201,18 @@ Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) 
   return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
 }
 
-refractive::Port<double> port_from_json(const JsonPlace& place) {
+refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap) {
   if (!place.json.is_object()) fail("{} is no object in braces", place.where);
   const std::string type = place.text("type");
   if (type != "flat" && type != "dome")
-    fail("{}.type is '{}', expected 'flat' or 'dome'", place.where, type);
+    fail("{}.type is '{}', expected 'flat', 'dome' or, in a housing, 'water-surface'", place.where,
+         type);
   refractive::Port<double> port;
   if (type == "flat")
     port = flat_from_json(place);
   else
     port = dome_from_json(place);
-  check_port(port, place.where);
+  std::visit([&](const auto& kind) { check(kind, place.where, longest_gap); }, port);
   return port;
 }
 
@@ -214,7 +221,40 @@ json port_to_json(const refractive::Port<double>& port) {
 }
 
 void check_port(const refractive::Port<double>& port, const std::string& where) {
-  std::visit([&](const auto& kind) { check(kind, where); }, port);
+  std::visit([&](const auto& kind) { check(kind, where, kLongestGap); }, port);
+}
+
+bool is_water_surface(const JsonPlace& place) {
+  return place.has("type") && place.at("type").json == "water-surface";
+}
+
+WaterSurface water_surface_from_json(const JsonPlace& place) {
+  place.require_object({"type", "normal", "point_m", "n_air", "n_water"});
+  WaterSurface surface;
+  surface.normal = unit_normal(place.at("normal"));
+  surface.point = vector(place.at("point_m"));
+  if (place.has("n_air")) surface.n_air = place.number("n_air");
+  surface.n_water = place.number("n_water");
+  check_water_surface(surface, place.where);
+  return surface;
+}
+
+json water_surface_to_json(const WaterSurface& surface) {
+  return {{"type", "water-surface"},
+          {"normal", to_json(surface.normal)},
+          {"point_m", to_json(surface.point)},
+          {"n_air", surface.n_air},
+          {"n_water", surface.n_water}};
+}
+
+void check_water_surface(const WaterSurface& surface, const std::string& where) {
+  require_index(surface.n_air, "n_air", where);
+  require_index(surface.n_water, "n_water", where);
+  if (surface.n_water < surface.n_air)
+    fail("{}.n_air is {}, more than n_water {}", where, surface.n_air, surface.n_water);
+  require_unit(surface.normal, where);
+  if (const Eigen::Vector3d& p = surface.point; !p.allFinite())
+    fail("{}.point_m is [{},{},{}], which is no point", where, p.x(), p.y(), p.z());
 }
 
 }  // namespace axial::io

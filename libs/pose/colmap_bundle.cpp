@@ -68,16 +68,11 @@ class Cameras {
  private:
   void add(const io::ColmapCamera& lens, const std::string& port) {
     result_.bundle.cameras.push_back({{static_cast<int>(lens.width), static_cast<int>(lens.height),
-                                       holding(lens), port_named(port)},
+                                       holding(lens), housing_.carried_port(port)},
                                       HousingChange<double>::Zero()});
     result_.lenses.push_back(lens);
     result_.lenses.back().id = static_cast<std::uint32_t>(result_.lenses.size());
     result_.ports.push_back(port);
-  }
-
-  std::optional<refractive::Port<double>> port_named(const std::string& name) const {
-    if (name == "none") return std::nullopt;
-    return housing_.ports.at(name);
   }
 
   ColmapBundle& result_;
@@ -199,7 +194,7 @@ io::Housing to_housing(const ColmapBundle& refined, const io::Housing& measured)
     const BundleCamera& camera = refined.bundle.cameras[i];
     const bool own = uses[port] > 1 && !camera.change.isZero(0);
     const std::string name = own ? fmt::format("{}_{}", port, refined.lenses[i].id) : port;
-    housing.ports[name] = *camera.now().port;
+    housing.ports[name] = io::to_housing_port(*camera.now().port);
     housing.cameras[refined.lenses[i].id] = name;
   }
   if (uses.size() == 1 && housing.ports.size() == 1 && measured.images.empty()) {

@@ -21,7 +21,8 @@ struct ColmapBundle {
 // Poses, points and tracks of `model`, whatever lenses it believes in; in their place the `lenses`
 // in air, by camera id, or a single one for all cameras of its size, behind their ports of
 // `housing`. Observations are moved to the pixels of a distortion-free lens that holds the whole
-// image. Error for a camera without a lens, or of another size than its lens.
+// image. Error for a camera without a lens, or of another size than its lens, and for one behind a
+// water surface.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 

@@ -34,7 +34,8 @@ template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMethod method) {
   const bool flat = any_behind<refractive::FlatPort<double>>(models);
   const bool dome = any_behind<refractive::DomePort<double>>(models);
-  if (flat && dome) fail("images behind a flat port cannot be matched with ones behind a dome");
+  if (flat && dome)
+    fail("images behind a flat port or a water surface cannot be matched with ones behind a dome");
   if (!flat && !dome) {
     std::vector<refractive::PinholeCamera<T>> cameras;
     for (const CameraModel& model : models) cameras.emplace_back(model.lens.template cast<T>());

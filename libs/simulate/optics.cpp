@@ -86,7 +86,9 @@ Eigen::Vector3d tilted_normal(double tilt_degrees) {
 }
 
 void check_port(const Port& port, const Lens& lens) {
-  if (!(port.distance >= 0 && port.distance <= 1))
+  if (port.is_surface && !(port.distance > 0))
+    fail("the camera is {} m above the water surface: must be positive", port.distance);
+  if (!port.is_surface && !(port.distance >= 0 && port.distance <= 1))
     fail("port distance is {} m: must be between 0 and 1", port.distance);
   if (port.dome && !(port.dome->inner_radius > 0 && port.dome->inner_radius <= 1))
     fail("dome radius is {} m: must be above 0 and at most 1", port.dome->inner_radius);
@@ -101,6 +103,12 @@ void check_port(const Port& port, const Lens& lens) {
     for (const double v : {-0.5, lens.height - 0.5})
       if (!trace_pixel(lens, &port, u, v))
         fail("the port does not cover the image corner at pixel ({}, {})", u, v);
+}
+
+Port surface_port(double level, const View& view, double n_air, double n_water) {
+  Port port{-view.rotation.col(2), view.centre.z() - level, 0, n_air, n_water, n_water};
+  port.is_surface = true;
+  return port;
 }
 
 std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,

@@ -33,14 +33,15 @@ struct Port {
   double thickness = 0;
   double n_air = 1, n_glass = 1, n_water = 1;
   std::optional<Dome> dome = {};  // in place of the planes: normal and distance mean nothing
+  bool is_surface = false;        // of the water itself: the camera may be high above it
 };
 
 // Unit normal of a port tilted by the given angle, towards the right and bottom of the image.
 Eigen::Vector3d tilted_normal(double tilt_degrees);
 
 // Error that names the value: distance, radius or thickness outside [0, 1] m, an index below 1 or
-// above 4, a camera outside its dome, a corner of the image whose light does not meet the port from
-// inside.
+// above 4, a camera outside its dome or not above the water, a corner of the image whose light does
+// not meet the port from inside.
 void check_port(const Port& port, const Lens& lens);
 
 // x_in_camera = rotation * (x_in_world - centre).
@@ -48,6 +49,9 @@ struct View {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
 };
+
+// The calm surface of water that stands `level` metres high in the world (z up), as `view` has it.
+Port surface_port(double level, const View& view, double n_air, double n_water);
 
 // A pixel's ray in the scene medium.
 struct SceneRay {

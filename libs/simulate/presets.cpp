@@ -259,6 +259,30 @@ void check_factor(const char* name, double value) {
 
 }  // namespace
 
+Port port_of_view(const Preset& preset, const View& view) {
+  if (!preset.water_level) return preset.port;
+  return surface_port(*preset.water_level, view, preset.port.n_air, preset.port.n_water);
+}
+
+void check_ports(const Preset& preset) {
+  if (!preset.water_level) return check_port(preset.port, preset.lens);
+  for (std::size_t i = 0; i < preset.views.size(); ++i) {
+    try {
+      check_port(port_of_view(preset, preset.views[i]), preset.lens);
+    } catch (const Error& error) {
+      fail("view {}: {}", i, error.what());
+    }
+  }
+}
+
+void check_submerged(const Preset& preset, const TriangleMesh& mesh) {
+  if (!preset.water_level) return;
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    if (!(vertex.z() < *preset.water_level))
+      fail("the water surface is {} m high: the scene stands out of it, with {} m",
+           *preset.water_level, vertex.z());
+}
+
 Preset make_preset(const PresetOptions& options) {
   if (options.views < 0 || options.views > 200)
     fail("number of views is {}: must be between 0 (the preset's own) and 200", options.views);

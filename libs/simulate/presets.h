@@ -2,6 +2,7 @@
 // The scenes the project is measured on: what is photographed, through what, from where.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct PresetOptions {
 struct Preset {
   Lens lens;
   Port port;
+  // Height in the world of a water surface in place of the port, of which n_air and n_water count.
+  std::optional<double> water_level;
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
@@ -41,5 +44,14 @@ struct Preset {
 // how many there are. Error for another name, a number of views outside [0, 200], a scale, relief
 // or coarseness outside [0.01, 100], or what make_lens refuses.
 Preset make_preset(const PresetOptions& options);
+
+// What `view` looks through: the preset's port, or the water's surface.
+Port port_of_view(const Preset& preset, const View& view);
+
+// Error that names the view and the value: a port that check_port refuses.
+void check_ports(const Preset& preset);
+
+// Error if the mesh is not all below the preset's water surface.
+void check_submerged(const Preset& preset, const TriangleMesh& mesh);
 
 }  // namespace axial::simulate

@@ -18,6 +18,15 @@ float bell(std::uint64_t bits) {
   return (sum / 65535.0f - 2.0f) * 1.7320508f;
 }
 
+// Width of one pixel, across the ray, after `distance` in the scene medium.
+double pixel_width(const Lens& lens, const Port* port, const SceneRay& in_camera, double distance) {
+  // A dome shows the water as air would.
+  const double magnification = port && !port->dome ? port->n_water / port->n_air : 1.0;
+  // The gap of a housing is too short to count.
+  const double in_air = port && port->is_surface ? in_camera.start.norm() : 0.0;
+  return in_air / lens.focal + distance / (lens.focal * magnification);
+}
+
 Eigen::Vector3f sample_color(const RayScene& scene, const Shader& shader, const Lens& lens,
                              const Port* port, const View& view, double u, double v) {
   const auto in_camera = trace_pixel(lens, port, u, v);
@@ -25,9 +34,7 @@ Eigen::Vector3f sample_color(const RayScene& scene, const Shader& shader, const 
   const SceneRay ray = to_world(view, *in_camera);
   const auto hit = scene.first_hit(ray.start, ray.direction);
   if (!hit) return Eigen::Vector3f::Zero();
-  // A dome shows the water as air would.
-  const double magnification = port && !port->dome ? port->n_water / port->n_air : 1.0;
-  const double footprint = hit->distance / (lens.focal * magnification);
+  const double footprint = pixel_width(lens, port, *in_camera, hit->distance);
   return shader({ray.start + hit->distance * ray.direction, *hit, footprint});
 }
 

@@ -20,14 +20,17 @@ GSD = 0.7 / 305
 QUICK = ("--resolution-level", "1", "--min-resolution", "200")
 
 
-class EndToEnd(ProgramTest):
+class SceneTest(ProgramTest):
+    """The close-up scene, photographed in air and through what SCENE says."""
+    SCENE = ()
+
     @classmethod
     def setUpClass(cls):
         cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(cls.shared.cleanup)
         cls.truth = os.path.join(cls.shared.name, "closeup")
         made = run("SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 512,
-                   "--height", 384, "--seed", 1, "--samples", 2, "-o", cls.truth)
+                   "--height", 384, "--seed", 1, "--samples", 2, *cls.SCENE, "-o", cls.truth)
         assert made.returncode == 0, made.stderr
 
     def import_scene(self, medium, folder, housing=True):
@@ -49,6 +52,8 @@ class EndToEnd(ProgramTest):
                       "--json", self.path(folder, "evaluation.json"))
         return json.loads(read(self.path(folder, "evaluation.json")))
 
+
+class EndToEnd(SceneTest):
     def check_cloud(self, result):
         # OpenMVS's mean on such scenes is half a GSD at full resolution; a quarter was measured here.
         self.assertLess(result["accuracy"]["mean"], 0.4 * GSD)
@@ -195,6 +200,34 @@ class EndToEnd(ProgramTest):
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
         self.assertEqual(process.wait(), -signal.SIGKILL, "the run ended before it could be killed")
+
+
+class ThroughTheWaterSurface(SceneTest):
+    """Cameras in the air over the same scene, ten times as large: 3 to 4 m above a calm surface, and
+    4 m of water."""
+    SCENE = ("--scale", "10", "--water-level", "4")
+
+    def densify_quickly(self, folder, *arguments):
+        return self.densify(folder, *arguments, "--number-views-fuse", "2", *QUICK)
+
+    def reconstructed(self, medium, folder, *arguments):
+        self.import_scene(medium, folder)
+        self.densify_quickly(folder, *arguments)
+        return self.evaluate(medium, folder)["accuracy"]
+
+    def test_refraction_counts(self):
+        air = self.reconstructed("air", "air")
+        obeyed = self.reconstructed("water", "obeyed", "--refractive")
+        ignored = self.reconstructed("water", "ignored", "--camera-model", "pinhole")
+        # Water takes a quarter off the parallax over a part of the way, and makes pixels smaller.
+        self.assertLess(obeyed["mean"], 1.25 * air["mean"])
+        self.assertGreater(obeyed["count"], 0.8 * air["count"])
+        # Four metres of water look one metre shallower from above; matching leaves a centimetre.
+        self.assertGreater(ignored["median"], 20 * obeyed["median"])
+        # A surface further away than any housing's glass is read again from beside the maps.
+        self.assertIn("All 4 depth maps are there already",
+                      self.densify_quickly("obeyed", "--refractive"))
+
 
 
 if __name__ == "__main__":

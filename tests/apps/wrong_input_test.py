@@ -114,6 +114,24 @@ class InterfaceColmap(ProgramTest):
             write(housing, text)
             self.refuses_import(expected, "--housing", housing)
 
+    def test_water_surfaces_that_images_do_not_look_into(self):
+        housing = self.path("lake.json")
+        lake = '{"version": 1, "ports": {"lake": {"type": "water-surface", "normal": %s, ' \
+               '"point_m": [0, 0, %s], "n_water": %s}}, "default": "lake"}'
+        # The cameras look along +z from z = 0.
+        for values, expected in (
+                (("[0, 0, 1]", "-0.5", "1.33"),
+                 "0000.png: its port 'lake': the camera's height over the water surface is -0.5 m"),
+                (("[0, 0, 1]", "0", "1.33"), "water surface is 0 m"),
+                (("[0, 0, -1]", "-0.5", "1.33"), "0000.png: its port 'lake': the camera looks away"),
+                (("[0, 0, 0]", "0.5", "1.33"), "lake.json: housing.ports.lake.normal"),
+                (("[0, 0, 1]", "0.5", "0.9"), "lake.json: housing.ports.lake.n_water is 0.9")):
+            write(housing, lake % values)
+            self.refuses_import(expected, "--housing", housing)
+        write(housing, lake % ("[0, 0.1, 1]", "0.5", "1.33"))
+        self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"),
+                      "--housing", housing)
+
     def test_unwritable_folders(self):
         write(self.path("a_file"), "")
         for output in ("/proc/scene.mvs", self.path("a_file", "scene.mvs")):

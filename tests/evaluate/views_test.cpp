@@ -135,6 +135,24 @@ TEST(ViewsOfModel, TakesLensPoseAndPort) {
   EXPECT_EQ(wet[0].pose.centre, Eigen::Vector3d(1, 2, 3));
 }
 
+TEST(ViewsOfModel, SeesAWaterSurfaceFromEachPose) {
+  auto model = small_model("PINHOLE", {500, 510, 320, 240});
+  model.images.push_back(model.images[0]);
+  model.images[1].name = "b.jpg";
+  model.images[1].pose.centre.z() = 1;
+  io::Housing housing;
+  housing.ports["lake"] = WaterSurface{{0, 0, 1}, {0, 0, 3.5}, 1, 1.333};
+  housing.default_port = "lake";
+  const auto views = views_of_model(model, &housing);
+  const auto distance = [&](std::size_t i) {
+    return std::get<refractive::FlatPort<double>>(*views[i].camera.port).distance;
+  };
+  EXPECT_EQ(distance(0), 0.5);
+  EXPECT_EQ(distance(1), 2.5);
+  model.images[1].pose.centre.z() = 4;
+  EXPECT_THROW(views_of_model(model, &housing), Error);
+}
+
 TEST(ViewsOfModel, FindsPortsByTheEndOfTheName) {
   auto model = small_model("PINHOLE", {500, 510, 320, 240});
   model.images[0].name = "dive2/left/a.jpg";

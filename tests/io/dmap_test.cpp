@@ -239,6 +239,20 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
 }
 
+// As far from the camera as no housing has its glass.
+TEST_F(DmapTest, KeepsTheWaterSurfaceUnderADrone) {
+  DepthMap map = depth_map(folder_, Port::none);
+  const refractive::FlatPort<double> surface{
+      Eigen::Vector3d(0.3, -0.1, 1).normalized(), 30, 0, 1, 1.34, 1.34};
+  map.camera.port = surface;
+  map.depth += 40;
+  write_dmap(file_, map, "x");
+  const DepthMap kept = read_dmap(file_).map;
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(*kept.camera.port).distance, 30);
+  // Single precision, twice.
+  EXPECT_LT(cv::norm(kept.depth, map.depth, cv::NORM_INF), 40 * 1e-6);
+}
+
 TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
   write_dmap(file_, depth_map(folder_, Port::flat), "abc");

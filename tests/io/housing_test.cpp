@@ -31,10 +31,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-refractive::FlatPort<double>& flat(refractive::Port<double>& port) {
-  return std::get<refractive::FlatPort<double>>(port);
-}
-const refractive::FlatPort<double>& flat(const refractive::Port<double>& port) {
+auto& flat(auto& port) {
   return std::get<refractive::FlatPort<double>>(port);
 }
 
@@ -128,6 +125,98 @@ TEST_F(HousingTest, NamesKeyAndValueOfDomes) {
   EXPECT_THAT(error("1.34", "0.5"), HasSubstr("n_water is 0.5"));
 }
 
+constexpr const char* kLake = R"({ "version": 1, "default": "lake", "ports": { "lake":
+  { "type": "water-surface", "normal": [0, 0, -1], "point_m": [7, 8, 1.5], "n_water": 1.34 } },
+  "images": { "dry.jpg": "none" } })";
+
+TEST_F(HousingTest, ReadsAndWritesWaterSurfaces) {
+  Housing housing = read(kLake);
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto& lake = std::get<WaterSurface>(housing.ports.at("lake"));
+    EXPECT_EQ(lake.normal, Eigen::Vector3d(0, 0, -1));
+    EXPECT_EQ(lake.point, Eigen::Vector3d(7, 8, 1.5));
+    EXPECT_EQ(lake.n_air, 1);
+    EXPECT_EQ(lake.n_water, 1.34);
+    write_housing(file_, housing);
+    housing = read_housing(file_);
+  }
+  const Housing tilted = read(replaced(kLake, "[0, 0, -1]", "[0.3, 0, -1]"));
+  const auto& normal = std::get<WaterSurface>(tilted.ports.at("lake")).normal;
+  EXPECT_NEAR(normal.norm(), 1, 1e-15);
+  EXPECT_NEAR(normal.x() / normal.z(), -0.3, 1e-15);
+  EXPECT_THAT(error_of([&] { refuse_water_surfaces(housing, file_); }),
+              HasSubstr(file_.string() + ": housing.ports.lake is a water surface"));
+  EXPECT_THAT(error_of([&] { (void)housing.carried_port("lake"); }), HasSubstr("'lake'"));
+  EXPECT_EQ(housing.carried_port("none"), std::nullopt);
+}
+
+TEST_F(HousingTest, NamesKeyAndValueOfWaterSurfaces) {
+  const auto error = [&](const std::string& from, const std::string& to) {
+    const std::string message = error_of([&] { read(replaced(kLake, from, to)); });
+    EXPECT_THAT(message, HasSubstr(file_.string()));
+    return message;
+  };
+  EXPECT_THAT(error("[0, 0, -1]", "[0, 0, 0]"), HasSubstr("lake.normal is [0,0,0]"));
+  EXPECT_THAT(error("[0, 0, -1]", "[0, 0]"), HasSubstr("lake.normal is [0,0], expected three"));
+  EXPECT_THAT(error("\"normal\": [0, 0, -1],", ""), HasSubstr("'normal' is missing"));
+  EXPECT_THAT(error("[7, 8, 1.5]", "1.5"), HasSubstr("lake.point_m is 1.5"));
+  EXPECT_THAT(error("[7, 8, 1.5]", "[7, 8, \"up\"]"), HasSubstr("three numbers"));
+  EXPECT_THAT(error("[7, 8, 1.5]", "[7, 8, 1e400]"), HasSubstr("JSON"));
+  EXPECT_THAT(error("\"point_m\": [7, 8, 1.5],", ""), HasSubstr("'point_m' is missing"));
+  EXPECT_THAT(error("\"point_m\"", "\"point\""), HasSubstr("unknown key 'point'"));
+  EXPECT_THAT(error("1.34", "0.5"), HasSubstr("lake.n_water is 0.5"));
+  EXPECT_THAT(error("1.34", "\"wet\""), HasSubstr("lake.n_water is \"wet\""));
+  EXPECT_THAT(error(", \"n_water\": 1.34", ""), HasSubstr("'n_water' is missing"));
+  EXPECT_THAT(error("1.34", "1.34, \"n_air\": 1.5"), HasSubstr("lake.n_air is 1.5"));
+  EXPECT_THAT(error("1.34", "1.34, \"n_glass\": 1.5"), HasSubstr("unknown key 'n_glass'"));
+  EXPECT_THAT(error("1.34", "1.34, \"thickness_m\": 0"), HasSubstr("'thickness_m'"));
+  EXPECT_THAT(error("water-surface", "water surface"), HasSubstr("'water-surface'"));
+}
+
+TEST_F(HousingTest, RefusesToWriteImpossibleWaterSurfaces) {
+  const auto error = [&](const WaterSurface& surface) {
+    Housing housing;
+    housing.ports["lake"] = surface;
+    return error_of([&] { write_housing(file_, housing); });
+  };
+  EXPECT_THAT(error({{0, 0, -2}, {0, 0, 0}, 1, 1.33}), HasSubstr("lake.normal has length 2"));
+  EXPECT_THAT(error({{0, 0, -1}, {0, std::nan(""), 0}, 1, 1.33}), HasSubstr("lake.point_m"));
+  EXPECT_THAT(error({{0, 0, -1}, {0, 0, 0}, 1, 0.9}), HasSubstr("lake.n_water is 0.9"));
+}
+
+SceneImage looking_down(const std::string& path, double height) {
+  SceneImage image;
+  image.path = path;
+  image.pose.rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  image.pose.centre = {1, 2, height};
+  return image;
+}
+
+TEST_F(HousingTest, GivesEachImageItsPortThroughTheSurface) {
+  const Housing housing = read(kLake);
+  Scene scene;
+  scene.images = {looking_down("/x/low.jpg", 2), looking_down("/x/high.jpg", 30),
+                  looking_down("/x/dry.jpg", -3), looking_down("/x/lost.jpg", -3)};
+  scene.images[3].calibrated = false;  // its pose means nothing
+  attach_ports(scene, housing);
+  EXPECT_EQ(flat(*scene.images[0].camera.port).distance, 0.5);
+  EXPECT_EQ(flat(*scene.images[1].camera.port).distance, 28.5);
+  EXPECT_EQ(flat(*scene.images[1].camera.port).normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(flat(*scene.images[1].camera.port).thickness, 0);
+  EXPECT_EQ(scene.images[1].port_name, "lake");
+  EXPECT_FALSE(scene.images[2].camera.port);
+  EXPECT_FALSE(scene.images[3].camera.port);
+
+  scene.images.push_back(looking_down("/x/diver.jpg", 1));
+  EXPECT_THAT(error_of([&] { attach_ports(scene, housing); }),
+              HasSubstr("/x/diver.jpg: its port 'lake': the camera's height over the water surface "
+                        "is -0.5 m"));
+  scene.images.back() = looking_down("/x/sky.jpg", 3);
+  scene.images.back().pose.rotation.setIdentity();
+  EXPECT_THAT(error_of([&] { attach_ports(scene, housing); }),
+              HasSubstr("/x/sky.jpg: its port 'lake': the camera looks away"));
+}
+
 TEST_F(HousingTest, NamesKeyAndValue) {
   EXPECT_THAT(error("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(error("\"version\": 1,", ""), HasSubstr("'version' is missing"));
@@ -210,6 +299,7 @@ TEST_F(HousingTest, SurvivesWrongInput) {
   // The last byte is a newline, which JSON does not need.
   test::expect_prefixes_refused(file_, kExample, reader, kExample.size() - 1);
   test::expect_damage_survived(file_, kExample, reader);
+  test::expect_damage_survived(file_, kLake, reader);
   const std::string deep(100000, '[');
   EXPECT_THAT(error_of([&] { read(deep); }), HasSubstr("JSON"));
   EXPECT_THAT(error_of([&] { read(deep + std::string(100000, ']')); }), HasSubstr("braces"));

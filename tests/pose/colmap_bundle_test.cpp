@@ -88,6 +88,16 @@ TEST(ColmapBundle, GivesEachPortItsCamera) {
               1e-15);
 }
 
+TEST(ColmapBundle, RefusesAWaterSurface) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  io::Housing lake = housing();
+  lake.ports["main"] = WaterSurface{};
+  EXPECT_EQ(test::error_of([&] {
+              to_bundle(model, {&kLens, 1}, lake);
+            }),
+            "port 'main' is a water surface, which is another port for every pose");
+}
+
 TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
   const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
   io::ColmapCamera small = kLens;

@@ -102,6 +102,14 @@ TEST_F(RefinePoses, TakesTheScaleFromPositions) {
         0.002);
 }
 
+TEST_F(RefinePoses, RefusesAWaterSurface) {
+  io::Housing lake = testing::housing();
+  lake.ports["lake"] = WaterSurface{};
+  io::write_housing(folder_ / "lake.json", lake);
+  expect_refusal("RefinePoses", "-i . --lens lens/cameras.txt --housing lake.json -o out",
+                 "lake.json: housing.ports.lake is a water surface");
+}
+
 TEST_F(RefinePoses, GivesTheSameBytesEachTime) {
   ASSERT_EQ(run(kInput + "-o one --max-threads 1").exit_code, 0);
   ASSERT_EQ(run(kInput + "-o two").exit_code, 0);

@@ -43,7 +43,10 @@ INSTANTIATE_TEST_SUITE_P(Ports, FixedSteps,
                          testing::Values(Case{1.149, 0.05, 0.01, 1.5}, Case{1.149, 0.01, 0.02, 1.5},
                                          Case{1.149, 0.0, 0.005, 1.77}, Case{4.49, 0.05, 0.01, 1.5},
                                          Case{6.99, 0.02, 0.02, 1.5}, Case{49.0, 0.05, 0.01, 1.5},
-                                         Case{0.5, 0.1, 0.0, 1.0}));
+                                         Case{0.5, 0.1, 0.0, 1.0},
+                                         // A water surface: high above shallow water.
+                                         Case{1.149, 2.0, 0.0, 1.34}, Case{4.49, 50.0, 0.0, 1.34},
+                                         Case{49.0, 10.0, 0.0, 1.34}));
 
 }  // namespace
 }  // namespace axial::refractive

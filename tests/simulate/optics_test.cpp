@@ -121,6 +121,44 @@ RC_GTEST_PROP(Optics, AgreesWithTheClosedFormOfDomes, ()) {
   RC_ASSERT((closed.origin - traced->on_axis).norm() < (slant > 1e-3 ? 1e-11 : 1e-7));
 }
 
+// A camera that looks down on water at an angle, in a world with z up.
+View any_view_of_water(double level) {
+  const double incline = between(0, 35) * 3.14159 / 180;
+  const Vector3d axis = Vector3d(between(-1, 1), between(-1, 1), 0.1).normalized();
+  View view;
+  view.rotation = Eigen::AngleAxisd(incline, axis) * Vector3d(1, -1, -1).asDiagonal();
+  view.centre = {between(-3, 3), between(-3, 3), level + between(0.1, 30)};
+  return view;
+}
+
+RC_GTEST_PROP(Optics, TheWaterSurfaceStaysInTheWorld, ()) {
+  const double level = between(-2, 2);
+  const View view = any_view_of_water(level);
+  const Port port = surface_port(level, view, 1, 1.333);
+  const Lens lens = make_lens(1024, 768, between(30, 60));
+  check_port(port, lens);
+  const auto traced = trace_pixel(lens, &port, between(0, 1023), between(0, 767));
+  RC_ASSERT(bool(traced));
+  const SceneRay ray = to_world(view, *traced);
+  RC_ASSERT(std::abs(ray.start.z() - level) < 1e-12);
+  // Snell's law at a horizontal plane.
+  const Vector3d in_air = (ray.start - view.centre).normalized();
+  RC_ASSERT((in_air.head<2>() - 1.333 * ray.direction.head<2>()).norm() < 1e-12);
+  RC_ASSERT(ray.direction.z() < 0);
+}
+
+TEST(Optics, RefusesViewsThatAreNotAboveTheWater) {
+  const Lens lens = make_lens(101, 51, 60);
+  View view;
+  view.rotation = Vector3d(1, -1, -1).asDiagonal();
+  view.centre = {0, 0, 2};
+  EXPECT_NO_THROW(check_port(surface_port(-20, view, 1, 1.333), lens));
+  EXPECT_THROW(check_port(surface_port(2, view, 1, 1.333), lens), Error);
+  EXPECT_THROW(check_port(surface_port(2.5, view, 1, 1.333), lens), Error);
+  view.rotation.setIdentity();  // up
+  EXPECT_THROW(check_port(surface_port(0, view, 1, 1.333), lens), Error);
+}
+
 TEST(Optics, ACentredDomeBendsNothing) {
   const Lens lens = make_lens(101, 51, 60);
   Port port = kPaperPort;

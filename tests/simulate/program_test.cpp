@@ -51,6 +51,20 @@ TEST_F(SimulateUnderwater, PhotographsThroughADome) {
   refuses("centre is 0.07", kSmall + "--dome-radius 0.06 --dome-x 0.07 -o b");
 }
 
+TEST_F(SimulateUnderwater, PhotographsThroughTheSurface) {
+  const Outcome outcome = run(kSmall + "--water-level 0.5 --n-water 1.34 -o a --medium water");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::Housing housing = io::read_housing(folder_ / "a" / "housing.json");
+  const auto& surface = std::get<WaterSurface>(housing.ports.at("main"));
+  EXPECT_EQ(surface.normal, Eigen::Vector3d(0, 0, -1));
+  EXPECT_EQ(surface.point.z(), 0.5);
+  EXPECT_EQ(surface.n_water, 1.34);
+  refuses("--tilt-degrees is of a housing", kSmall + "--water-level 0.5 --tilt-degrees 3 -o b");
+  refuses("--dome-radius is of a housing", kSmall + "--water-level 0.5 --dome-radius 0.1 -o b");
+  refuses("view 0: the camera is -", kSmall + "--water-level 5 -o b");
+  refuses("surface is 0 m high: the scene stands out of it", kSmall + "--water-level 0 -o b");
+}
+
 TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
   const Outcome outcome = run(kSmall + kPort + "-o a --max-threads 1");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
