@@ -26,7 +26,7 @@ io::ColmapCamera load_lens(const fs::path& path) {
 
 io::Housing housing_with(const refractive::Port<double>& port) {
   io::Housing housing;
-  housing.ports["main"] = port;
+  housing.ports["main"] = io::to_housing_port(port);
   housing.default_port = "main";
   return housing;
 }
@@ -43,6 +43,7 @@ io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
     return housing_with(*camera.port);
   }
   const io::Housing housing = io::read_housing(options.housing);
+  io::refuse_water_surfaces(housing, options.housing);
   if (housing.default_port == "none")
     fail("{}: housing.default is 'none', expected the port to calibrate", options.housing.string());
   return housing;
@@ -99,7 +100,7 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
     camera.port = port;
     io::write_calibmar(options.calibmar, camera, comments_for(lines));
   }
-  housing.ports[housing.default_port] = port;
+  housing.ports[housing.default_port] = io::to_housing_port(port);
   io::write_housing(options.output, housing);
 }
 
@@ -109,7 +110,7 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const io::ColmapCamera lens = load_lens(options.lens);
   const io::Housing housing = load_housing(options, lens);
-  const refractive::Port<double>& port = housing.ports.at(housing.default_port);
+  const refractive::Port<double> port = *housing.carried_port(housing.default_port);
   set_unknown(options, port);
   check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);

@@ -79,7 +79,7 @@ pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::
                                 std::span<const Eigen::Vector3d> corners,
                                 std::span<const Pose> poses) {
   io::Housing housing;
-  housing.ports["main"] = port;
+  housing.ports["main"] = io::to_housing_port(port);
   housing.default_port = "main";
   pose::ColmapBundle result =
       pose::to_bundle(model_of(lens, views, corners), std::span(&lens, 1), housing);

@@ -47,7 +47,7 @@ class CalibrateHousing : public test::ProgramTest {
 
   void write_port(const std::string& name, const refractive::Port<double>& port) const {
     io::Housing housing;
-    housing.ports["front"] = port;
+    housing.ports["front"] = io::to_housing_port(port);
     housing.default_port = "front";
     io::write_housing(folder_ / name, housing);
   }
@@ -75,7 +75,7 @@ class CalibrateHousing : public test::ProgramTest {
   }
 
   refractive::Port<double> port_in(const std::string& name) const {
-    return io::read_housing(folder_ / name).ports.at("front");
+    return *io::read_housing(folder_ / name).carried_port("front");
   }
 };
 
