@@ -82,10 +82,11 @@ TEST_F(Calibmar, ReadsWhatItWrites) {
     ColmapCamera camera{
         1, "OPENCV", 1024, 768, {620.1, 1. / 3, 512, 384, -0.12, 0.02, 1e-17, -2e-4}};
     if (dome)
-      camera.port = refractive::DomePort<double>{{0.1 / 3, 0, 0}, 0.05, 0.007, 1.0003, 1.49, 1.3};
+      camera.port.emplace(
+          refractive::DomePort<double>{{0.1 / 3, 0, 0}, 0.05, 0.007, 1.0003, 1.49, 1.3});
     else
-      camera.port = refractive::FlatPort<double>{
-          Eigen::Vector3d(0.1, -0.2, 1).normalized(), 1. / 7, 0.01, 1.0, 1.49, 1.334};
+      camera.port.emplace(refractive::FlatPort<double>{Eigen::Vector3d(0.1, -0.2, 1).normalized(),
+                                                       1. / 7, 0.01, 1.0, 1.49, 1.334});
     const std::vector<std::string> comments{"distance 25 +- 0.1 mm", "RMS 0.2 px"};
     write_calibmar(folder_ / "out.yaml", camera, comments);
     const std::string first = read_file(folder_ / "out.yaml");
