@@ -75,8 +75,6 @@ void warn(const calibrate::Calibration& calibration) {
     spdlog::warn("{}: too few corners found, or too few that fit; it is left out", image);
   for (const std::string& gap : calibrate::gaps(calibration))
     spdlog::warn("No photograph shows {}", gap);
-  if (!calibration.last.converged)
-    spdlog::warn("Not converged after {} iterations", calibration.last.iterations);
 }
 
 std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
@@ -93,6 +91,11 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
   if (!options.coverage.empty())
     write_atomically(options.coverage, calibrate::coverage_svg(calibration));
   calibrate::require_known(calibration, options.limits);
+  if (!calibration.last.converged)
+    fail(
+        "not converged after {} iterations: are this the board, the lens in air and the kind of "
+        "port?",
+        calibration.last.iterations);
   const refractive::Port<double> port = *calibration.camera().now().port;
   io::check_port(port, "The calibrated port");
   if (!options.calibmar.empty()) {

@@ -46,18 +46,27 @@ class Reconstruct(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
+    def start(self, out, *more, **options):
+        """In the folder above `out`, which is given as seen from there."""
+        return subprocess.Popen(self.command(out, *more), cwd=out.parent, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, **options)
+
+    def ended(self, out, *more):
+        process = self.start(out, *more)
+        said, complaint = process.communicate(timeout=600)
+        return subprocess.CompletedProcess([], process.returncode, said, complaint)
+
     def command(self, out, *more):
         return [sys.executable, str(SCRIPT), "--images", str(self.scene / "water"), "--lens",
                 str(self.scene / "sparse" / "cameras.txt"), "--housing",
-                str(self.scene / "housing.json"), "-o", str(out), "--truth",
+                str(self.scene / "housing.json"), "-o", out.name, "--truth",
                 str(self.scene / "mesh.ply"), "--scale-from", f"positions:{self.positions}",
                 "--programs", BIN, *more]
 
     def killed_at(self, step, out):
         """What the pipeline said until it was killed, with all its children, soon after `step`
         began."""
-        process = subprocess.Popen(self.command(out), stdout=subprocess.PIPE, text=True,
-                                   start_new_session=True)
+        process = self.start(out, start_new_session=True)
         said = ""
         for line in process.stdout:
             said += line
@@ -65,8 +74,7 @@ class Reconstruct(unittest.TestCase):
                 break
         time.sleep(0.1)
         os.killpg(process.pid, signal.SIGKILL)
-        process.stdout.close()
-        process.wait()
+        process.communicate()
         return said
 
     def test_goes_on_where_it_was_killed(self):
@@ -75,11 +83,11 @@ class Reconstruct(unittest.TestCase):
             said = self.killed_at(step, out)
             # The step before was finished in this same run.
             self.assertGreaterEqual(said.count("done before"), number - 1, said)
-        ended = subprocess.run(self.command(out), capture_output=True, text=True, timeout=600)
+        ended = self.ended(out)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertGreaterEqual(ended.stdout.count("done before"), len(STEPS) - 1, ended.stdout)
         self.check(out)
-        again = subprocess.run(self.command(out), capture_output=True, text=True, timeout=60)
+        again = self.ended(out)
         self.assertEqual(again.stdout.count("done before"), len(STEPS), again.stdout)
         self.other_options_redo_what_differs(out)
 
@@ -93,18 +101,26 @@ class Reconstruct(unittest.TestCase):
         self.assertLess(evaluation["accuracy"]["median"], 0.002)
 
     def other_options_redo_what_differs(self, out):
-        ended = subprocess.run(self.command(out, "--densify=--resolution-level 1"),
-                               capture_output=True, text=True, timeout=600)
+        ended = self.ended(out, "--densify=--resolution-level 1")
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertEqual(ended.stdout.count("done before"), 5, ended.stdout)
+        self.positions.write_text(self.positions.read_text() + "\n")
+        ended = self.ended(out, "--densify=--resolution-level 1")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual(ended.stdout.count("done before"), 3, ended.stdout)
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"
-        ended = subprocess.run([*self.command(out), "--lens", "nowhere.txt"], capture_output=True,
-                               text=True)
-        self.assertEqual(ended.returncode, 1)
-        self.assertEqual(ended.stderr, "reconstruct: --lens nowhere.txt: is not there\n")
-        self.assertFalse(out.exists())
+        for options, message in [
+                (["--lens", "nowhere.txt"], "--lens nowhere.txt: is not there"),
+                (["--scale-from", "positions:none"],
+                 "--scale-from positions:none: the file is not there"),
+                (["--programs", str(self.scene)],
+                 f"--programs {self.scene.resolve()}: RefinePoses is not there; build it first")]:
+            ended = self.ended(out, *options)
+            self.assertEqual(ended.returncode, 1)
+            self.assertEqual(ended.stderr, f"reconstruct: {message}\n")
+            self.assertFalse(out.exists())
 
 
 if __name__ == "__main__":
