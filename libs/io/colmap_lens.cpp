@@ -216,7 +216,7 @@ std::optional<ImagedDirection> direction_at(const ColmapCamera& camera, const Ve
     if (miss.norm() < 1e-9 * (1 + pixel.norm())) {
       const auto any = [](const Vector2d&) { return true; };
       if (!grows_until(parts, direction, any)) return std::nullopt;
-      return ImagedDirection{direction, derivative};
+      return ImagedDirection{direction - derivative.inverse() * miss, derivative};
     }
     Vector2d step = derivative.inverse() * miss;
     // A fisheye's edge is far out on the plane: not there in one leap.
