@@ -24,36 +24,28 @@ io::ColmapCamera load_lens(const fs::path& path) {
   return cameras.front();
 }
 
-io::Housing housing_with(const refractive::Port<double>& port) {
-  io::Housing housing;
-  housing.ports["main"] = io::to_housing_port(port);
-  housing.default_port = "main";
-  return housing;
-}
-
-// The housing as far as it is known: its default port is the one to calibrate.
+// The housing as far as it is known.
 io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   if (options.housing.empty()) {
     if (!lens.port) fail("--housing is missing: the port as far as it is known");
-    return housing_with(*lens.port);
+    return io::housing_with(io::to_housing_port(*lens.port));
   }
   if (io::is_calibmar(options.housing)) {
     const io::ColmapCamera camera = io::read_calibmar(options.housing);
     if (!camera.port) fail("{}: key 'non_svp_model' is missing", options.housing.string());
-    return housing_with(*camera.port);
+    return io::housing_with(io::to_housing_port(*camera.port));
   }
   const io::Housing housing = io::read_housing(options.housing);
   io::refuse_water_surfaces(housing, options.housing);
-  if (housing.default_port == "none")
-    fail("{}: housing.default is 'none', expected the port to calibrate", options.housing.string());
+  if (!housing.carried_port(housing.port_of("", lens.id)))
+    fail("{}: camera {} is behind port 'none', expected the port to calibrate",
+         options.housing.string(), lens.id);
   return housing;
 }
 
 // What is unknown, into `options`.
 void set_unknown(Options& options, const refractive::Port<double>& port) {
-  if (options.refine_list.empty())
-    options.refine_list =
-        std::holds_alternative<refractive::FlatPort<double>>(port) ? "normal,distance" : "centre";
+  if (options.refine_list.empty()) options.refine_list = pose::place_words(port);
   pose::Bundle camera;
   camera.cameras.resize(1);
   camera.cameras[0].measured.port = port;
@@ -72,7 +64,9 @@ void check_outputs(const Options& options) {
 
 void warn(const calibrate::Calibration& calibration) {
   for (const std::string& image : calibration.left_out)
-    spdlog::warn("{}: too few corners found, or too few that fit; it is left out", image);
+    spdlog::warn(
+        "{}: too few corners found, or too few that fit a board in one place; it is left out",
+        image);
   for (const std::string& gap : calibrate::gaps(calibration))
     spdlog::warn("No photograph shows {}", gap);
 }
@@ -85,7 +79,7 @@ std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
 
 // The report and the drawing in any case: they show what is missing. The port only if it is known.
 void write(const Options& options, const calibrate::Calibration& calibration, io::Housing housing,
-           const std::vector<std::string>& lines) {
+           const std::string& port_name, const std::vector<std::string>& lines) {
   if (!options.report.empty())
     write_atomically(options.report, report_json(calibration, options.limits));
   if (!options.coverage.empty())
@@ -103,7 +97,7 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
     camera.port = port;
     io::write_calibmar(options.calibmar, camera, comments_for(lines));
   }
-  housing.ports[housing.default_port] = io::to_housing_port(port);
+  housing.ports[port_name] = io::to_housing_port(port);
   io::write_housing(options.output, housing);
 }
 
@@ -113,7 +107,8 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const io::ColmapCamera lens = load_lens(options.lens);
   const io::Housing housing = load_housing(options, lens);
-  const refractive::Port<double> port = *housing.carried_port(housing.default_port);
+  const std::string port_name = housing.port_of("", lens.id);
+  const refractive::Port<double> port = *housing.carried_port(port_name);
   set_unknown(options, port);
   check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);
@@ -123,7 +118,7 @@ int run(int argc, char** argv) {
   const std::vector<std::string> lines = report_lines(calibration);
   for (const std::string& line : lines) spdlog::info("{}", line);
   warn(calibration);
-  write(options, calibration, housing, lines);
+  write(options, calibration, housing, port_name, lines);
   spdlog::info("Housing in {}", options.output.string());
   return 0;
 }

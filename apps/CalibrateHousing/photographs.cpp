@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/parallel.h"
 #include "io/image.h"
 
@@ -17,8 +17,7 @@ using namespace axial;
 namespace {
 
 bool is_image_name(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(path);
   constexpr std::array<std::string_view, 6> kExtensions{".jpg", ".jpeg", ".png",
                                                         ".tif", ".tiff", ".bmp"};
   return std::ranges::find(kExtensions, extension) != kExtensions.end();

@@ -3,14 +3,16 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <type_traits>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parse_number.h"
 
 namespace {
 
@@ -19,13 +21,11 @@ using pose::KnownDistance;
 
 template <class T>
 T number(const std::string& text, const std::string& where) {
-  T value{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) fail("{}: '{}' is no number", where, text);
+  const std::optional<T> value = parse_number<T>(text);
+  if (!value) fail("{}: '{}' is no number", where, text);
   if constexpr (std::is_floating_point_v<T>)
-    if (!std::isfinite(value)) fail("{}: '{}' is not finite", where, text);
-  return value;
+    if (!std::isfinite(*value)) fail("{}: '{}' is not finite", where, text);
+  return *value;
 }
 
 std::size_t image_named(const pose::Bundle& bundle, const std::string& name,

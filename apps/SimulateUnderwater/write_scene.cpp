@@ -29,6 +29,18 @@ Rgb to_rgb(const Eigen::Vector3f& color) {
   return {byte(color.x()), byte(color.y()), byte(color.z())};
 }
 
+io::HousingPort port_of(const simulate::Preset& preset) {
+  const simulate::Port& port = preset.port;
+  if (preset.water_level)
+    return WaterSurface{{0, 0, -1}, {0, 0, *preset.water_level}, port.n_air, port.n_water};
+  if (port.dome)
+    return refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
+                                        port.thickness,    port.n_air,
+                                        port.n_glass,      port.n_water};
+  return refractive::FlatPort<double>{port.normal, port.distance, port.thickness,
+                                      port.n_air,  port.n_glass,  port.n_water};
+}
+
 }  // namespace
 
 std::string view_name(std::size_t view) {
@@ -65,20 +77,7 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 }
 
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset) {
-  const simulate::Port& port = preset.port;
-  io::Housing housing;
-  if (preset.water_level)
-    housing.ports["main"] =
-        WaterSurface{{0, 0, -1}, {0, 0, *preset.water_level}, port.n_air, port.n_water};
-  else if (port.dome)
-    housing.ports["main"] = refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
-                                                         port.thickness,    port.n_air,
-                                                         port.n_glass,      port.n_water};
-  else
-    housing.ports["main"] = refractive::FlatPort<double>{port.normal, port.distance, port.thickness,
-                                                         port.n_air,  port.n_glass,  port.n_water};
-  housing.default_port = "main";
-  io::write_housing(file, housing);
+  io::write_housing(file, io::housing_with(port_of(preset)));
 }
 
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "calibrate/board_pose.h"
 #include "calibrate/information.h"
 #include "io/housing.h"
 #include "pose/free_numbers.h"
@@ -21,26 +22,37 @@ std::vector<Eigen::Vector3d> corners_of(const pose::Bundle& bundle) {
   return corners;
 }
 
-double limit_of(std::size_t number, const Calibration& calibration, const Limits& limits) {
-  const bool dome =
-      std::holds_alternative<refractive::DomePort<double>>(*calibration.camera().measured.port);
-  if (number == pose::kIndexNumber) return limits.index;
-  if (number == pose::kThicknessNumber) return limits.thickness;
-  return dome || number == 2 ? limits.place : limits.normal;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// In the value's unit. The focal length stays as calibrated in air.
+double limit_of(const pose::FreeValue& value, const Limits& limits) {
+  switch (value.quantity) {
+    case pose::Quantity::angle:
+      return limits.normal * value.scale;
+    case pose::Quantity::place:
+      return limits.place * value.scale;
+    case pose::Quantity::index:
+      return limits.index * value.scale;
+    case pose::Quantity::thickness:
+      return limits.thickness * value.scale;
+    case pose::Quantity::focal:
+      break;
+  }
+  return kInfinite;
 }
 
 struct Worst {
-  std::size_t number = 0;
+  pose::FreeValue value;
   double ratio = 0;  // of the standard deviation to its limit
 };
 
 Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& calibration,
                const Limits& limits) {
   Worst worst;
-  for (std::size_t k = 0; k < pose::kHousingNumbers; ++k) {
-    if (!calibration.adjust.free[k]) continue;
-    const double ratio = sigmas(static_cast<Eigen::Index>(k)) / limit_of(k, calibration, limits);
-    if (!(ratio <= worst.ratio)) worst = {k, ratio};
+  for (const pose::FreeValue& value :
+       pose::free_values(calibration.camera(), sigmas, calibration.adjust)) {
+    const double ratio = value.sigma / limit_of(value, limits);
+    if (!(ratio <= worst.ratio)) worst = {value, std::isnan(ratio) ? kInfinite : ratio};
   }
   return worst;
 }
@@ -52,13 +64,19 @@ pose::ColmapBundle believable(const Calibration& calibration) {
     io::check_port(*now.port, "port");
     return calibration.bundle;
   } catch (const Error&) {
-    return board_bundle(calibration.bundle.lenses[0], *calibration.camera().measured.port,
-                        calibration.views, corners_of(calibration.bundle.bundle));
+    std::vector<Pose> poses;
+    for (const pose::BundleImage& image : calibration.bundle.bundle.images)
+      poses.push_back(image.pose);
+    pose::ColmapBundle before =
+        board_bundle(calibration.bundle.lenses[0], *calibration.camera().measured.port,
+                     calibration.views, corners_of(calibration.bundle.bundle), poses);
+    place_boards(before.bundle);
+    return before;
   }
 }
 
 double nearest(const pose::Bundle& bundle) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinite;
   for (std::size_t i = 0; i < bundle.images.size(); ++i)
     least = std::min(least, board_place(bundle, i).distance);
   return least;
@@ -102,7 +120,7 @@ std::vector<std::string> gaps(const Calibration& calibration) {
   std::vector<std::string> missing;
   add_edges(calibration, missing);
   const pose::Bundle& bundle = calibration.bundle.bundle;
-  double steepest = 0, near = std::numeric_limits<double>::infinity(), far = 0;
+  double steepest = 0, near = kInfinite, far = 0;
   for (std::size_t i = 0; i < bundle.images.size(); ++i) {
     const BoardPlace place = board_place(bundle, i);
     steepest = std::max(steepest, place.tilt_degrees);
@@ -134,7 +152,7 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration,
   const pose::ColmapBundle added =
       board_bundle(bundle.lenses[0], *bundle.bundle.cameras[0].now().port, views, corners, poses);
   std::optional<NextPhotograph> best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinite;
   for (std::size_t i = 0; i < boards.size(); ++i) {
     const Information with = known + information(added.bundle, i) / (noise * noise);
     const auto sigmas = sigmas_from(with, calibration.adjust);
@@ -148,17 +166,15 @@ void require_known(const Calibration& calibration, const Limits& limits) {
   const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
   const Worst worst = worst_of(sigmas, calibration, limits);
   if (worst.ratio <= 1) return;
-  const auto values = pose::free_values(calibration.camera(), sigmas, calibration.adjust);
-  const auto value = std::ranges::find(values, worst.number, &pose::FreeValue::number);
-  std::string said =
-      fmt::format("{} photographs leave the {} known to +- {:.2g} {}, allowed are {:.2g}",
-                  calibration.views.size(), value->name, value->sigma, value->unit,
-                  limit_of(worst.number, calibration, limits) * value->scale);
+  const pose::FreeValue& value = worst.value;
+  std::string said = fmt::format(
+      "{} photographs leave the {} known to +- {:.2g} {}, allowed are {:.2g}",
+      calibration.views.size(), value.name, value.sigma, value.unit, limit_of(value, limits));
   if (const auto missing = gaps(calibration); !missing.empty())
     said += fmt::format("; no photograph shows {}", fmt::join(missing, ", nor "));
   if (const auto next = next_photograph(calibration, limits))
     said += fmt::format("; what would help most is {} (then +- {:.2g})", words_for(next->board),
-                        next->sigmas(static_cast<Eigen::Index>(worst.number)) * value->scale);
+                        next->sigmas(static_cast<Eigen::Index>(value.number)) * value.scale);
   throw Error(said);
 }
 

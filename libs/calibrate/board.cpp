@@ -2,12 +2,13 @@
 #include "calibrate/board.h"
 
 #include <array>
-#include <charconv>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parse_number.h"
 #include "calibrate/marker_board.h"
 
 namespace axial::calibrate {
@@ -22,11 +23,9 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 template <class T>
 T number(const std::string& word, const std::string& text) {
-  T value{};
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, value);
-  if (error != std::errc() || stop != end) fail("{}: '{}' is no number", text, word);
-  return value;
+  const std::optional<T> value = parse_number<T>(word);
+  if (!value) fail("{}: '{}' is no number", text, word);
+  return *value;
 }
 
 double metres(const std::string& word, const std::string& text) {

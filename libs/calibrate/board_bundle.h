@@ -18,10 +18,8 @@ struct View {
   std::vector<Corner> corners;
 };
 
-// The views as images of one camera behind `port`, with `poses` (world: the board) or, without
-// any, where the board seems to be: by perspective of the rays in water, as though they met in one
-// point. An observation's `source` is the corner's index within its view. Error for a view without
-// a pose (fewer than four corners that the lens images).
+// The views as images of one camera behind `port`, with `poses` (world: the board), which are still
+// unknown without any. An observation's `source` is the corner's index within its view.
 pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                                 std::span<const View> views,
                                 std::span<const Eigen::Vector3d> corners,

@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate.h"
 
-#include <Eigen/SVD>
-
 #include "base/error.h"
+#include "calibrate/board_pose.h"
 
 namespace axial::calibrate {
 namespace {
 
-void require_views(std::size_t count, const CalibrateOptions& options) {
-  if (count < options.min_views)
+constexpr std::size_t kMinCorners = 8;  // of a photograph
+constexpr std::size_t kMinViews = 3;    // photographs
+
+void require_views(std::size_t count) {
+  if (count < kMinViews)
     fail(
-        "{} photographs show {} corners of the board or more, at least {} are needed, better 15: "
+        "{} photographs show {} corners of the board or more, at least {} are needed, better 20: "
         "near each edge of the image, tilted, near and far",
-        count, options.min_corners, options.min_views);
+        count, kMinCorners, kMinViews);
 }
 
-// A line of corners may be turned about itself.
-bool spans_a_plane(const View& view, std::span<const Eigen::Vector3d> corners) {
-  Eigen::Matrix3Xd places(3, view.corners.size());
-  for (std::size_t i = 0; i < view.corners.size(); ++i)
-    places.col(static_cast<Eigen::Index>(i)) = corners[view.corners[i].number];
-  const Eigen::Matrix3Xd centred = places.colwise() - places.rowwise().mean();
-  const Eigen::Vector3d extents = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
-  return extents(1) > 1e-3 * extents(0);
+void require_fitting(std::size_t count, std::size_t of) {
+  if (count < kMinViews)
+    fail(
+        "only {} of {} photographs have {} corners or more that fit, at least {} are needed: are "
+        "this the board, the lens in air and the kind of port?",
+        count, of, kMinCorners, kMinViews);
 }
 
 // Drops corners that do not fit, and all those of photographs with too few that do.
-void drop_misfits(pose::Bundle& bundle, double max_error, std::size_t min_corners) {
+void drop_misfits(pose::Bundle& bundle, double max_error) {
   const std::vector<double> errors = reprojection_errors(bundle);
   std::vector<pose::Observation> believed;
   for (std::size_t i = 0; i < errors.size(); ++i)
@@ -35,26 +35,23 @@ void drop_misfits(pose::Bundle& bundle, double max_error, std::size_t min_corner
   bundle.observations = std::move(believed);
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   std::erase_if(bundle.observations, [&](const pose::Observation& observation) {
-    return counts[observation.image] < min_corners;
+    return counts[observation.image] < kMinCorners;
   });
 }
 
-// The boards to their places behind the port as it was measured, then all of it.
+// The port, with boards that have their places behind it as it was measured.
 void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options) {
   pose::Bundle& bundle = calibration.bundle.bundle;
   pose::AdjustOptions& adjusting = calibration.adjust;
   adjusting = options.adjust;
   adjusting.points_known = true;
   adjusting.loss_sigmas *= 4;
-  adjusting.free.fill(false);
-  adjust(bundle, adjusting);
-  adjusting.free = options.adjust.free;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     // Wide at first: what a wrong port leaves is no outlier yet.
     const double lenience = round == 0 ? 4 : 1;
     adjust(bundle, adjusting);
-    drop_misfits(bundle, lenience * options.max_error, options.min_corners);
+    drop_misfits(bundle, lenience * options.max_error);
     if (bundle.observations.empty())
       fail("no corner fits: are this the board, the lens in air and the kind of port?");
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
@@ -63,8 +60,8 @@ void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options)
   calibration.last = adjust(bundle, adjusting);
 }
 
-// A bundle without those images of which nothing is left.
-void leave_out_misfits(Calibration& calibration) {
+// Without those images of which nothing is left.
+void leave_out_unobserved(Calibration& calibration) {
   pose::Bundle& bundle = calibration.bundle.bundle;
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   std::vector<std::size_t> place(counts.size());
@@ -92,16 +89,20 @@ Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<doubl
                       const CalibrateOptions& options) {
   Calibration calibration;
   for (const View& view : views) {
-    if (view.corners.size() >= options.min_corners && spans_a_plane(view, corners))
+    if (view.corners.size() >= kMinCorners)
       calibration.views.push_back(view);
     else
       calibration.left_out.push_back(view.image);
   }
-  require_views(calibration.views.size(), options);
+  require_views(calibration.views.size());
   calibration.bundle = board_bundle(lens, port, calibration.views, corners);
+  const std::size_t shown = calibration.views.size();
+  place_boards(calibration.bundle.bundle);
+  leave_out_unobserved(calibration);
+  require_fitting(calibration.views.size(), shown);
   adjust_in_rounds(calibration, options);
-  leave_out_misfits(calibration);
-  require_views(calibration.views.size(), options);
+  leave_out_unobserved(calibration);
+  require_fitting(calibration.views.size(), shown);
   calibration.uncertainty = uncertainty(calibration.bundle.bundle, calibration.adjust);
   return calibration;
 }

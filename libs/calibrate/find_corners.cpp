@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -9,17 +10,28 @@
 namespace axial::calibrate {
 namespace {
 
+// Of neighbours along rows and columns [px].
+double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
+  const auto at = [&](int row, int column) {
+    return corners[static_cast<std::size_t>(row * size.width + column)];
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (int row = 0; row < size.height; ++row)
+    for (int column = 0; column < size.width; ++column) {
+      if (column > 0) least = std::min(least, cv::norm(at(row, column) - at(row, column - 1)));
+      if (row > 0) least = std::min(least, cv::norm(at(row, column) - at(row - 1, column)));
+    }
+  return least;
+}
+
 // The older detector, which copes with boards that have hardly any margin.
 bool find_and_refine(const cv::Mat1b& photograph, cv::Size size,
                      std::vector<cv::Point2f>& corners) {
   constexpr int kFlags =
       cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
   if (!cv::findChessboardCorners(photograph, size, corners, kFlags)) return false;
-  // Half of the least distance between neighbours: the window must not reach another corner.
-  double least = 1e9;
-  for (std::size_t i = 1; i < corners.size(); ++i)
-    least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
-  const int half = std::clamp(static_cast<int>(least / 3), 2, 11);
+  // The window must not reach another corner: a third of the way to the nearest on every side.
+  const int half = std::clamp(static_cast<int>(least_spacing(corners, size) / 3), 2, 11);
   cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
   return true;

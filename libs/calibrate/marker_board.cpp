@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/marker_board.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <opencv2/aruco/charuco.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string_view>
 #include <utility>
 
@@ -67,6 +71,24 @@ Eigen::Vector2d pixel_of(const cv::Point2f& p) {
   return {p.x, p.y};
 }
 
+// Half the side [px] of a window around a corner of squares that reaches no marker. The gap is seen
+// at the scale of the two neighbours that are nearest.
+int charuco_window(const Board& board, const std::vector<cv::Point2f>& corners,
+                   const std::vector<int>& numbers) {
+  constexpr int kLeast = 2, kMost = 11;
+  const int columns = board.columns - 1;
+  double spacing = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (std::size_t j = i + 1; j < corners.size(); ++j) {
+      const int apart = std::abs(numbers[i] % columns - numbers[j] % columns) +
+                        std::abs(numbers[i] / columns - numbers[j] / columns);
+      if (apart == 1) spacing = std::min(spacing, cv::norm(corners[i] - corners[j]));
+    }
+  if (!std::isfinite(spacing)) return kLeast;
+  const double gap = (board.size - board.second) / 2 / board.size;
+  return std::clamp(static_cast<int>(gap * spacing), kLeast, kMost);
+}
+
 std::vector<Corner> find_charuco(const cv::Mat1b& photograph, const Board& board) {
   // Corners of squares are refined by themselves; those of markers only lead to them.
   const Markers markers = find_markers(photograph, board, cv::aruco::CORNER_REFINE_NONE);
@@ -76,6 +98,11 @@ std::vector<Corner> find_charuco(const cv::Mat1b& photograph, const Board& board
   std::vector<int> numbers;
   cv::aruco::interpolateCornersCharuco(markers.corners, markers.ids, photograph, charuco(board),
                                        corners, numbers);
+  if (corners.empty()) return found;
+  // OpenCV 4.6 leaves them half a pixel to the right and below.
+  const int half = charuco_window(board, corners, numbers);
+  cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
+                   {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
   for (std::size_t i = 0; i < numbers.size(); ++i)
     found.push_back({static_cast<std::size_t>(numbers[i]), pixel_of(corners[i])});
   return found;

@@ -35,14 +35,17 @@ class Photographer {
     extent_ = box.sizes();
   }
 
-  // Where the board, facing the camera, is as wide or high as `share` of the image. Behind a port
-  // things look larger by the water's index.
+  // Where the board, facing the camera, is as wide or high as `share` of the image, by how fast
+  // rays spread in the middle of the image.
   double distance_for(double share) const {
+    const Eigen::Vector2d middle(camera_.lens.cx, camera_.lens.cy);
+    refractive::AxialRayJacobian<double> spread;
+    std::visit([&](const auto& c) { c.ray(middle, spread); }, make_camera<double>(camera_));
     const auto lens = io::undistorted_lens(bundle_.lenses[0]);
-    const double index =
-        std::visit([](const auto& port) { return port.n_water / port.n_air; }, *camera_.port);
-    return index / share *
-           std::max(lens.fx * extent_.x() / width(), lens.fy * extent_.y() / height());
+    // A pixel of the photograph is as many of the lens that holds it.
+    const double across = width() * camera_.lens.fx / lens.fx * spread.direction.col(0).norm();
+    const double down = height() * camera_.lens.fy / lens.fy * spread.direction.col(1).norm();
+    return std::max(extent_.x() / across, extent_.y() / down) / share;
   }
 
   // Shifts the board until it touches the edges it shall be at; false if it does not fit.

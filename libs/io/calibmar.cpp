@@ -3,11 +3,11 @@
 
 #include <fmt/ranges.h>
 
-#include <cctype>
 #include <map>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "io/colmap_parts.h"
 #include "io/colmap_port.h"
 #include "io/text_reader.h"
@@ -136,8 +136,7 @@ std::string listed(const Numbers& numbers) {
 }  // namespace
 
 bool is_calibmar(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(path);
   return extension == ".yaml" || extension == ".yml";
 }
 

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
@@ -21,9 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_jpeg(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   return extension == ".jpg" || extension == ".jpeg";
 }
 

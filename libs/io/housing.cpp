@@ -76,6 +76,15 @@ struct Check {
   void operator()(const refractive::Port<double>& port) const { check_port(port, where); }
 };
 
+// The port `name`; nothing for "none". Error that starts with `where` if it is not defined.
+const HousingPort* find_port(const Housing& housing, const std::string& name,
+                             const std::string& where) {
+  if (name == kDry) return nullptr;
+  const auto port = housing.ports.find(name);
+  if (port == housing.ports.end()) fail("{} '{}' is not defined", where, name);
+  return &port->second;
+}
+
 struct SeenFrom {
   const Pose& pose;
   const std::string where;
@@ -101,6 +110,10 @@ HousingPort to_housing_port(const refractive::Port<double>& port) {
   return std::visit([](const auto& kind) -> HousingPort { return kind; }, port);
 }
 
+Housing housing_with(const HousingPort& port) {
+  return {{{"main", port}}, "main", {}, {}};
+}
+
 std::map<std::string, std::string>::const_iterator Housing::entry_of(
     const std::string& image_name) const {
   auto entry = images.find(image_name);
@@ -118,17 +131,16 @@ const std::string& Housing::port_of(const std::string& image_name, std::uint32_t
 
 std::optional<refractive::Port<double>> Housing::port_at(const std::string& name, const Pose& pose,
                                                          const std::string& image) const {
-  if (name == kDry) return std::nullopt;
-  const auto port = ports.find(name);
-  if (port == ports.end()) fail("{}: its port '{}' is not defined", image, name);
-  return std::visit(SeenFrom{pose, fmt::format("{}: its port '{}'", image, name)}, port->second);
+  const std::string where = image + ": its port";
+  const HousingPort* const port = find_port(*this, name, where);
+  if (!port) return std::nullopt;
+  return std::visit(SeenFrom{pose, fmt::format("{} '{}'", where, name)}, *port);
 }
 
 std::optional<refractive::Port<double>> Housing::carried_port(const std::string& name) const {
-  if (name == kDry) return std::nullopt;
-  const auto port = ports.find(name);
-  if (port == ports.end()) fail("port '{}' is not defined", name);
-  return std::visit(Carried{name}, port->second);
+  const HousingPort* const port = find_port(*this, name, "port");
+  if (!port) return std::nullopt;
+  return std::visit(Carried{name}, *port);
 }
 
 void check_port(const HousingPort& port, const std::string& where) {

@@ -45,6 +45,9 @@ struct Housing {
   std::optional<refractive::Port<double>> carried_port(const std::string& name) const;
 };
 
+// One port, "main", for every image.
+Housing housing_with(const HousingPort& port);
+
 // Error that starts with `where` for values no port has.
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_port(const HousingPort& port, const std::string& where);

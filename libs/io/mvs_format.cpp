@@ -2,9 +2,9 @@
 #include "io/mvs_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
+#include "base/file_extension.h"
 #include "io/byte_reader.h"
 #include "io/byte_writer.h"
 
@@ -166,10 +166,7 @@ MvsFile read_body(ByteReader& in, std::uint32_t version) {
 }
 
 bool has_mvs_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".mvs";
+  return lower_extension(file) == ".mvs";
 }
 
 void write_matrix(ByteWriter& out, const Eigen::Matrix3d& matrix) {

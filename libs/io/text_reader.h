@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: lines, tokens and numbers of text files, independent of the locale.
+// Private to libs/io: lines and tokens of text files.
 #pragma once
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 #include "base/error.h"
+#include "base/parse_number.h"
 
 namespace axial::io {
 
@@ -33,27 +31,6 @@ inline std::string_view take_token(std::string_view& text) {
   const std::string_view token = text.substr(first, end - first);
   text.remove_prefix(end);
   return token;
-}
-
-// The whole token as a number; nothing if it is none or does not fit.
-template <class T>
-std::optional<T> parse_number(std::string_view token) {
-  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
-  T value{};
-  const char* const end = token.data() + token.size();
-  const auto result = std::from_chars(token.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) return {};
-  return value;
-}
-
-// The same, and nothing for infinities and NaN.
-template <class T>
-std::optional<T> parse_finite(std::string_view token) {
-  const std::optional<T> value = parse_number<T>(token);
-  if constexpr (std::is_floating_point_v<T>) {
-    if (value && !std::isfinite(*value)) return {};
-  }
-  return value;
 }
 
 // One line of a text file, taken apart from left to right.

@@ -72,26 +72,37 @@ void set(const Words& words, const std::string& word, double sigma, double scale
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
+struct PlaceWords {
+  const char* operator()(const refractive::FlatPort<double>&) const { return "normal,distance"; }
+  const char* operator()(const refractive::DomePort<double>&) const { return "centre"; }
+};
+
 struct ValuesOfPort {
   std::vector<FreeValue> operator()(const refractive::FlatPort<double>& port) const {
     const double tilt_x = std::atan2(port.normal.x(), port.normal.z()) * kDegrees;
     const double tilt_y = std::atan2(port.normal.y(), port.normal.z()) * kDegrees;
-    return {{0, "normal to the right", "degrees", tilt_x, 0, kDegrees},
-            {1, "normal downwards", "degrees", tilt_y, 0, kDegrees},
-            {2, "distance", "mm", port.distance * 1e3, 0, 1e3},
-            {kIndexNumber, "index of water", "", port.n_water, 0, 1},
-            {kThicknessNumber, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
+    return {
+        {0, Quantity::angle, "normal to the right", "degrees", tilt_x, 0, kDegrees},
+        {1, Quantity::angle, "normal downwards", "degrees", tilt_y, 0, kDegrees},
+        {2, Quantity::place, "distance", "mm", port.distance * 1e3, 0, 1e3},
+        {kIndexNumber, Quantity::index, "index of water", "", port.n_water, 0, 1},
+        {kThicknessNumber, Quantity::thickness, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
   }
   std::vector<FreeValue> operator()(const refractive::DomePort<double>& port) const {
-    return {{0, "centre x", "mm", port.centre.x() * 1e3, 0, 1e3},
-            {1, "centre y", "mm", port.centre.y() * 1e3, 0, 1e3},
-            {2, "centre z", "mm", port.centre.z() * 1e3, 0, 1e3},
-            {kIndexNumber, "index of water", "", port.n_water, 0, 1},
-            {kThicknessNumber, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
+    return {
+        {0, Quantity::place, "centre x", "mm", port.centre.x() * 1e3, 0, 1e3},
+        {1, Quantity::place, "centre y", "mm", port.centre.y() * 1e3, 0, 1e3},
+        {2, Quantity::place, "centre z", "mm", port.centre.z() * 1e3, 0, 1e3},
+        {kIndexNumber, Quantity::index, "index of water", "", port.n_water, 0, 1},
+        {kThicknessNumber, Quantity::thickness, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
   }
 };
 
 }  // namespace
+
+std::string place_words(const refractive::Port<double>& port) {
+  return std::visit(PlaceWords{}, port);
+}
 
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust) {
@@ -112,7 +123,7 @@ std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChan
   std::vector<FreeValue> values;
   if (now.port) values = std::visit(ValuesOfPort{}, *now.port);
   const double factor = std::exp(camera.change(kFocalNumber));
-  values.push_back({kFocalNumber, "focal length, factor", "", factor, 0, factor});
+  values.push_back({kFocalNumber, Quantity::focal, "focal length, factor", "", factor, 0, factor});
   std::erase_if(values, [&](const FreeValue& value) { return !options.free[value.number]; });
   for (FreeValue& value : values)
     value.sigma = sigmas(static_cast<Eigen::Index>(value.number)) * value.scale;

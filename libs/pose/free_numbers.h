@@ -25,9 +25,15 @@ struct Sigmas {
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust);
 
+// What --refine calls the numbers that say where the port is.
+std::string place_words(const refractive::Port<double>& port);
+
+enum class Quantity { angle, place, index, thickness, focal };
+
 // One number of a camera.
 struct FreeValue {
   std::size_t number = 0;  // housing_change.h
+  Quantity quantity = Quantity::place;
   std::string name, unit;
   double now = 0, sigma = 0;  // [unit]
   double scale = 1;           // of the unit, in that of housing_change.h: 1000 for mm

@@ -24,8 +24,11 @@ std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   const std::size_t points = options.points_known ? 0 : bundle.points.size();
   const auto free =
       static_cast<std::size_t>(std::count(options.free.begin(), options.free.end(), true));
-  return kPoseNumbers * (bundle.images.size() - fixed_images) + free * bundle.cameras.size() +
-         3 * points;
+  // Images without observations are no unknowns.
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  const auto images = counts.size() - static_cast<std::size_t>(
+                                          std::count(counts.begin(), counts.end(), std::size_t{0}));
+  return kPoseNumbers * (images - fixed_images) + free * bundle.cameras.size() + 3 * points;
 }
 
 Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calibrate/board_survey.h"
 #include "calibrate/information.h"
 #include "support/error_of.h"
@@ -113,6 +115,65 @@ TEST(Advice, TheNextPhotographHelpsAsPromised) {
     EXPECT_LE(after(k), before(k)) << k;
   }
   EXPECT_LT((after.head<3>().cwiseQuotient(before.head<3>())).minCoeff(), 0.8);
+}
+
+// The worst of the standard deviations by its limit, for noise of a pixel.
+double worst_for_a_pixel(const Calibration& calibration) {
+  const Limits limits;
+  const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
+  return std::max(
+             {sigmas(0) / limits.normal, sigmas(1) / limits.normal, sigmas(2) / limits.place}) /
+         calibration.uncertainty.pixel_sigma;
+}
+
+// The advice is followed, and so is other advice: each photograph is taken by the true camera, with
+// noise, and all is calibrated again.
+TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
+  const Calibration found = calibrated({.views = 5,
+                                        .nearest = 0.5,
+                                        .farthest = 0.8,
+                                        .noise = 0.2,
+                                        .within = box(0.2, 0.2, 0.8, 0.8)});
+  const auto next = next_photograph(found, Limits());
+  ASSERT_TRUE(next);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.2);
+  CalibrateOptions options;
+  options.adjust.free = {true, true, true};
+  const auto taken = [&](const PlacedBoard& board) -> std::optional<Calibration> {
+    View view{"next.png",
+              testing::seen_corners(kPinhole, flat_port(), board.pose, kBoard, box(0, 0, 1, 1))};
+    if (view.corners.empty()) return {};
+    for (Corner& corner : view.corners)
+      corner.pixel += Eigen::Vector2d(noise(random), noise(random));
+    std::vector<View> views = found.views;
+    views.push_back(view);
+    return calibrate(kPinhole, flat_port(), views, corners_of(kBoard), options);
+  };
+  const auto advised = taken(next->board);
+  ASSERT_TRUE(advised);
+  const auto& sigmas = advised->uncertainty.camera_sigmas[0];
+  // Each photograph is taken where the port as calibrated would have it, which is not quite the
+  // true one; the noise moves the poses. Both change the standard deviations by a few percent.
+  constexpr double kElsewhere = 0.05;
+  for (int k = 0; k < 3; ++k) {
+    const double promised = next->sigmas(k) / found.uncertainty.pixel_sigma;
+    const double kept = sigmas(k) / advised->uncertainty.pixel_sigma;
+    EXPECT_NEAR(kept, promised, kElsewhere * promised) << k;
+  }
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < found.views.size(); ++i)
+    nearest = std::min(nearest, board_place(found.bundle.bundle, i).distance);
+  std::vector<double> others;
+  const auto boards = placed_boards(found.bundle, corners_of(kBoard), 0.8 * nearest);
+  for (std::size_t i = 0; i < boards.size(); i += 4)
+    if (const auto other = taken(boards[i])) others.push_back(worst_for_a_pixel(*other));
+  ASSERT_GT(others.size(), 15u);
+  std::ranges::sort(others);
+  const double worst = worst_for_a_pixel(*advised);
+  EXPECT_LT(worst, (1 + kElsewhere) * others.front());
+  // Advice by chance would do no better than the middle one.
+  EXPECT_LT(worst, 0.8 * others[others.size() / 2]);
 }
 
 // A board that is said to be at an edge is there, and whole.

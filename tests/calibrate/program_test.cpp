@@ -112,10 +112,18 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFivePhotographs) {
   EXPECT_NEAR(same.distance, port.distance, 1e-5);
 }
 
+// Behind the camera's own port, not the housing's default.
 TEST_F(CalibrateHousing, FindsTheCentreOfADome) {
   take_photographs(dome_port(), with_margin(15));
-  const Outcome outcome = run("--housing dome.json -o housing.json");
+  io::Housing housing = io::read_housing(folder_ / "dome.json");
+  housing.ports["side"] = io::to_housing_port(flat_port());
+  housing.default_port = "side";
+  housing.cameras[kLens.id] = "front";
+  io::write_housing(folder_ / "both.json", housing);
+  const Outcome outcome = run("--housing both.json -o housing.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto side = *io::read_housing(folder_ / "housing.json").carried_port("side");
+  EXPECT_EQ(std::get<refractive::FlatPort<double>>(side).distance, flat_port().distance);
   const auto port = std::get<refractive::DomePort<double>>(port_in("housing.json"));
   EXPECT_LT((port.centre - dome_port().centre).norm(), 0.0005);
 }
@@ -166,7 +174,8 @@ TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + housing + "--lens large.txt -o out.json",
           "view0.png: is 640 x 480, the lens 1280 x 960");
   write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");
-  refuses(kInput + lens + "--housing dry.json -o out.json", "dry.json: housing.default is 'none'");
+  refuses(kInput + lens + "--housing dry.json -o out.json",
+          "dry.json: camera 1 is behind port 'none'");
   write_atomically(folder_ / "photos" / "cut.png", "\x89PNG\r\n\x1A\n");
   refuses(all + "-o out.json", "cut.png");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.json"));

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/board_pose.h"
+
+#include <Eigen/SVD>
+#include <opencv2/calib3d.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "pose/adjust.h"
+
+namespace axial::calibrate {
+namespace {
+
+// An image's corners on the board, and its rays in water by where they meet the plane z = 1.
+struct Perspective {
+  std::vector<cv::Point3d> board;
+  std::vector<cv::Point2d> directions;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // where the rays come from, on average
+};
+
+Perspective perspective_of(const pose::Bundle& image) {
+  Perspective result;
+  const auto camera = make_camera<double>(image.cameras[0].now());
+  for (const pose::Observation& observation : image.observations) {
+    const auto ray = std::visit([&](const auto& c) { return c.ray(observation.pixel); }, camera);
+    if (!(ray.direction.z() > 0)) continue;
+    const Eigen::Vector3d& corner = image.points[observation.point].position;
+    result.board.emplace_back(corner.x(), corner.y(), corner.z());
+    result.directions.emplace_back(ray.direction.x() / ray.direction.z(),
+                                   ray.direction.y() / ray.direction.z());
+    result.centre += ray.origin;
+  }
+  if (!result.board.empty()) result.centre /= static_cast<double>(result.board.size());
+  return result;
+}
+
+// A line of corners may be turned about itself.
+bool spans_a_plane(const std::vector<cv::Point3d>& board) {
+  constexpr std::size_t kLeast = 4;
+  if (board.size() < kLeast) return false;
+  Eigen::Matrix3Xd places(3, board.size());
+  for (std::size_t i = 0; i < board.size(); ++i)
+    places.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(board[i].x, board[i].y, board[i].z);
+  const Eigen::Matrix3Xd centred = places.colwise() - places.rowwise().mean();
+  const Eigen::Vector3d extents = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
+  return extents(1) > 1e-3 * extents(0);
+}
+
+Pose pose_of(const cv::Mat& turn, const cv::Mat& place, const Eigen::Vector3d& centre) {
+  cv::Matx33d rotation;
+  cv::Rodrigues(turn, rotation);
+  Pose pose;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) pose.rotation(i, j) = rotation(i, j);
+  const Eigen::Vector3d from_camera =
+      centre + Eigen::Vector3d(place.at<double>(0), place.at<double>(1), place.at<double>(2));
+  pose.centre = -pose.rotation.transpose() * from_camera;
+  return pose;
+}
+
+// Up to two.
+std::vector<Pose> likely_poses(const Perspective& seen) {
+  std::vector<Pose> poses;
+  if (!spans_a_plane(seen.board)) return poses;
+  std::vector<cv::Mat> turns, places;
+  try {
+    cv::solvePnPGeneric(seen.board, seen.directions, cv::Matx33d::eye(), cv::noArray(), turns,
+                        places, false, cv::SOLVEPNP_IPPE);
+  } catch (const cv::Exception&) {  // of corners that all are at one place, say
+    return poses;
+  }
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Pose pose = pose_of(turns[i], places[i], seen.centre);
+    if (pose.rotation.allFinite() && pose.centre.allFinite()) poses.push_back(pose);
+  }
+  return poses;
+}
+
+struct Placed {
+  Pose pose;
+  double cost = 0;
+};
+
+// `image` adjusted from `pose` on; nothing where that leads nowhere.
+std::optional<Placed> placed_from(const Pose& pose, pose::Bundle& image) {
+  pose::AdjustOptions options;
+  options.points_known = true;
+  options.loss_sigmas = 8;  // what a wrong port leaves is no outlier yet
+  image.images[0].pose = pose;
+  try {
+    const double cost = adjust(image, options).final_cost;
+    return Placed{image.images[0].pose, cost};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+pose::Bundle only(const pose::Bundle& bundle, std::size_t image) {
+  pose::Bundle one{bundle.cameras, {bundle.images[image]}, bundle.points, {}};
+  for (const pose::Observation& observation : bundle.observations) {
+    if (observation.image != image) continue;
+    one.observations.push_back(observation);
+    one.observations.back().image = 0;
+  }
+  return one;
+}
+
+// Of errors in pixels, which tell more than those of directions.
+std::optional<Placed> best_place(const pose::Bundle& bundle, std::size_t image) {
+  pose::Bundle one = only(bundle, image);
+  std::optional<Placed> best;
+  for (const Pose& pose : likely_poses(perspective_of(one)))
+    if (const auto placed = placed_from(pose, one); placed && (!best || placed->cost < best->cost))
+      best = placed;
+  return best;
+}
+
+}  // namespace
+
+void place_boards(pose::Bundle& bundle) {
+  std::vector<bool> known(bundle.images.size());
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    const auto best = best_place(bundle, i);
+    known[i] = best.has_value();
+    if (best) bundle.images[i].pose = best->pose;
+  }
+  std::erase_if(bundle.observations,
+                [&](const pose::Observation& observation) { return !known[observation.image]; });
+}
+
+}  // namespace axial::calibrate
