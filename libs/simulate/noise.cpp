@@ -6,52 +6,69 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "simulate/noise_corners.h"
 
 namespace axial::simulate {
 namespace {
 
 std::uint32_t lattice_hash(std::uint32_t h) {
   h ^= h >> 16;
-  h *= 0x7feb352du;
+  h *= detail::kHashFactors[0];
   h ^= h >> 15;
-  h *= 0x846ca68bu;
+  h *= detail::kHashFactors[1];
   return h ^ (h >> 16);
-}
-
-// Dot product of the offset with a gradient whose components are uniform in [-1, 1].
-float corner(std::uint32_t h, float x, float y, float z) {
-  constexpr float kScale = 1.0f / 511.5f;
-  const float gx = static_cast<float>(static_cast<int>(h & 1023u)) * kScale - 1.0f;
-  const float gy = static_cast<float>(static_cast<int>((h >> 10) & 1023u)) * kScale - 1.0f;
-  const float gz = static_cast<float>(static_cast<int>((h >> 20) & 1023u)) * kScale - 1.0f;
-  return gx * x + gy * y + gz * z;
 }
 
 float fade(float t) {
   return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }
 
-std::uint32_t lattice(double floored) {
-  return static_cast<std::uint32_t>(static_cast<std::int64_t>(floored));
+// The largest integer that is not above v. (std::floor is a function call for the oldest
+// processors.)
+std::int64_t lattice(double v) {
+  const auto truncated = static_cast<std::int64_t>(v);
+  return truncated - (v < static_cast<double>(truncated) ? 1 : 0);
 }
 
 }  // namespace
 
-float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed) {
-  const double fx = std::floor(p.x()), fy = std::floor(p.y()), fz = std::floor(p.z());
-  const auto x = static_cast<float>(p.x() - fx);
-  const auto y = static_cast<float>(p.y() - fy);
-  const auto z = static_cast<float>(p.z() - fz);
-  constexpr std::uint32_t kX = 0x8da6b343u, kY = 0xd8163841u, kZ = 0xcb1ab31fu;
-  const std::uint32_t hx = lattice(fx) * kX, hy = lattice(fy) * kY, hz = lattice(fz) * kZ;
-  std::array<float, 8> value;
+namespace detail {
+
+std::array<float, 8> corners_scalar(const NoiseCell& cell) {
+  std::array<float, 8> values;
   for (std::uint32_t i = 0; i < 8; ++i) {
     const std::uint32_t dx = i & 1u, dy = (i >> 1) & 1u, dz = i >> 2;
-    const std::uint32_t key = (hx + dx * kX) ^ (hy + dy * kY) ^ (hz + dz * kZ) ^ seed;
-    value[i] = corner(lattice_hash(key), x - static_cast<float>(dx), y - static_cast<float>(dy),
-                      z - static_cast<float>(dz));
+    const std::uint32_t key = (cell.hash[0] + dx * kHashSteps[0]) ^
+                              (cell.hash[1] + dy * kHashSteps[1]) ^
+                              (cell.hash[2] + dz * kHashSteps[2]) ^ cell.seed;
+    const std::uint32_t h = lattice_hash(key);
+    const auto component = [h](int shift) {
+      return static_cast<float>(static_cast<int>((h >> shift) & 1023u)) * kGradientStep - 1.0f;
+    };
+    values[i] = component(0) * (cell.offset[0] - static_cast<float>(dx)) +
+                component(10) * (cell.offset[1] - static_cast<float>(dy)) +
+                component(20) * (cell.offset[2] - static_cast<float>(dz));
   }
-  const float u = fade(x), v = fade(y), w = fade(z);
+  return values;
+}
+
+CornersFunction fastest_corners() {
+  return __builtin_cpu_supports("avx2") ? corners_avx2 : corners_scalar;
+}
+
+}  // namespace detail
+
+float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed) {
+  static const detail::CornersFunction corners = detail::fastest_corners();
+  detail::NoiseCell cell{{}, {}, seed};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double v = p(static_cast<Eigen::Index>(k));
+    const std::int64_t floored = lattice(v);
+    cell.hash[k] = static_cast<std::uint32_t>(floored) * detail::kHashSteps[k];
+    cell.offset[k] = static_cast<float>(v - static_cast<double>(floored));
+  }
+  const std::array<float, 8> value = corners(cell);
+  const float u = fade(cell.offset[0]), v = fade(cell.offset[1]), w = fade(cell.offset[2]);
   const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
   const float bottom = mix(mix(value[0], value[1], u), mix(value[2], value[3], u), v);
   const float top = mix(mix(value[4], value[5], u), mix(value[6], value[7], u), v);

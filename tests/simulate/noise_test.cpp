@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "simulate/noise_corners.h"
+
 namespace axial::simulate {
 namespace {
 
@@ -38,6 +40,18 @@ TEST(Noise, IsZeroOnTheLatticeAndSmoothAcrossIt) {
     const double left = gradient_noise({x - h, 5.3, -2.6}, 3);
     const double right = gradient_noise({x + h, 5.3, -2.6}, 3);
     EXPECT_NEAR(left, right, 10 * h);  // slopes stay below about 3
+  }
+}
+
+TEST(Noise, IsTheSameBytesOnEveryProcessor) {
+  if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "needs a processor with AVX2";
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    detail::NoiseCell cell{{}, {}, static_cast<std::uint32_t>(i)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      cell.hash[k] = static_cast<std::uint32_t>(0x1p32 * uniform(2, 6 * i + k));
+      cell.offset[k] = static_cast<float>(uniform(2, 6 * i + 3 + k));
+    }
+    ASSERT_EQ(detail::corners_scalar(cell), detail::corners_avx2(cell)) << "cell " << i;
   }
 }
 
