@@ -29,6 +29,7 @@ struct Stage {
   std::string name;
   std::string title;
   std::function<DepthMap(std::size_t image)> make;
+  bool matches = true;
 };
 
 // Maps of the stage before, read from their files: never handed over in memory, because a resumed
@@ -60,6 +61,9 @@ class DepthMapRun {
       return;
     }
     for (std::size_t s = first; s < stages_.size(); ++s) {
+      // Matching frees and takes large blocks all the time and holds few; afterwards it is the
+      // other way round.
+      if (!stages_[s].matches) axial::map_large_blocks();
       run_stage(s);
       if (s > 0) remove_stage(s - 1);
     }
@@ -217,8 +221,8 @@ class DepthMapRun {
                          fmt::format("Geometric-consistency pass {}", pass + 1),
                          [this, pass](std::size_t image) { return refine(image, pass); }});
     if (options_.postprocess & kAdjust)
-      stages_.push_back(
-          {"adjusted", "Adjusted depth maps", [this](std::size_t image) { return adjust(image); }});
+      stages_.push_back({"adjusted", "Adjusted depth maps",
+                         [this](std::size_t image) { return adjust(image); }, false});
   }
 
   const Project& project_;

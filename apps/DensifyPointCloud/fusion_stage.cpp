@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "base/memory.h"
 #include "base/progress.h"
 #include "cloud/colors.h"
 #include "cloud/crop.h"
@@ -93,6 +94,7 @@ class CloudRun {
 
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
                         ImageStore& images, const std::filesystem::path& ply) {
+  axial::map_large_blocks();
   return CloudRun(project, options, plan, images, ply).run();
 }
 

@@ -83,6 +83,12 @@ std::uint64_t allocated_memory() {
   return all.uordblks + all.hblkhd;
 }
 
+void map_large_blocks() {
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  // Fixing the one number fixes the other, at so little that heaps grow and shrink all the time.
+  ::mallopt(M_TRIM_THRESHOLD, 16 << 20);
+}
+
 void return_freed_memory() {
   ::malloc_trim(0);
 }

@@ -20,6 +20,11 @@ std::uint64_t resident_memory();
 // system itself): the same in every run that did the same.
 std::uint64_t allocated_memory();
 
+// From now on every block of a megabyte or more comes straight from the system and goes back there
+// when freed. The C library would keep such blocks in its heaps as soon as one was freed, with
+// holes between them whose size depends on how the threads' work happens to interleave.
+void map_large_blocks();
+
 // Gives back to the system what this process has freed and the C library keeps for later, in every
 // thread its own. For the end of a stage, whose successor needs blocks of other sizes.
 void return_freed_memory();

@@ -110,6 +110,26 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
   }
 }
 
+// Other blocks lie between the large ones: a heap could not shrink.
+TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
+#endif
+  map_large_blocks();
+  constexpr std::size_t kBlocks = 32, kBytes = 2 << 20, kBetween = 64 << 10;
+  // A freed block of this size is what makes the C library keep the next ones.
+  { const std::vector<char> block(16 << 20, 1); }
+  std::vector<std::unique_ptr<char[]>> large, between;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    large.push_back(std::make_unique<char[]>(kBytes));
+    std::fill_n(large.back().get(), kBytes, static_cast<char>(i));
+    between.push_back(std::make_unique<char[]>(kBetween));
+  }
+  const std::uint64_t before = resident_memory();
+  large.resize(1);
+  EXPECT_LT(resident_memory(), before - (kBlocks - 2) * kBytes);
+}
+
 // Many small blocks, every other one of which stays: the C library would keep the rest.
 TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
 #ifdef __SANITIZE_ADDRESS__
