@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -66,6 +67,9 @@ int run(int argc, char** argv) {
                model.images.size(), alignment.similarity.scale);
   spdlog::info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,
                *std::max_element(alignment.residuals.begin(), alignment.residuals.end()) * 1e3);
+  spdlog::info(
+      "Rotation residuals: largest {:.4f} degrees",
+      *std::max_element(alignment.turns.begin(), alignment.turns.end()) * 180 / std::numbers::pi);
   spdlog::info("Aligned model in {}", options.output.string());
   return 0;
 }

@@ -110,6 +110,7 @@ int run(int argc, char** argv) {
         return camera.measured.port.has_value();
       }))
     fail("no image is behind a port: there is nothing to refine");
+  adjust.poses_known = options.poses == "known";
   pose::set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
   check_focal(refined, adjust);
   check_output(options, folder);

@@ -19,6 +19,10 @@ void check(const Options& options) {
   const double min_angle = options.refine.tracks.min_angle;
   if (!(min_angle >= 0 && std::isfinite(min_angle)))
     fail("--min-angle {}: must be 0 or more", min_angle);
+  if (options.poses != "adjust" && options.poses != "known")
+    fail("--poses {}: must be adjust or known", options.poses);
+  if (options.poses == "known" && !options.scale_from.empty())
+    fail("--scale-from {}: --poses known says that the model is in metres", options.scale_from);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -44,6 +48,8 @@ Options parse_command_line(int argc, const char* const* argv) {
        "housing file: ports the cameras look through; a model of COLMAP-Underwater has them")  //
       ("output-folder,o", po::value(&output),
        "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")  //
+      ("poses", po::value(&options.poses)->default_value("adjust"),
+       "adjust, or known: they are right and in metres, only points are placed")  //
       ("refine", po::value(&options.refine_list)->default_value(""),
        "what else is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
        "the "

@@ -15,6 +15,7 @@ struct Options {
   std::filesystem::path housing;  // file
   std::filesystem::path output;   // folder
   bool underwater = false;        // also write the model for COLMAP-Underwater
+  std::string poses;              // "adjust" or "known"
   std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
   double scale_sigma = 0;         // [m]
   std::string refine_list;        // see pose/free_numbers.h

@@ -49,8 +49,9 @@ std::vector<std::string> report_lines(const pose::RefineReport& report,
          pose::free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
       lines.push_back(fmt::format("Camera {} behind {}: {} {:.6g} +- {:.2g} {}", i + 1, ports[i],
                                   value.name, value.now, value.sigma, value.unit));
-  lines.push_back(fmt::format("All lengths are known to {:.3g} % (one standard deviation)",
-                              report.uncertainty.scale_sigma * 100));
+  if (!options.poses_known)
+    lines.push_back(fmt::format("All lengths are known to {:.3g} % (one standard deviation)",
+                                report.uncertainty.scale_sigma * 100));
   return lines;
 }
 

@@ -58,16 +58,18 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
 }
 
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {
-  std::map<std::string, Eigen::Vector3d> centres;
-  for (const io::ColmapImage& image : reference.images) centres[image.name] = image.pose.centre;
+  std::map<std::string, Pose> poses;
+  for (const io::ColmapImage& image : reference.images) poses[image.name] = image.pose;
   CentreAlignment result;
   std::vector<Eigen::Vector3d> source, target;
+  std::vector<Eigen::Matrix3d> apart;  // from the model's world to the reference's
   for (const io::ColmapImage& image : model.images) {
-    const auto found = centres.find(image.name);
-    if (found == centres.end()) continue;
+    const auto found = poses.find(image.name);
+    if (found == poses.end()) continue;
     result.names.push_back(image.name);
     source.push_back(image.pose.centre);
-    target.push_back(found->second);
+    target.push_back(found->second.centre);
+    apart.push_back(found->second.rotation.transpose() * image.pose.rotation);
   }
   if (source.size() < 3)
     fail("the models have {} images of the same name: a similarity takes 3", source.size());
@@ -77,6 +79,8 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
     const double squared = (result.similarity(source[i]) - target[i]).squaredNorm();
     result.residuals.push_back(std::sqrt(squared));
     sum += squared;
+    const Eigen::Matrix3d turn = apart[i] * result.similarity.rotation.transpose();
+    result.turns.push_back(Eigen::AngleAxisd(turn).angle());
   }
   result.rms = std::sqrt(sum / static_cast<double>(source.size()));
   return result;

@@ -36,8 +36,9 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
 struct CentreAlignment {
   Similarity similarity;
   std::vector<std::string> names;  // of the images in both models
-  std::vector<double> residuals;   // [unit of the reference], as `names`
-  double rms = 0;
+  std::vector<double> residuals;   // of centres [unit of the reference], as `names`
+  std::vector<double> turns;       // of images against the reference's [rad], as `names`
+  double rms = 0;                  // of `residuals`
 };
 
 // The similarity that takes the camera centres of `model` to those of `reference`, images matched

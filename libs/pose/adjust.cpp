@@ -12,11 +12,12 @@ namespace {
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  if (const std::vector<double*> points = adjusted.point_blocks(); !points.empty()) {
+  const std::vector<double*> points = adjusted.point_blocks(), cameras = adjusted.camera_blocks();
+  if (!points.empty() && !cameras.empty()) {
     options.linear_solver_type = ceres::SPARSE_SCHUR;
     auto* ordering = new ceres::ParameterBlockOrdering;
     for (double* block : points) ordering->AddElementToGroup(block, 0);
-    for (double* block : adjusted.camera_blocks()) ordering->AddElementToGroup(block, 1);
+    for (double* block : cameras) ordering->AddElementToGroup(block, 1);
     options.linear_solver_ordering.reset(ordering);
   }
   options.num_threads = 1;

@@ -33,6 +33,7 @@ struct AdjustOptions {
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;  // three or more also hold the model in place
   bool points_known = false;             // they stay where they are, and hold the model in place
+  bool poses_known = false;              // the same of the images
 
   double pixel_sigma = 1;  // of the observations [px]: weighs them against what is known
   double loss_sigmas = 2;  // errors beyond count linearly (Huber)
@@ -61,7 +62,7 @@ struct Uncertainty {
   // Of the free numbers, infinite where nothing tells them; 0 for the others.
   std::vector<HousingChange<double>> camera_sigmas;
   // Of the scale, relative: of the distance from the first image to the one farthest from it.
-  // Infinite where nothing tells it, as for cameras in air.
+  // Infinite where nothing tells it, as for cameras in air; 0 where poses are known.
   double scale_sigma = 0;
 };
 

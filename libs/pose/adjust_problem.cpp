@@ -150,10 +150,15 @@ void AdjustProblem::fix_points() {
       problem_->SetParameterBlockConstant(point.data());
 }
 
+void AdjustProblem::fix_poses() {
+  for (PoseNumbers& pose : poses_)
+    if (problem_->HasParameterBlock(pose.data())) problem_->SetParameterBlockConstant(pose.data());
+}
+
 void AdjustProblem::fix_what_stays() {
-  if (options_.points_known)
-    fix_points();
-  else if (options_.positions.size() < 3)
+  if (options_.points_known) fix_points();
+  if (options_.poses_known) fix_poses();
+  if (!options_.points_known && !options_.poses_known && options_.positions.size() < 3)
     problem_->SetParameterBlockConstant(image_block(anchor()));
   std::vector<int> fixed;
   for (int k = 0; k < kHousingNumbers; ++k)

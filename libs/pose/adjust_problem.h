@@ -40,6 +40,7 @@ class AdjustProblem {
   void add_known();
   void add_known_distance(const KnownDistance& known);
   void fix_points();
+  void fix_poses();
   void fix_what_stays();
 
   const Bundle& bundle_;

@@ -47,7 +47,8 @@ void check_ports(const std::string& refine, const Words& words, const Bundle& bu
 
 void check_known(const std::string& refine, const Words& words, const Sigmas& sigmas,
                  const AdjustOptions& adjust) {
-  const bool metric = adjust.points_known || !adjust.distances.empty() || !adjust.positions.empty();
+  const bool metric = adjust.points_known || adjust.poses_known || !adjust.distances.empty() ||
+                      !adjust.positions.empty();
   if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
     fail(
         "--refine {}: the distance needs --distance-sigma or --scale-from, since the photographs "

@@ -124,7 +124,7 @@ void scale_places(Bundle& bundle, double scale) {
 }
 
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
-  if (!place_by_positions(bundle, options.positions)) {
+  if (!options.poses_known && !place_by_positions(bundle, options.positions)) {
     const double known = known_scale(bundle, options);
     scale_places(bundle, known > 0 ? known : best_scale(bundle));
   }

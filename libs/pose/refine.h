@@ -26,9 +26,9 @@ struct RefineReport {
 };
 
 // Brings a bundle of any scale to metres, a first guess, and triangulates it anew: a pinhole
-// engine's model has no scale. What is known in metres sets it; else that scale out of a series is
-// taken under which a short adjustment leaves the least error, since refraction depends on the
-// distance in metres.
+// engine's model has no scale (known poses have it, and stay as they are). What is known in metres
+// sets it; else that scale out of a series is taken under which a short adjustment leaves the least
+// error, since refraction depends on the distance in metres.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
 // Rounds of adjusting and filtering a bundle in metres, the later ones with the noise that was

@@ -19,16 +19,17 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
-  const bool held = options.points_known || options.positions.size() >= 3;
-  const std::size_t fixed_images = held ? 0 : 1;
   const std::size_t points = options.points_known ? 0 : bundle.points.size();
   const auto free =
       static_cast<std::size_t>(std::count(options.free.begin(), options.free.end(), true));
   // Images without observations are no unknowns.
   const std::vector<std::size_t> counts = observations_by_image(bundle);
-  const auto images = counts.size() - static_cast<std::size_t>(
-                                          std::count(counts.begin(), counts.end(), std::size_t{0}));
-  return kPoseNumbers * (images - fixed_images) + free * bundle.cameras.size() + 3 * points;
+  auto images = counts.size() -
+                static_cast<std::size_t>(std::count(counts.begin(), counts.end(), std::size_t{0}));
+  const bool held = options.points_known || options.positions.size() >= 3;
+  if (!held) --images;
+  if (options.poses_known) images = 0;
+  return kPoseNumbers * images + free * bundle.cameras.size() + 3 * points;
 }
 
 Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {
@@ -111,6 +112,7 @@ class Normal {
       camera_columns_ += problem_.problem().ParameterBlockTangentSize(block);
     }
     for (double* block : problem_.point_blocks()) blocks.push_back(block);
+    if (camera_columns_ == 0) return;
     const Sparse derivatives = jacobian(problem_.problem(), blocks);
     covariance_.emplace(reduced_normal_matrix(derivatives, camera_columns_));
   }
@@ -185,7 +187,7 @@ Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options) {
   Normal normal(bundle, weighed);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
-  result.scale_sigma = normal.sigma_of_scale();
+  if (!options.poses_known) result.scale_sigma = normal.sigma_of_scale();
   return result;
 }
 

@@ -12,6 +12,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import refined  # noqa: E402
 from benchmarks import end_to_end  # noqa: E402
 from support import runs  # noqa: E402
 from support.runs import BIN, ROOT, Skipped, measured, step  # noqa: E402
@@ -337,6 +338,17 @@ def demo(work):
     table = (work / "demo.log").read_text().strip().splitlines()[-3:]
     return f"{cost['wall'] / 60:.1f} minutes: " + "; ".join(" ".join(t.split()) for t in table), \
         cost["wall"] <= 1200
+
+
+# Poses from raw photographs: a point for each scene's poses, and one for its cloud.
+
+for scene in refined.SCENES:
+    POINTS[f"refined-{scene}"] = (
+        lambda work, scene=scene: refined.poses(scene, BASE, work / f"refined-{scene}"),
+        refined.WANTED)
+    POINTS[f"refined-cloud-{scene}"] = (
+        lambda work, scene=scene: refined.cloud(scene, BASE, work / f"refined-{scene}"),
+        refined.WANTED_CLOUD)
 
 
 # Memory: a survey of 0.3 megapixels a view, whose views have the same neighbours however many there

@@ -104,10 +104,16 @@ TEST(AlignCentres, MatchesImagesByNameAndKeepsReprojections) {
   // Another order, an image that only one of them has.
   std::reverse(model.images.begin(), model.images.end());
   model.images.front().name = "only_here.jpg";
+  const Eigen::Matrix3d rotation = model.images.back().pose.rotation;
+  model.images.back().pose.rotation =
+      Eigen::AngleAxisd(0.02, Eigen::Vector3d(1, 2, 2) / 3) * rotation;
+  EXPECT_NEAR(align_centres(model, reference).turns.back(), 0.02, 1e-9);
+  model.images.back().pose.rotation = rotation;
 
   const CentreAlignment alignment = align_centres(model, reference);
   EXPECT_EQ(alignment.names.size(), 5u);
   EXPECT_LT(alignment.rms, 1e-10);
+  EXPECT_LT(*std::max_element(alignment.turns.begin(), alignment.turns.end()), 1e-9);
   apply(alignment.similarity, model);
   EXPECT_LT((model.points[0].position - point).norm(), 1e-9);
   for (const io::ColmapImage& image : model.images) {

@@ -68,6 +68,44 @@ INSTANTIATE_TEST_SUITE_P(Ports, AdjustBehind,
                                            Case{"Dome", dome_port()}),
                          [](const auto& tested) { return tested.param.name; });
 
+// Known poses leave three unknowns a point, and lengths that nothing else need tell.
+TEST(Adjust, PlacesPointsAmongKnownPoses) {
+  const Bundle truth = survey(camera_behind(flat_port(3)), {.noise = 0.5});
+  Bundle bundle = truth;
+  for (BundlePoint& point : bundle.points) point.position += Eigen::Vector3d(0.01, -0.01, 0.02);
+  AdjustOptions options;
+  options.poses_known = true;
+  options.pixel_sigma = 0.5;
+  options.loss_sigmas = 100;
+  adjust(bundle, options);
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    EXPECT_EQ(bundle.images[i].pose.centre, truth.images[i].pose.centre);
+    EXPECT_EQ(bundle.images[i].pose.rotation, truth.images[i].pose.rotation);
+  }
+  const double numbers = 2.0 * static_cast<double>(bundle.observations.size());
+  const double unknowns = 3.0 * static_cast<double>(bundle.points.size());
+  const double expected = 0.5 * std::sqrt(2 * (1 - unknowns / numbers));
+  const double rms = root_mean_square(reprojection_errors(bundle));
+  EXPECT_NEAR(rms, expected, 0.03 * expected);  // 1 / sqrt(2 x 5000) is 1 %
+  const Uncertainty known = uncertainty(bundle, options);
+  EXPECT_NEAR(known.pixel_sigma, 0.5, 0.015);
+  EXPECT_EQ(known.scale_sigma, 0);
+}
+
+// What the scale is to a port's distance, known poses are.
+TEST(Adjust, KnownPosesTellTheDistanceOfThePort) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
+  Bundle bundle = truth;
+  AdjustOptions options;
+  options.poses_known = true;
+  options.free[2] = true;
+  bundle.cameras[0].change(2) = 0.005;
+  adjust(bundle, options);
+  const double sigma = uncertainty(bundle, options).camera_sigmas[0](2);
+  EXPECT_LT(sigma, 0.001);
+  EXPECT_LT(std::abs(bundle.cameras[0].change(2)), 4 * sigma);
+}
+
 TEST(Adjust, OutliersHaveLittleSay) {
   const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
   const auto error_with = [&](double loss_sigmas) {

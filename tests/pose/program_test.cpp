@@ -102,6 +102,20 @@ TEST_F(RefinePoses, TakesTheScaleFromPositions) {
         0.002);
 }
 
+TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
+  io::ColmapModel known = testing::model_of(truth_);
+  for (io::ColmapPoint3D& point : known.points) point.position *= 1.1;
+  write("sparse", known);
+  const Outcome outcome = run(kInput + "-o out --poses known");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::ColmapModel placed = io::read_colmap_model(folder_ / "out" / "sparse");
+  for (std::size_t i = 0; i < known.images.size(); ++i)
+    EXPECT_LT((placed.images[i].pose.centre - known.images[i].pose.centre).norm(), 1e-12);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
+  EXPECT_EQ(report["scale_sigma"], 0);
+}
+
 TEST_F(RefinePoses, RefusesAWaterSurface) {
   io::Housing lake = testing::housing();
   lake.ports["lake"] = WaterSurface{};
@@ -146,6 +160,8 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses("-i . --lens lens -o out", "--housing is missing");
   refuses("-i . --lens lens --housing housing.json", "--output-folder is missing");
   refuses("-i nowhere --lens lens --housing housing.json -o out", "nowhere");
+  refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be adjust or known");
+  refuses(kInput + "-o out --poses known --scale-from " + baseline(), "--poses known says");
   refuses(kInput + "-o out --refine tilt", "'tilt' is none of normal, distance");
   refuses(kInput + "-o out --scale-from 3", "must begin with images:, points: or positions:");
   refuses(kInput + "-o out --scale-from images:image0.jpg,lost.jpg,1", "no image 'lost.jpg'");

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""RefinePoses on what COLMAP makes of raw underwater photographs alone: how near the poses come to the
+truth, and what that does to the dense cloud."""
+
+import json
+import math
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import runs  # noqa: E402
+from support.runs import BIN, measured, step  # noqa: E402
+
+# In git, or as SimulateUnderwater is to make them. A dome 5 mm off its place, in all three axes.
+SCENES = {
+    "reef": None,
+    "closeup": None,  # 0.5 to 0.9 m away
+    "reef-tilted": ["--tilt-degrees", 3],
+    "reef-far-port": ["--port-distance", 0.1],
+    "reef-dome": ["--dome-radius", 0.06, "--dome-x", 0.003, "--dome-y", 0.0023, "--dome-z", 0.0033],
+}
+RMS, TURN = 1.0, 0.02  # [mm], [degrees]
+LIKE_TRUE_POSES = 1.1
+WANTED = (f"COLMAP's poses of raw photographs, refined: centres within {RMS} mm RMS, rotations "
+          f"within {TURN} degrees, errors at most {LIKE_TRUE_POSES} times those under true poses")
+WANTED_CLOUD = f"dense cloud on refined poses: mean at most {LIKE_TRUE_POSES} times that on true poses"
+
+
+def truth_of(scene, base):
+    options = SCENES[scene]
+    if options is None:
+        return runs.synthetic(scene, base)
+    return runs.simulated(scene, base, "--preset", "reef", "--medium", "water", "--truth", 0,
+                          *options, tolerance=0.005)
+
+
+def images_of(model):
+    """Of a text model: by name the seven numbers of a pose, as text."""
+    lines = [line for line in (model / "images.txt").read_text().split("\n")
+             if not line.startswith("#")]
+    return {line.split()[9]: line.split()[1:8] for line in lines[0::2] if line}
+
+
+def centre(pose):
+    """-R^T t, by the quaternion's own formula."""
+    w, x, y, z, *t = map(float, pose)
+    rows = ((1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+            (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+            (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)))
+    return [-sum(a * b for a, b in zip(row, t)) for row in rows]
+
+
+def baseline(truth):
+    """--scale-from's word for the true distance between the first image and the one farthest from
+    it."""
+    centres = {name: centre(pose) for name, pose in images_of(truth.data / "sparse").items()}
+    first = min(centres)
+    far = max(centres, key=lambda name: math.dist(centres[first], centres[name]))
+    return f"images:{first},{far},{math.dist(centres[first], centres[far]):.9f}"
+
+
+def raw_model(truth, base):
+    """What COLMAP makes of the photographs under water, with a lens that it calibrates itself. It
+    does not depend on this source, and is kept for good."""
+    work = base / "colmap" / f"{truth.name}-water-1"
+    lens = (truth.data / "sparse" / "cameras.txt").read_text().split("PINHOLE")[1].split()[2:6]
+    step("colmap_model", truth.data / "water", work, "OPENCV", ",".join(lens) + ",0,0,0,0", "free")
+    return work / "model"
+
+
+def refine(truth, model, output, *options):
+    measured(output.parent / f"{output.name}.log", BIN / "RefinePoses", "-i", model, "--lens",
+             truth.data / "sparse", "--housing", truth.data / "housing.json", "-o", output, *options)
+    return json.loads((output / "report.json").read_text())["rms_after_px"]
+
+
+def align(model, reference, output):
+    """Scale, RMS of the centres [mm] and largest turn [degrees]."""
+    log = output.parent / f"{output.name}.log"
+    measured(log, BIN / "AlignModel", "-i", model, "--reference", reference, "-o", output)
+    text = log.read_text()
+    return [float(re.search(pattern, text)[1]) for pattern in
+            (r"scale ([\d.]+)", r"RMS ([\d.]+) mm", r"largest ([\d.]+) degrees")]
+
+
+def at_true_poses(model, truth, output):
+    """The text model `model` with its tracks, at the poses of the truth."""
+    poses = images_of(truth.data / "sparse")
+    output.mkdir(parents=True, exist_ok=True)
+    for name in ("cameras.txt", "points3D.txt"):
+        (output / name).write_text((model / name).read_text())
+    lines = [line for line in (model / "images.txt").read_text().split("\n")
+             if not line.startswith("#")]
+    for i in range(0, len(lines) - 1, 2):
+        fields = lines[i].split()
+        lines[i] = " ".join([fields[0], *poses[fields[9]], *fields[8:]])
+    (output / "images.txt").write_text("\n".join(lines))
+
+
+def refined(scene, base, work):
+    """The refined model in `work`, in the truth's place; what COLMAP's poses and ours are off; errors
+    with ours and with true poses [px]."""
+    truth = truth_of(scene, base)
+    work.mkdir(parents=True, exist_ok=True)
+    raw = raw_model(truth, base)
+    _, colmaps, _ = align(raw, truth.data / "sparse", work / "raw")
+    rms = refine(truth, raw, work / "refined", "--scale-from", baseline(truth))
+    off = align(work / "refined", truth.data / "sparse", work / "aligned")
+    at_true_poses(work / "raw", truth, work / "true")
+    true_rms = refine(truth, work / "true", work / "placed", "--poses", "known")
+    return colmaps, off, rms, true_rms
+
+
+def poses(scene, base, work):
+    colmaps, (scale, centres, turn), rms, true_rms = refined(scene, base, work)
+    seen = (f"centres {centres:.3f} mm RMS (COLMAP's {colmaps:.3f}), largest turn {turn:.4f} degrees, "
+            f"scale off by {abs(1 - scale):.2%}; errors {rms:.3f} px, under true poses "
+            f"{true_rms:.3f}: {rms / true_rms:.3f}")
+    return seen, centres <= RMS and turn <= TURN and rms <= LIKE_TRUE_POSES * true_rms
+
+
+def cloud(scene, base, work):
+    truth = truth_of(scene, base)
+    if not (work / "aligned" / "images.txt").exists():
+        refined(scene, base, work)
+    means = {}
+    for name, model in (("refined", work / "aligned"), ("true", truth.data / "sparse")):
+        folder = work / f"cloud-{name}"
+        runs.import_scene(folder, model, truth.data / "water", truth.data / "housing.json")
+        runs.densify(folder, "--refractive")
+        means[name] = runs.evaluate(folder, truth, "water")
+    ratio = means["refined"]["mean"] / means["true"]["mean"]
+    seen = "; ".join(f"{name} mean {1e3 * m['mean']:.3f} mm F {m['f']:.3f}"
+                     for name, m in means.items())
+    return f"{seen}; ratio {ratio:.3f}", ratio <= LIKE_TRUE_POSES
