@@ -246,8 +246,8 @@ def speed(work):
     return "; ".join(seen), worst <= 40
 
 
-def beside_sift(programs, limit, least_points):
-    result = end_to_end.compared(programs, 5)
+def beside_sift(programs, pairs, limit, least_points):
+    result = end_to_end.compared(programs, pairs)
     ours, sift = result["DensifyPointCloud"], result["SIFT"]
     ratio = ours["cpu"] / sift["cpu"]
     return (f"{ratio:.3f} times SIFT: {ours['cpu']:.1f} and {sift['cpu']:.1f} CPU-s, "
@@ -260,13 +260,14 @@ def beside_sift(programs, limit, least_points):
 @point("at most 0.306 times SIFT's CPU time (OpenMVS: 3.06), medians of 5 alternated runs; at least "
        "615,564 points (OpenMVS)")
 def speed_fountain(work):
-    return beside_sift(end_to_end.fountain(work / "speed"), 0.306, 615564)
+    return beside_sift(end_to_end.fountain(work / "speed"), 5, 0.306, 615564)
 
 
-@point("at most 2.43 times SIFT's CPU time (OpenMVS: 24.3), medians of 5 alternated runs; at least "
+# Runs of seconds: five in a row may all fall into a minute in which SIFT is a fifth faster.
+@point("at most 2.43 times SIFT's CPU time (OpenMVS: 24.3), medians of 15 alternated runs; at least "
        "183,051 points (OpenMVS)")
 def speed_scene_v6(work):
-    return beside_sift(end_to_end.scene_v6(work / "speed"), 2.43, 183051)
+    return beside_sift(end_to_end.scene_v6(work / "speed"), 15, 2.43, 183051)
 
 
 @point("matching on two threads at least 1.8 times faster than on one, median of 7 pairs")
