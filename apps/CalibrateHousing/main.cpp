@@ -24,6 +24,16 @@ io::ColmapCamera load_lens(const fs::path& path) {
   return cameras.front();
 }
 
+// Whose port is calibrated: what --port says, else the camera's. A calibration.yaml does not say
+// which camera it is of.
+std::string port_to_calibrate(const Options& options, const io::Housing& housing,
+                              const io::ColmapCamera& lens) {
+  if (!options.port.empty()) return options.port;
+  if (housing.ports.size() > 1 && io::is_calibmar(options.lens))
+    fail("--port is missing: {} has {} ports", options.housing.string(), housing.ports.size());
+  return housing.port_of("", lens.id);
+}
+
 // The housing as far as it is known.
 io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   if (options.housing.empty()) {
@@ -37,10 +47,18 @@ io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   }
   const io::Housing housing = io::read_housing(options.housing);
   io::refuse_water_surfaces(housing, options.housing);
-  if (!housing.carried_port(housing.port_of("", lens.id)))
-    fail("{}: camera {} is behind port 'none', expected the port to calibrate",
-         options.housing.string(), lens.id);
   return housing;
+}
+
+refractive::Port<double> known_port(const Options& options, const io::Housing& housing,
+                                    const std::string& name, std::uint32_t camera) {
+  if (!options.port.empty() && !housing.ports.contains(name))
+    fail("--port {}: {} has no such port", name, options.housing.string());
+  const auto port = housing.carried_port(name);
+  if (!port)
+    fail("{}: camera {} is behind port 'none', expected the port to calibrate",
+         options.housing.string(), camera);
+  return *port;
 }
 
 // What is unknown, into `options`.
@@ -107,15 +125,15 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const io::ColmapCamera lens = load_lens(options.lens);
   const io::Housing housing = load_housing(options, lens);
-  const std::string port_name = housing.port_of("", lens.id);
-  const refractive::Port<double> port = *housing.carried_port(port_name);
+  const std::string port_name = port_to_calibrate(options, housing, lens);
+  const refractive::Port<double> port = known_port(options, housing, port_name, lens.id);
   set_unknown(options, port);
   check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);
   const auto views = find_views(photographs, options.board, lens);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
-  const std::vector<std::string> lines = report_lines(calibration);
+  const std::vector<std::string> lines = report_lines(calibration, port_name);
   for (const std::string& line : lines) spdlog::info("{}", line);
   warn(calibration);
   write(options, calibration, housing, port_name, lines);

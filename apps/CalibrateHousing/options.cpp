@@ -30,6 +30,9 @@ void declare(po::options_description& visible, Options& options, Texts& texts,
       ("housing", po::value(&texts.housing),
        "the port as far as it is known: a housing file or a calibration.yaml; default: that in "
        "the lens's file")  //
+      ("port", po::value(&options.port),
+       "the port to calibrate, by its name in the housing file; default: the camera's own there, "
+       "else the default one")  //
       ("board", po::value(&texts.board),
        "columns, rows and metres: checkerboard:9x6:0.03 (inner corners, square), "
        "charuco:8x6:0.03:0.02 (squares, square, marker) or apriltags:5x4:0.03:0.01 (tags, tag, "

@@ -14,6 +14,7 @@ struct Options {
   std::vector<std::filesystem::path> input;  // photographs, and folders of them
   std::filesystem::path lens;                // COLMAP cameras or calibration.yaml
   std::filesystem::path housing;             // housing file or calibration.yaml; empty: the lens's
+  std::string port;                          // its name there; empty: the camera's
   axial::calibrate::Board board;
   std::string refine_list;  // see pose/free_numbers.h; empty: what the kind of port has
   axial::pose::Sigmas sigmas;

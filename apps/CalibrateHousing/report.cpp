@@ -50,7 +50,8 @@ Json finite_or_null(double value) {
 
 }  // namespace
 
-std::vector<std::string> report_lines(const Calibration& calibration) {
+std::vector<std::string> report_lines(const Calibration& calibration,
+                                      const std::string& port_name) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format("{:<32} {:>8} {:>9} {:>13} {:>15}", "photograph", "corners",
                               "RMS [px]", "distance [m]", "tilt [degrees]"));
@@ -60,8 +61,8 @@ std::vector<std::string> report_lines(const Calibration& calibration) {
   lines.push_back(fmt::format("{:<32} {:>8} {:>9.3f}", "all",
                               calibration.bundle.bundle.observations.size(), rms_of(calibration)));
   for (const pose::FreeValue& value : values_of(calibration))
-    lines.push_back(
-        fmt::format("{} {:.6g} +- {:.2g} {}", value.name, value.now, value.sigma, value.unit));
+    lines.push_back(fmt::format("Port {}: {} {:.6g} +- {:.2g} {}", port_name, value.name, value.now,
+                                value.sigma, value.unit));
   return lines;
 }
 

@@ -8,7 +8,8 @@
 #include "calibrate/advice.h"
 
 // Tables for the log: one line each.
-std::vector<std::string> report_lines(const axial::calibrate::Calibration& calibration);
+std::vector<std::string> report_lines(const axial::calibrate::Calibration& calibration,
+                                      const std::string& port_name);
 
 std::string report_json(const axial::calibrate::Calibration& calibration,
                         const axial::calibrate::Limits& limits);

@@ -49,7 +49,8 @@ Options parse_command_line(int argc, const char* const* argv) {
       ("output-folder,o", po::value(&output),
        "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")  //
       ("poses", po::value(&options.poses)->default_value("adjust"),
-       "adjust, or known: they are right and in metres, only points are placed")  //
+       "adjust, or known: they are right and in metres, and stay; points are placed, and what "
+       "--refine names is adjusted")  //
       ("refine", po::value(&options.refine_list)->default_value(""),
        "what else is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
        "the "

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "calibrate/board_pose.h"
 
@@ -18,12 +20,13 @@ void require_views(std::size_t count) {
         count, kMinCorners, kMinViews);
 }
 
-void require_fitting(std::size_t count, std::size_t of) {
+// `what` the photographs that are left do.
+void require_fitting(std::size_t count, std::size_t of, const std::string& what) {
   if (count < kMinViews)
     fail(
-        "only {} of {} photographs have {} corners or more that fit, at least {} are needed: are "
-        "this the board, the lens in air and the kind of port?",
-        count, of, kMinCorners, kMinViews);
+        "only {} of {} photographs {}, at least {} are needed: are this the board, the lens in air "
+        "and the kind of port?",
+        count, of, what, kMinViews);
 }
 
 // Drops corners that do not fit, and all those of photographs with too few that do.
@@ -52,8 +55,7 @@ void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options)
     const double lenience = round == 0 ? 4 : 1;
     adjust(bundle, adjusting);
     drop_misfits(bundle, lenience * options.max_error);
-    if (bundle.observations.empty())
-      fail("no corner fits: are this the board, the lens in air and the kind of port?");
+    if (bundle.observations.empty()) return;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
@@ -99,10 +101,11 @@ Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<doubl
   const std::size_t shown = calibration.views.size();
   place_boards(calibration.bundle.bundle);
   leave_out_unobserved(calibration);
-  require_fitting(calibration.views.size(), shown);
+  require_fitting(calibration.views.size(), shown, "tell where the board is");
   adjust_in_rounds(calibration, options);
   leave_out_unobserved(calibration);
-  require_fitting(calibration.views.size(), shown);
+  require_fitting(calibration.views.size(), shown,
+                  fmt::format("have {} corners or more that fit", kMinCorners));
   calibration.uncertainty = uncertainty(calibration.bundle.bundle, calibration.adjust);
   return calibration;
 }

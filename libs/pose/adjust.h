@@ -47,9 +47,10 @@ struct AdjustReport {
 };
 
 // Moves poses, points and the free numbers to where the observations' errors are least. The first
-// image with observations stays where it is unless positions or points hold the model. One thread:
-// the sums of several would depend on which comes first. Error for a free number that the cameras'
-// ports do not have, a length or sigma that is not positive, a bundle without observations.
+// image with observations stays where it is unless known positions, points or poses hold the model.
+// One thread: the sums of several would depend on which comes first. Error for a free number that
+// the cameras' ports do not have, a length or sigma that is not positive, a bundle without
+// observations.
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviation of the observations [px] that their errors tell: every unknown takes the noise

@@ -51,7 +51,8 @@ void check_known(const std::string& refine, const Words& words, const Sigmas& si
                       !adjust.positions.empty();
   if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
     fail(
-        "--refine {}: the distance needs --distance-sigma or --scale-from, since the photographs "
+        "--refine {}: the distance needs --distance-sigma, --scale-from or --poses known, since "
+        "the photographs "
         "show only its ratio to other lengths",
         refine);
   if (words.contains("thickness") && !(sigmas.thickness > 0))

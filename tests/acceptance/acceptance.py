@@ -452,7 +452,7 @@ def main():
         sys.exit(f"no such point: {' '.join(unknown)}; there are: {' '.join(POINTS)}")
     if "--list" in sys.argv:
         for name, (_, wanted) in POINTS.items():
-            print(f"{name:24} {wanted}")
+            print(f"{name:28} {wanted}")
         return
     commit, state = source_state()
     rows = ["| point | wanted | seen | verdict | minutes |", "|---|---|---|---|---|"]

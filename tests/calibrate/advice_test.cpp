@@ -89,13 +89,18 @@ TEST(Advice, RefusesBoardsThatAllFaceTheCamera) {
   EXPECT_THAT(said, HasSubstr("nor another distance than 0."));
 }
 
+// Few photographs, all with the board in the middle.
+Calibration in_need_of_advice() {
+  return calibrated({.views = 5,
+                     .nearest = 0.5,
+                     .farthest = 0.8,
+                     .noise = 0.2,
+                     .within = box(0.2, 0.2, 0.8, 0.8)});
+}
+
 // The advice is followed: the photograph it asks for is taken, and does what it promised.
 TEST(Advice, TheNextPhotographHelpsAsPromised) {
-  const Calibration found = calibrated({.views = 5,
-                                        .nearest = 0.5,
-                                        .farthest = 0.8,
-                                        .noise = 0.2,
-                                        .within = box(0.2, 0.2, 0.8, 0.8)});
+  const Calibration found = in_need_of_advice();
   const auto next = next_photograph(found, Limits());
   ASSERT_TRUE(next);
   std::vector<View> views = found.views;
@@ -129,11 +134,7 @@ double worst_for_a_pixel(const Calibration& calibration) {
 // The advice is followed, and so is other advice: each photograph is taken by the true camera, with
 // noise, and all is calibrated again.
 TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
-  const Calibration found = calibrated({.views = 5,
-                                        .nearest = 0.5,
-                                        .farthest = 0.8,
-                                        .noise = 0.2,
-                                        .within = box(0.2, 0.2, 0.8, 0.8)});
+  const Calibration found = in_need_of_advice();
   const auto next = next_photograph(found, Limits());
   ASSERT_TRUE(next);
   std::mt19937_64 random(3);

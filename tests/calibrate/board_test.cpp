@@ -111,6 +111,7 @@ Errors errors_behind_port(const Board& board, const cv::Mat1b& print, double wid
     const cv::Mat1b image = test::photograph(model, pose, test::picture(print, width, height));
     const auto found = find_corners(image, board);
     EXPECT_GE(found.size(), least_corners);
+    if (found.empty()) return {1e9, 1e9, {1e9, 1e9}};
     for (const Corner& corner : found) {
       const Eigen::Vector3d place = pose.to_camera(corners.at(corner.number));
       const auto exact = std::visit([&](const auto& c) { return c.project(place); }, camera);

@@ -173,6 +173,15 @@ TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
   write_lens("large.txt", {{1, "PINHOLE", 1280, 960, {760, 760, 640, 480}}});
   refuses(kInput + housing + "--lens large.txt -o out.json",
           "view0.png: is 640 x 480, the lens 1280 x 960");
+  refuses(all + "-o out.json --port side", "--port side: ");
+  io::Housing two = io::read_housing(folder_ / "dome.json");
+  two.ports["side"] = io::to_housing_port(flat_port());
+  io::write_housing(folder_ / "two.json", two);
+  io::ColmapCamera unnamed = kLens;
+  unnamed.port = dome_port();
+  io::write_calibmar(folder_ / "lens.yaml", unnamed, {});
+  refuses(kInput + "--housing two.json --lens lens.yaml -o out.json",
+          "--port is missing: " + (folder_ / "two.json").string() + " has 2 ports");
   write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");
   refuses(kInput + lens + "--housing dry.json -o out.json",
           "dry.json: camera 1 is behind port 'none'");

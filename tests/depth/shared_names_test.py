@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Code compiled for one instruction set must not share a name with other code: the linker keeps one
 copy, and a processor without that set would meet its instructions. Arguments: nm, the object files
-of the library; those in lanes/scorer_avx*.cpp are compared with all others."""
+of the libraries; those in *_avx2.cpp and *_avx512.cpp are compared with all others."""
 
+import re
 import subprocess
 import sys
 
@@ -22,12 +23,12 @@ def has_code(name):
 
 def main():
     nm, objects = sys.argv[1], sys.argv[2:]
-    special = [path for path in objects if "scorer_avx" in path]
-    assert len(special) == 2, f"expected two files for instruction sets, got {special}"
+    special = [path for path in objects if re.search("_avx(2|512)", path)]
+    assert len(special) == 4, f"expected four files for instruction sets, got {special}"
+    names = {path: {name for name in shared_names(nm, path) if has_code(name)} for path in special}
+    assert any(names.values()), "no names at all"
     failed = False
-    for path in special:
-        own = {name for name in shared_names(nm, path) if has_code(name)}
-        assert own, f"{path}: no names at all"
+    for path, own in names.items():
         for other in objects:
             if other == path:
                 continue

@@ -109,8 +109,11 @@ TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
   const Outcome outcome = run(kInput + "-o out --poses known");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const io::ColmapModel placed = io::read_colmap_model(folder_ / "out" / "sparse");
-  for (std::size_t i = 0; i < known.images.size(); ++i)
-    EXPECT_LT((placed.images[i].pose.centre - known.images[i].pose.centre).norm(), 1e-12);
+  for (std::size_t i = 0; i < known.images.size(); ++i) {
+    const Pose &kept = placed.images[i].pose, &given = known.images[i].pose;
+    EXPECT_LT((kept.centre - given.centre).norm(), 1e-12);
+    EXPECT_LT((kept.rotation - given.rotation).norm(), 1e-12);
+  }
   const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   EXPECT_EQ(report["scale_sigma"], 0);
@@ -170,7 +173,8 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --scale-from positions:lost.txt", "lost.txt");
   refuses(kInput + "-o out --refine centre", "there is a flat port");
   refuses(kInput + "-o out --refine focal", "OPENCV lens");
-  refuses(kInput + "-o out --refine distance", "needs --distance-sigma or --scale-from");
+  refuses(kInput + "-o out --refine distance",
+          "needs --distance-sigma, --scale-from or --poses known");
   refuses(kInput + "-o out --normal-sigma 1", "--refine does not name normal");
   refuses(kInput + "-o . ", "is the model that is read");
   refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,inf", "'inf' is not finite");

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 
@@ -78,6 +79,7 @@ def simulated(name, base, *options, tolerance=0.002):
     made_by = hashlib.sha1((BIN / "SimulateUnderwater").read_bytes()).hexdigest() + f" {options}"
     mark = folder / "made-by"
     if not mark.exists() or mark.read_text() != made_by:
+        shutil.rmtree(folder, ignore_errors=True)
         measured(folder / "simulate.log", BIN / "SimulateUnderwater", "-o", folder, *options)
         mark.write_text(made_by)
     return Truth(name, folder, folder / "mesh.ply", tolerance)
