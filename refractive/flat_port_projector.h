@@ -80,7 +80,8 @@ class FlatPortProjector {
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
       : optics_(port),
-        field_(optics_, largest_incidence_tangent(lens, port, width, height, margin)),
+        field_(optics_, largest_incidence_tangent(lens, port, width, height, margin),
+               largest_incidence_tangent(lens, port, width, height, T(0))),
         cx_(lens.cx),
         cy_(lens.cy),
         image_(width, height, margin) {
@@ -124,8 +125,9 @@ class FlatPortProjector {
       return at.m * (row.x() * image.across.x() + row.y() * image.across.y()) + row.z();
     };
     const T depth = along(row_z_);
-    const Mask<T> in_front = depth > T(1e-3);
-    const T inv_depth = T(1) / select(in_front, depth, T(1));
+    const T kNearest = T(1e-3);
+    const Mask<T> in_front = depth > kNearest;
+    const T inv_depth = T(1) / greater(depth, kNearest);
     const T u = along(row_u_) * inv_depth;
     const T v = along(row_v_) * inv_depth;
     image.lens << (row_u_.x() - u * row_z_.x()) * inv_depth,

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "refractive/flat_port.h"
+#include "refractive/scalar.h"
 
 namespace axial::refractive {
 
@@ -23,24 +24,32 @@ namespace axial::refractive {
 // and must not reach the fixed-step solver, which could land inside the image.
 template <class T>
 struct FlatPortField {
-  T offset, slope, inv_largest_tangent;
-  T paraxial_offset, paraxial_slope;  // radius / t at the axis, as a function of z_water
+  T offset, slope;
+  T known_offset, known_slope, inv_known;  // the same of an incidence whose root the guess knows
+  T paraxial_offset, paraxial_slope;       // radius / t at the axis, as a function of z_water
   int steps;  // of the solver, for single precision: errors below 1e-4 px of a 1024 px wide image
 
   FlatPortField() = default;
-  FlatPortField(const FlatPortOptics<T>& optics, const T& tangent)
-      : inv_largest_tangent(T(1) / tangent),
+  // The errors are promised up to the in-air incidence `promised`, at most `tangent`; beyond, up to
+  // 1.3 times as much, they stay below 0.01 px.
+  FlatPortField(const FlatPortOptics<T>& optics, const T& tangent, const T& promised)
+      : inv_known(T(1) / promised),
         paraxial_offset(optics.paraxial_secant(T(0))),
         paraxial_slope(optics.water.inv_mu),
-        steps(tangent < T(1.15) ? 1 : (tangent < T(4.5) ? 2 : (tangent < T(7) ? 3 : 5))) {
-    const T s = tangent * tangent;
-    offset = tangent * (optics.distance + optics.thickness / optics.glass.q(s));
-    slope = tangent / optics.water.q(s);
+        steps(promised < T(1.15) ? 1 : (promised < T(4.5) ? 2 : (promised < T(7) ? 3 : 5))) {
+    const auto disc = [&](const T& t, T& offset_, T& slope_) {
+      const T s = t * t;
+      offset_ = t * (optics.distance + optics.thickness / optics.glass.q(s));
+      slope_ = t / optics.water.q(s);
+    };
+    disc(tangent, offset, slope);
+    disc(promised, known_offset, known_slope);
   }
 
   template <class Visit>
   void each_field(Visit&& visit) {
-    visit(offset), visit(slope), visit(inv_largest_tangent);
+    visit(offset), visit(slope);
+    visit(known_offset), visit(known_slope), visit(inv_known);
     visit(paraxial_offset), visit(paraxial_slope);
     visit(steps);
   }
@@ -56,12 +65,11 @@ struct FlatPortField {
 
   // The point itself if the field contains it, else one at its edge.
   T nearest_height(const T& z_water) const {
-    const T risen = select(z_water > T(kLowest), z_water, T(kLowest));
-    return select(risen < T(kHighest), risen, T(kHighest));
+    return lesser(greater(z_water, T(kLowest)), T(kHighest));
   }
   T nearest_rho2(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
-    return select(rho2 < edge * edge, rho2, edge * edge);
+    return lesser(rho2, edge * edge);
   }
 
  private:
@@ -85,9 +93,8 @@ struct FlatPortSlopes {
     const T s = m * m * rho2;
     const T q2_g = optics.glass.q2(s);
     const T q2_w = optics.water.q2(s);
-    const T inv = T(1) / (q2_g * q2_w);  // one division for both
-    const T g2 = inv * q2_w;
-    const T w2 = inv * q2_g;
+    const T g2 = T(1) / q2_g;
+    const T w2 = T(1) / q2_w;
     const T g = optics.thickness * sqrt(g2);
     inv_qw = sqrt(w2);
     const T w = z_water * inv_qw;
@@ -104,15 +111,15 @@ struct FlatPortSlopes {
 };
 
 // A guess of m: the inverse of a secant between the paraxial one, exact on the axis, and that of
-// the field's edge, where the root is known: the secant runs from one to the other like the square
-// of the radius. That saves more than one step against the paraxial guess.
+// an incidence where the root is known: the secant runs from one to the other like the square of
+// the radius. That saves more than one step against the paraxial guess.
 template <class T>
 T initial_inverse_secant(const FlatPortField<T>& field, const T& rho2, const T& z_water) {
-  const T edge_radius = field.radius(z_water);
+  const T known_radius = field.known_offset + field.known_slope * z_water;
   const T paraxial = field.paraxial_offset + field.paraxial_slope * z_water;
-  const T edge = edge_radius * field.inv_largest_tangent;
-  const T edge2 = edge_radius * edge_radius;
-  return edge2 / (paraxial * edge2 + (edge - paraxial) * rho2);
+  const T known = known_radius * field.inv_known;
+  const T known2 = known_radius * known_radius;
+  return known2 / (paraxial * known2 + (known - paraxial) * rho2);
 }
 
 // How far Halley's step goes down from m, where the slopes are `at`.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the cameras ask of a scalar beyond arithmetic, so that one implementation serves float,
 // double, automatic differentiation and SIMD packs. A pack of lanes brings its own mask type (the
-// result of comparing), with &&, || and !, and overloads of `select` and `sqrt` in its namespace.
+// result of comparing), with &&, || and !, and overloads of `select`, `lesser`, `greater` and
+// `sqrt` in its namespace.
 #pragma once
 
 #include <type_traits>
@@ -15,6 +16,16 @@ using Mask = std::decay_t<decltype(std::declval<const T&>() < std::declval<const
 template <class T>
 T select(bool condition, const T& yes, const T& no) {
   return condition ? yes : no;
+}
+
+// The second one if either is NaN.
+template <class T>
+T lesser(const T& a, const T& b) {
+  return a < b ? a : b;
+}
+template <class T>
+T greater(const T& a, const T& b) {
+  return a > b ? a : b;
 }
 
 // True where projections take a fixed number of steps without branches: single precision, also in

@@ -14,9 +14,10 @@ inline constexpr float kGreyUnit = 128.0f * 32767.0f;  // of one grey level
 
 namespace detail {
 
-#if defined(__AVX2__) && !defined(__AVX512F__)
-// Eight plain loads: faster than the gather instruction on AMD's Zen 3, which runs it as microcode.
-inline __m256i gather_by_loads(const int* base, __m256i at) {
+#ifdef __AVX2__
+// Eight plain loads: faster than the gather instruction on AMD's Zen 3 and 4, which run it as
+// microcode.
+[[gnu::always_inline]] inline __m256i gather_by_loads(const int* base, __m256i at) {
   const auto four_of = [&](std::uint64_t first, std::uint64_t second) {
     __m128i words = _mm_cvtsi32_si128(base[static_cast<std::uint32_t>(first)]);
     words = _mm_insert_epi32(words, base[first >> 32], 1);
@@ -38,11 +39,7 @@ template <class Abi>
 auto gather(const std::uint32_t* base, const typename Pack<Abi>::Ints& at) {
   using Ints = typename Pack<Abi>::Ints;
   const auto* ints = reinterpret_cast<const int*>(base);
-#ifdef __AVX512F__
-  if constexpr (Ints::size() == 16)
-    return Ints(_mm512_i32gather_epi32(static_cast<__m512i>(at), ints, 4));
-  else
-#elif defined(__AVX2__)
+#ifdef __AVX2__
   if constexpr (Ints::size() == 8)
     return Ints(gather_by_loads(ints, static_cast<__m256i>(at)));
   else
@@ -59,32 +56,7 @@ inline __m128i lower_half_twice() {
 
 // Operations on the 16-bit halves of 32-bit lanes. upper_halves: those of two registers in one.
 // fractions: of a 16.16 number, 15 bits, in both halves.
-#if defined(__AVX512BW__)
-inline __m512i upper_bytes(__m512i a) {
-  return _mm512_srli_epi16(a, 8);
-}
-inline __m512i times_128(__m512i a) {
-  return _mm512_slli_epi16(a, 7);
-}
-inline __m512i add_halves(__m512i a, __m512i b) {
-  return _mm512_add_epi16(a, b);
-}
-inline __m512i subtract_halves(__m512i a, __m512i b) {
-  return _mm512_sub_epi16(a, b);
-}
-inline __m512i multiply_halves(__m512i a, __m512i b) {
-  return _mm512_mulhrs_epi16(a, b);
-}
-inline __m512i dot_halves(__m512i a, __m512i b) {
-  return _mm512_madd_epi16(a, b);
-}
-inline __m512i upper_halves(__m512i upper, __m512i lower) {
-  return _mm512_mask_blend_epi16(0xAAAAAAAA, _mm512_srli_epi32(lower, 16), upper);
-}
-inline __m512i fractions(__m512i a) {
-  return _mm512_srli_epi16(_mm512_shuffle_epi8(a, _mm512_broadcast_i32x4(lower_half_twice())), 1);
-}
-#elif defined(__AVX2__)
+#ifdef __AVX2__
 inline __m256i upper_bytes(__m256i a) {
   return _mm256_srli_epi16(a, 8);
 }
@@ -134,10 +106,7 @@ class LaneSampler {
   }
 
  private:
-#if defined(__AVX512BW__)
-  static constexpr bool kHalves = Ints::size() == 16;
-  using Register = __m512i;
-#elif defined(__AVX2__)
+#ifdef __AVX2__
   static constexpr bool kHalves = Ints::size() == 8;
   using Register = __m256i;
 #else

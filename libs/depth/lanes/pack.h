@@ -42,6 +42,11 @@ struct Pack {
   requires std::is_arithmetic_v<Number> Pack(Number value)  // the same in every lane
       : part(static_cast<float>(value)) {}
 
+  static Pack load(const float* aligned) {
+    Pack pack;
+    pack.part.copy_from(aligned, stdx::vector_aligned);
+    return pack;
+  }
   void store(float* aligned) const { part.copy_to(aligned, stdx::vector_aligned); }
 
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
@@ -93,13 +98,50 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
+// The processor's own minimum and maximum, which the compiler does not find in a selection.
 template <class Abi>
-Pack<Abi> min(Pack<Abi> a, const Pack<Abi>& b) {
+Pack<Abi> lesser(Pack<Abi> a, const Pack<Abi>& b) {
+#ifdef __AVX512F__
+  if constexpr (Pack<Abi>::kWidth == 16)
+    a.part = typename Pack<Abi>::Part(
+        _mm512_min_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part)));
+  else
+#endif
+#ifdef __AVX2__
+      if constexpr (Pack<Abi>::kWidth == 8)
+    a.part = typename Pack<Abi>::Part(
+        _mm256_min_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part)));
+  else
+#endif
+    stdx::where(!(a.part < b.part), a.part) = b.part;
+  return a;
+}
+
+template <class Abi>
+Pack<Abi> greater(Pack<Abi> a, const Pack<Abi>& b) {
+#ifdef __AVX512F__
+  if constexpr (Pack<Abi>::kWidth == 16)
+    a.part = typename Pack<Abi>::Part(
+        _mm512_max_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part)));
+  else
+#endif
+#ifdef __AVX2__
+      if constexpr (Pack<Abi>::kWidth == 8)
+    a.part = typename Pack<Abi>::Part(
+        _mm256_max_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part)));
+  else
+#endif
+    stdx::where(!(a.part > b.part), a.part) = b.part;
+  return a;
+}
+
+template <class Abi>
+Pack<Abi> min(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(b < a, b, a);
 }
 
 template <class Abi>
-Pack<Abi> max(Pack<Abi> a, const Pack<Abi>& b) {
+Pack<Abi> max(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(a < b, b, a);
 }
 
@@ -123,6 +165,10 @@ class Lookup {
     if constexpr (Part::size() == 16)
       return Part(static_cast<__m512>(
           _mm512_permutexvar_ps(_mm512_load_si512(index_), _mm512_load_ps(table))));
+    else if constexpr (Part::size() == 8)
+      return Part(static_cast<__m256>(_mm256_permutex2var_ps(
+          _mm256_load_ps(table), _mm256_load_si256(reinterpret_cast<const __m256i*>(index_)),
+          _mm256_load_ps(table + 8))));
     else
 #elif defined(__AVX2__)
     if constexpr (Part::size() == 8) {
