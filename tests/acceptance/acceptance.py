@@ -378,33 +378,13 @@ for scene in refined.SCENES:
         refined.WANTED_CLOUD)
 
 
-# Memory: a survey of 0.3 megapixels a view, whose views have the same neighbours however many there
-# are.
-
-def survey(views):
-    """The first of 200 views: a model, and the folder of all images. Rendered once."""
-    folder = BASE / "survey"
-    if not (folder / "rendered").exists():
-        shutil.rmtree(folder, ignore_errors=True)
-        measured(BASE / "survey.log", BIN / "SimulateUnderwater", "--preset", "survey", "--views", 200,
-                 "--width", 640, "--height", 480, "--samples", 1, "--truth", 0, "--medium", "air",
-                 "-o", folder)
-        (folder / "rendered").touch()
-    if views == 200:
-        return folder / "sparse", folder / "air"
-    measured(BASE / "survey.log", sys.executable, ROOT / "tests/acceptance/hold_out.py",
-             folder / "sparse", folder / f"sparse-{views}",
-             *[f"{i:04}.jpg" for i in range(views, 200)])
-    return folder / f"sparse-{views}", folder / "air"
-
+# Memory: a survey of 0.3 megapixels a view.
 
 def survey_run(work, views, *options):
-    """A run over the survey and what it cost, in a folder of its own. One sweep a level and one
-    geometric pass instead of two: that changes the time, not the memory."""
-    model, images = survey(views)
+    """A run over the survey and what it cost, in a folder of its own."""
+    model, images = runs.survey(views, BASE)
     folder = work / "-".join(["survey", str(views), *map(str, options[1::2])])
-    return folder, densified(folder, model, images, None, "--iters", 1, "--geometric-iters", 1,
-                             *options)
+    return folder, densified(folder, model, images, None, *runs.ONE_SWEEP, *options)
 
 
 @point("peak memory at 200 views of 0.3 MP at most 1.3 times that at 50")
