@@ -16,12 +16,16 @@
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "io/dmap.h"
+#include "io/dmap_pictures.h"
 
 namespace densify {
 namespace fs = std::filesystem;
 using axial::DepthMap;
 
 namespace {
+
+// Of -v, as in OpenMVS: pictures of the maps, and of those of every stage.
+constexpr int kVerbosityOfPictures = 3, kVerbosityOfStages = 5;
 
 // One round over all images. The files of a stage that is not the last carry its name and go once
 // the next stage is complete.
@@ -56,17 +60,17 @@ class DepthMapRun {
   void run() {
     refuse_foreign_maps();
     const std::size_t first = first_incomplete_stage();
-    if (first == stages_.size()) {
+    if (first == stages_.size())
       spdlog::info("All {} depth maps are there already", project_.references.size());
-      return;
-    }
     for (std::size_t s = first; s < stages_.size(); ++s) {
       // Matching frees and takes large blocks all the time and holds few; afterwards it is the
       // other way round.
       if (!stages_[s].matches) axial::map_large_blocks();
       run_stage(s);
       if (s > 0) remove_stage(s - 1);
+      if (s + 1 < stages_.size() && options_.parsed.common.verbosity >= kVerbosityOfStages) draw(s);
     }
+    if (options_.parsed.common.verbosity >= kVerbosityOfPictures) draw(stages_.size() - 1);
   }
 
  private:
@@ -129,6 +133,14 @@ class DepthMapRun {
     if (reused > 0) spdlog::info("{}: {} maps were there already", stages_[stage].title, reused);
     previous_.reset();
     axial::return_freed_memory();
+  }
+
+  void draw(std::size_t stage) const {
+    const std::vector<std::size_t>& references = project_.references;
+    axial::for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
+      const fs::path file = path(stage, references[i]);
+      axial::io::write_dmap_pictures(file, axial::io::read_dmap(file).map);
+    });
   }
 
   void remove_stage(std::size_t stage) const {

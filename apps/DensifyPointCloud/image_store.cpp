@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image_store.h"
 
+#include <mutex>
 #include <opencv2/imgproc.hpp>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "io/image.h"
 
 namespace densify {
@@ -37,9 +39,14 @@ ImageStore::ImageStore(const Project& project, const Options& options, std::size
 
 void ImageStore::check_all(std::size_t at_once) {
   const std::size_t count = project_.views.size();
+  const axial::ProgressSink progress = axial::console_progress("Read images");
+  std::mutex reporting;
+  std::size_t done = 0;
   axial::for_each_in_flight(count, at_once, [&](std::size_t i) {
     const std::size_t image = count - 1 - i;
     if (project_.scene.images[image].calibrated) get(image);
+    const std::lock_guard lock(reporting);
+    progress(++done, count);
   });
 }
 

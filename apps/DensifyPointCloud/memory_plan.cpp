@@ -149,7 +149,7 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
     axial::fail("--max-memory {}: {} MB are too little, this scene needs {}", options.max_memory,
                 cap / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
-  spdlog::debug("Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
+  spdlog::trace("Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
                 cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
                 plan.cached_maps, plan.fused_maps);
   return plan;

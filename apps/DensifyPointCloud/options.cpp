@@ -172,7 +172,8 @@ Options parse_command_line(int argc, const char* const* argv) {
   Raw raw;
   axial::ProgramOptions program{
       "DensifyPointCloud", "a dense point cloud from calibrated images, in air and under water",
-      po::options_description("Densify options"), po::options_description("Hidden options")};
+      po::options_description("Densify options"), po::options_description("Hidden options"),
+      ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
   declare_io(program.visible, raw, options);
   declare_camera(program.visible, raw, options);
   declare_matching(program.visible, options);

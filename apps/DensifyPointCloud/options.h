@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DensifyPointCloud's options: OpenMVS's names and defaults, and the refractive ones.
+// DensifyPointCloud's options: OpenMVS's, of the same names and defaults but for --iters (2, there
+// 3), and the refractive ones.
 #pragma once
 
 #include <cstdint>

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
@@ -121,7 +122,8 @@ void select_views(Project& project, const Options& options) {
   axial::Scene& scene = project.scene;
   if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
   if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
-  project.preparations = axial::score_neighbours(scene, options.selection);
+  project.preparations = axial::score_neighbours(scene, options.selection,
+                                                 axial::console_progress("Scored neighbours"));
   project.neighbours.resize(scene.images.size());
   project.sources.resize(scene.images.size());
   for (std::size_t i = 0; i < scene.images.size(); ++i) {

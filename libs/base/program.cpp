@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iostream>
 #include <new>
@@ -19,20 +20,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-po::options_description common_options(CommonOptions& common, const std::string& name,
+po::options_description common_options(CommonOptions& common, const ProgramOptions& program,
                                        std::string& working_folder) {
+  const std::string verbosity =
+      "0: warnings only; 1: also what each stage did; 2: also how far it is; 3 and above: also "
+      "details" +
+      program.when_verbose;
   po::options_description generic("Generic options");
   generic.add_options()("help,h", "print this help")(
       "working-folder,w", po::value(&working_folder),
       "base of relative paths (default: current folder)")(
-      "config-file,c", po::value(&common.config_file)->default_value(name + ".cfg"),
+      "config-file,c", po::value(&common.config_file)->default_value(program.name + ".cfg"),
       "file with option values, 'name = value' a line")(
       "archive-type", po::value(&common.archive_type)->default_value(-1),
       "scene format; only -1 (interchange .mvs) is supported")(
       "process-priority", po::value(&common.process_priority)->default_value(-1),
       "below zero lowers the process's priority")(
       "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
-      "verbosity,v", po::value(&common.verbosity)->default_value(2), "how much is logged");
+      "verbosity,v", po::value(&common.verbosity)->default_value(2), verbosity.c_str());
   return generic;
 }
 
@@ -74,9 +79,9 @@ void apply(const CommonOptions& common) {
     fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
   if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
-  spdlog::set_level(common.verbosity <= 0   ? spdlog::level::warn
-                    : common.verbosity <= 2 ? spdlog::level::info
-                                            : spdlog::level::debug);
+  constexpr std::array kLevels{spdlog::level::warn, spdlog::level::info, spdlog::level::debug,
+                               spdlog::level::trace};
+  spdlog::set_level(kLevels[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);
 }
 
 }  // namespace
@@ -94,7 +99,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   ParsedOptions parsed;
   std::string working_folder;
   po::options_description command_line;
-  command_line.add(common_options(parsed.common, program.name, working_folder));
+  command_line.add(common_options(parsed.common, program, working_folder));
   command_line.add(program.visible).add(program.hidden);
   po::options_description config;
   config.add(program.visible).add(program.hidden);
@@ -139,7 +144,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
       po::options_description shown;
       std::string unused_folder;
       CommonOptions unused;
-      shown.add(common_options(unused, program.name, unused_folder)).add(program.visible);
+      shown.add(common_options(unused, program, unused_folder)).add(program.visible);
       std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
       parsed.exit_code = help ? 0 : 1;
       if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";
@@ -157,7 +162,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
   const auto log =
       std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
   log->set_pattern("%H:%M:%S [%n] %v");
-  log->flush_on(spdlog::level::info);
+  log->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(log);
   try {
     return body();

@@ -17,6 +17,7 @@ struct CommonOptions {
   int archive_type = -1;
   int process_priority = -1;
   unsigned max_threads = 0;
+  // 0: warnings, 1: stages (spdlog's info), 2: progress (debug), 3: details (trace).
   int verbosity = 2;
 };
 
@@ -27,6 +28,7 @@ struct ProgramOptions {
   // variables by boost::program_options::value(&variable).
   boost::program_options::options_description visible{"Options"};
   boost::program_options::options_description hidden{"Hidden options"};
+  std::string when_verbose = "";  // ", ...": what -v 3 and above give besides, for --help
 };
 
 // Parses the command line the way OpenMVS's programs do: long names may be abbreviated, booleans

@@ -24,6 +24,8 @@ struct State {
 ProgressSink console_progress(const std::string& title) {
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   return [title, terminal, state = std::make_shared<State>()](std::size_t done, std::size_t total) {
+    const auto level = done < total ? spdlog::level::debug : spdlog::level::info;
+    if (!spdlog::should_log(level)) return;
     const auto now = Clock::now();
     const std::chrono::duration<double> since = now - state->shown;
     if (done < total && since.count() < (terminal ? 0.2 : 5.0)) return;
@@ -42,7 +44,7 @@ ProgressSink console_progress(const std::string& title) {
       std::fflush(stdout);
     } else {
       if (terminal) fmt::print("\r\033[K");
-      spdlog::info(line);
+      spdlog::log(level, line);
     }
   };
 }

@@ -34,8 +34,8 @@ struct PatchMatchOptions {
 
   float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
 
-  // Pairs of trials around a pixel's best plane. Few are enough where the plane is good already;
-  // more would only fit the noise (docs/performance.md).
+  // Pairs of trials on either side of a pixel's best plane. Few are enough where the plane is good
+  // already; docs/performance.md counts what they cost, "How much there is to do".
   int first_pairs = 4;                   // in a level's first sweep
   int later_pairs = 2;                   // after it, also with geometric consistency
   int last_pairs = 0;                    // in the last geometric pass, which only propagates

@@ -189,6 +189,33 @@ class EndToEnd(SceneTest):
         self.densify("again", "--camera-model", "pinhole", *QUICK)
         self.assertNotIn("scene_dense.housing.json", files_below(self.path("again")))
 
+    def test_says_and_draws_as_much_as_the_verbosity_asks_for(self):
+        self.import_scene("air", "verbose")
+        def pictures():
+            return {name for name in files_below(self.path("verbose")) if name.endswith(".png")}
+        progress = r"Estimated depth maps [123]/4 \(\d+%, \d+s, \d+s left\)"
+
+        self.assertRegex(self.densify("verbose", *QUICK), progress)
+        self.assertEqual(pictures(), set())
+        expected = self.outputs("verbose")
+
+        again = ("--geometric-iters", "1", *QUICK)
+        said = self.densify("verbose", "-v", "1", *again)
+        self.assertNotRegex(said, progress)
+        for done in ("Scored neighbours", "Read images", "Estimated depth maps", "Fused depth maps"):
+            self.assertIn(f"{done} 4/4 (100%, ", said)
+        self.assertEqual(self.densify("verbose", "-v", "0", *QUICK), "")
+        self.assertEqual(pictures(), set())
+
+        finished = {f"depth{image:04}{kind}.png" for image in range(4)
+                    for kind in ("", ".normal", ".confidence")}
+        self.assertIn("Memory ", self.densify("verbose", "-v", "3", *QUICK))
+        self.assertEqual(pictures(), finished)
+        self.assertEqual(self.outputs("verbose"), expected)
+        self.densify("verbose", "-v", "5", *again)
+        self.assertIn("depth0002.photometric.png", pictures())
+        self.assertIn("depth0002.geometric1.normal.png", pictures())
+
     def kill_when_finished(self, folder, file):
         process = subprocess.Popen(
             [os.path.join(BIN, "DensifyPointCloud"), "-i", "scene.mvs", "-w", self.path(folder),

@@ -136,6 +136,18 @@ TEST_F(ProgramTest, RefusesStrayArgumentsWhereThereIsNoInputFile) {
             "command line: 'closeup' belongs to no option");
 }
 
+TEST_F(ProgramTest, LogsMoreTheHigherTheVerbosity) {
+  const auto before = spdlog::get_level();
+  const std::vector<std::pair<const char*, spdlog::level::level_enum>> levels = {
+      {"-v-1", spdlog::level::warn}, {"-v0", spdlog::level::warn},  {"-v1", spdlog::level::info},
+      {"-v2", spdlog::level::debug}, {"-v3", spdlog::level::trace}, {"-v9", spdlog::level::trace}};
+  for (const auto& [option, level] : levels) {
+    parse({"a.mvs", option});
+    EXPECT_EQ(spdlog::get_level(), level) << option;
+  }
+  spdlog::set_level(before);
+}
+
 TEST_F(ProgramTest, LetsTheCommandLineWinOverTheFileAndTheFileOverDefaults) {
   write_atomically(folder_ / "TestProgram.cfg",
                    "# a comment\nresolution-level = 4\nresolution-limit = 100\nsecret = 5\n");

@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whole programs: what DensifyPointCloud costs and gives, beside COLMAP's feature extraction on the
-same images. Runs alternate, so that the machine's moods strike all alike; medians are printed.
+same images. Runs alternate, so that the machine's moods strike all alike; medians are printed, and
+for ratios the median and the range of those of the single rounds.
 
     end_to_end.py [--runs N] [--json FILE] SCENE [OPTION OF DensifyPointCloud...]
 
 SCENE: fountain, scene-v6       against SIFT, on real photographs
        closeup, reef            in air and refractive, against SIFT and the truth
        threads                  matching stage of fountain, one thread and two, in pairs
-       memory                   peak memory against the number of images
+       memory                   peak memory against the number of images, 12 to 200 of 640 x 480:
+                                one sweep a level and one geometric pass (--iters 1
+                                --geometric-iters 1, not to be given again), which changes the
+                                time, not the memory
 """
 
 import argparse
@@ -106,16 +110,20 @@ def evaluated_once(folder, truth, medium, options):
 
 # Reports.
 
-HEADINGS = ("program", "CPU-s", "of SIFT", "Mpx/CPU-s", "peak MiB", "points", "F", "mean mm")
+HEADINGS = ("program", "CPU-s", "of SIFT", "range", "Mpx/CPU-s", "peak MiB", "points", "F", "mean mm")
 
 
-def row(name, result, sift_cpu):
+def row(name, result):
     def cell(key, form, scale=1.0):
         return format(result[key] * scale, form) if key in result else ""
     speed = f"{result['megapixels'] / result['cpu']:.4f}" if "megapixels" in result else ""
-    return (name, cell("cpu", ".2f"), f"{result['cpu'] / sift_cpu:.3f}", speed,
+    return (name, cell("cpu", ".2f"), cell("of_sift", ".3f"), spread(result), speed,
             cell("memory", ".0f", 2**-20), cell("points", ",.0f"), cell("f", ".4f"),
             cell("mean", ".4f", 1e3))
+
+
+def spread(result):
+    return f"{result['of_sift_least']:.3f} to {result['of_sift_most']:.3f}"
 
 
 def markdown(headings, rows):
@@ -123,13 +131,23 @@ def markdown(headings, rows):
     return "\n".join([line(headings), "|" + "---|" * len(headings), *map(line, rows)])
 
 
+def beside_sift(results, sift_results):
+    """CPU time over that of SIFT's run of the same round: both met the same machine in the same
+    minutes. The median of these ratios, and their range."""
+    ratios = [ours["cpu"] / sift["cpu"] for ours, sift in zip(results, sift_results)]
+    return {"of_sift": statistics.median(ratios), "of_sift_least": min(ratios),
+            "of_sift_most": max(ratios)}
+
+
 def compared(programs, times):
     """Medians of all programs, as they go into the table."""
-    return {name: medians(results) for name, results in alternated(programs, times).items()}
+    rounds = alternated(programs, times)
+    return {name: medians(results) | beside_sift(results, rounds["SIFT"])
+            for name, results in rounds.items()}
 
 
 def print_table(result):
-    print(markdown(HEADINGS, [row(name, r, result["SIFT"]["cpu"]) for name, r in result.items()]))
+    print(markdown(HEADINGS, [row(name, r) for name, r in result.items()]))
 
 
 # Threads.
@@ -165,15 +183,15 @@ def threads(work, times, options=()):
 
 # Memory.
 
-def memory(work, counts=(6, 12, 24, 48), options=()):
-    """Peak memory of runs on more and more images of the same size, 640 x 480."""
+def memory(work, counts=(12, 48, 100, 200), options=()):
+    """Peak memory of runs on more and more images of the same size. Caches keep 48 of them at most:
+    up to there it grows, and beyond it must not."""
     rows = []
     for count in counts:
-        truth = runs.simulated(f"reef-{count}-views", work, "--preset", "reef", "--views", count,
-                               "--width", 640, "--height", 480, "--medium", "air", "--samples", 1)
+        model, images = runs.survey(count, work)
         folder = work / f"memory-{count}"
-        runs.import_scene(folder, truth.data / "sparse", truth.data / "air")
-        cost = runs.densify(folder, *options)
+        runs.import_scene(folder, model, images)
+        cost = runs.densify(folder, *runs.ONE_SWEEP, *options)
         rows.append({"images": count} | cost)
         print(f"  {count} images: {cost['memory'] / 2**20:.0f} MiB", file=sys.stderr, flush=True)
     return rows

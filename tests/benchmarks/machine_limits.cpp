@@ -54,6 +54,7 @@ MachineLimits machine_limits(depth::lanes::InstructionSet set) {
   MachineLimits& best = kept[set];
   const MachineLimits now = measured_limits(set);
   best.gathered_words_per_ns = std::max(best.gathered_words_per_ns, now.gathered_words_per_ns);
+  best.loaded_words_per_ns = std::max(best.loaded_words_per_ns, now.loaded_words_per_ns);
   best.float_operations_per_ns =
       std::max(best.float_operations_per_ns, now.float_operations_per_ns);
   return best;

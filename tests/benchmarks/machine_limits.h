@@ -2,6 +2,8 @@
 // What this machine can do at most, measured: the roofs that the scorer is held against.
 #pragma once
 
+#include <algorithm>
+
 namespace axial::depth::lanes {
 enum class InstructionSet;  // lanes/scorer.h
 }
@@ -16,8 +18,12 @@ double clock_ghz();
 
 // Of one core, with one instruction set, data in the first-level cache.
 struct MachineLimits {
-  double gathered_words_per_ns = 0;    // 32-bit words loaded from anywhere
+  // 32-bit words from anywhere into a register: with the instruction for it (0: the set has none),
+  // or loaded one by one.
+  double gathered_words_per_ns = 0, loaded_words_per_ns = 0;
   double float_operations_per_ns = 0;  // multiplications and additions, not fused
+
+  double words_per_ns() const { return std::max(gathered_words_per_ns, loaded_words_per_ns); }
 };
 
 MachineLimits machine_limits(depth::lanes::InstructionSet set);

@@ -28,14 +28,20 @@ class LimitKernel {
   static constexpr std::size_t kRounds = 20000;
   static constexpr std::size_t kWords = 4096;  // 16 KiB
   static constexpr std::size_t kIndices = 1024;
-  static constexpr std::size_t kGatherRounds = 300;
+  static constexpr std::size_t kReadRounds = 300;
   static constexpr std::size_t kSums = 4;
 
  public:
   static MachineLimits measure() {
-    constexpr auto kGathered = static_cast<double>(kGatherRounds * kIndices);
+    constexpr auto kWordsRead = static_cast<double>(kReadRounds * kIndices);
     constexpr auto kOperations = static_cast<double>(kRounds * 2 * kChains * kWidth);
-    return {kGathered / best_ns(gather_all), kOperations / best_ns(multiply_and_add)};
+    MachineLimits limits;
+#ifdef __AVX2__
+    limits.gathered_words_per_ns = kWordsRead / best_ns(read_all<gather>);
+#endif
+    limits.loaded_words_per_ns = kWordsRead / best_ns(read_all<load>);
+    limits.float_operations_per_ns = kOperations / best_ns(multiply_and_add);
+    return limits;
   }
 
  private:
@@ -58,14 +64,43 @@ class LimitKernel {
     asm volatile("" : "+m"(vector));
   }
 
+#ifdef __AVX2__
   static Ints gather(const std::int32_t* base, const Ints& at) {
 #ifdef __AVX512F__
     if constexpr (kWidth == 16)
       return Ints(_mm512_i32gather_epi32(static_cast<__m512i>(at), base, 4));
     else
+#endif
+      return Ints(_mm256_i32gather_epi32(base, static_cast<__m256i>(at), 4));
+  }
+
+  // Positions leave their register two by two.
+  static __m128i load_four(const std::int32_t* base, __m128i at) {
+    const auto first = static_cast<std::uint64_t>(_mm_cvtsi128_si64(at));
+    const auto second = static_cast<std::uint64_t>(_mm_extract_epi64(at, 1));
+    __m128i words = _mm_cvtsi32_si128(base[static_cast<std::uint32_t>(first)]);
+    words = _mm_insert_epi32(words, base[first >> 32], 1);
+    words = _mm_insert_epi32(words, base[static_cast<std::uint32_t>(second)], 2);
+    return _mm_insert_epi32(words, base[second >> 32], 3);
+  }
+
+  static __m256i load_eight(const std::int32_t* base, __m256i at) {
+    return _mm256_set_m128i(load_four(base, _mm256_extracti128_si256(at, 1)),
+                            load_four(base, _mm256_castsi256_si128(at)));
+  }
+#endif
+
+  static Ints load(const std::int32_t* base, const Ints& at) {
+#ifdef __AVX512F__
+    if constexpr (kWidth == 16) {
+      const auto all = static_cast<__m512i>(at);
+      const __m256i low = load_eight(base, _mm512_castsi512_si256(all));
+      const __m256i high = load_eight(base, _mm512_extracti64x4_epi64(all, 1));
+      return Ints(_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1));
+    } else
 #elif defined(__AVX2__)
     if constexpr (kWidth == 8)
-      return Ints(_mm256_i32gather_epi32(base, static_cast<__m256i>(at), 4));
+      return Ints(load_eight(base, static_cast<__m256i>(at)));
     else
 #endif
       return Ints([&](auto k) { return base[at[k]]; });
@@ -81,16 +116,17 @@ class LimitKernel {
     }
   };
 
-  static void gather_all() {
+  template <Ints (*kRead)(const std::int32_t*, const Ints&)>
+  static void read_all() {
     static const Image image;
     std::array<Ints, kSums> sums;
     sums.fill(Ints(0));
-    for (std::size_t round = 0; round < kGatherRounds; ++round) {
+    for (std::size_t round = 0; round < kReadRounds; ++round) {
       asm volatile("" ::: "memory");  // or one round would do for all
       for (std::size_t i = 0; i < kIndices; i += kSums * kWidth)
         for (std::size_t k = 0; k < kSums; ++k)
-          sums[k] ^= gather(image.words.data(),
-                            Ints(image.indices.data() + i + k * kWidth, stdx::vector_aligned));
+          sums[k] ^= kRead(image.words.data(),
+                           Ints(image.indices.data() + i + k * kWidth, stdx::vector_aligned));
     }
     hide(sums);
   }

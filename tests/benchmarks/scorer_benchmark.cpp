@@ -112,10 +112,11 @@ void score(benchmark::State& state, bool behind_port, InstructionSet set, bool g
   state.counters["GHz"] = ghz;
   state.counters["samples_per_cycle"] = samples_per_ns / ghz;
   state.counters["gather_roof"] = limits.gathered_words_per_ns / ghz;
+  state.counters["load_roof"] = limits.loaded_words_per_ns / ghz;
   state.counters["float_roof"] = limits.float_operations_per_ns / kOperationsPerSample / ghz;
   state.counters["of_roof"] =
       samples_per_ns /
-      std::min(limits.gathered_words_per_ns, limits.float_operations_per_ns / kOperationsPerSample);
+      std::min(limits.words_per_ns(), limits.float_operations_per_ns / kOperationsPerSample);
 }
 
 const char* name_of(InstructionSet set) {

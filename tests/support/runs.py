@@ -10,6 +10,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -85,7 +86,32 @@ def simulated(name, base, *options, tolerance=0.002):
     return Truth(name, folder, folder / "mesh.ply", tolerance)
 
 
+SURVEY_VIEWS = 200
+
+
+def survey(views, base):
+    """The first of 200 views of 640 x 480: a model, and the folder of all images. What a view sees
+    does not depend on how many there are. Rendered once under `base`."""
+    folder = base / "survey"
+    if not (folder / "rendered").exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        measured(base / "survey.log", BIN / "SimulateUnderwater", "--preset", "survey", "--views",
+                 SURVEY_VIEWS, "--width", 640, "--height", 480, "--samples", 1, "--truth", 0,
+                 "--medium", "air", "-o", folder)
+        (folder / "rendered").touch()
+    if views == SURVEY_VIEWS:
+        return folder / "sparse", folder / "air"
+    measured(base / "survey.log", sys.executable, ROOT / "tests/acceptance/hold_out.py",
+             folder / "sparse", folder / f"sparse-{views}",
+             *[f"{i:04}.jpg" for i in range(views, SURVEY_VIEWS)])
+    return folder / f"sparse-{views}", folder / "air"
+
+
 # Reconstruction.
+
+# Instead of two of either: for what depends on the number of images and not on the sweeps.
+ONE_SWEEP = ("--iters", 1, "--geometric-iters", 1)
+
 
 def import_scene(folder, model, images, housing=None):
     """A COLMAP model as `folder`/scene.mvs."""

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/progress.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/program.h"
+
+namespace axial {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+// What a program whose standard output is `file` writes there while it does four things, logging at
+// `level`: read from `reader`, which is open on the same file or terminal.
+std::string written(int file, int reader, spdlog::level::level_enum level) {
+  std::fflush(stdout);
+  const int kept = ::dup(STDOUT_FILENO);
+  ::dup2(file, STDOUT_FILENO);
+  const auto logger = spdlog::default_logger();
+  run_program("Test", [&] {
+    spdlog::set_level(level);
+    const ProgressSink progress = console_progress("Done things");
+    for (std::size_t done = 1; done <= 4; ++done) progress(done, 4);
+    std::fflush(stdout);
+    return 0;
+  });
+  spdlog::set_default_logger(logger);
+  ::dup2(kept, STDOUT_FILENO);
+  ::close(kept);
+  std::string text(4096, '\0');
+  const auto size = ::read(reader, text.data(), text.size());
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  return text;
+}
+
+std::string on_terminal(spdlog::level::level_enum level) {
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  EXPECT_EQ(::grantpt(terminal), 0);
+  EXPECT_EQ(::unlockpt(terminal), 0);
+  const int program_side = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);
+  EXPECT_NE(::isatty(program_side), 0);
+  const std::string text = written(program_side, terminal, level);
+  ::close(program_side);
+  ::close(terminal);
+  return text;
+}
+
+std::string in_file(spdlog::level::level_enum level) {
+  std::FILE* file = std::tmpfile();
+  const int reader = ::open(("/proc/self/fd/" + std::to_string(::fileno(file))).c_str(), O_RDONLY);
+  const std::string text = written(::fileno(file), reader, level);
+  ::close(reader);
+  std::fclose(file);
+  return text;
+}
+
+TEST(Progress, RewritesOneLineOnATerminal) {
+  const std::string text = on_terminal(spdlog::level::debug);
+  EXPECT_THAT(text, HasSubstr("\rDone things 1/4 (25%, 0s, 0s left)\033[K"));
+  EXPECT_THAT(text, ContainsRegex("\r\033\\[K.*\\[Test\\] Done things 4/4 \\(100%, 0.0s\\)"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(Progress, WritesPlainLinesIntoAFile) {
+  const std::string text = in_file(spdlog::level::debug);
+  EXPECT_THAT(text, HasSubstr("[Test] Done things 1/4 (25%, 0s, 0s left)\n"));
+  EXPECT_THAT(text, HasSubstr("[Test] Done things 4/4 (100%, 0.0s)\n"));
+  EXPECT_THAT(text, Not(HasSubstr("\r")));
+  EXPECT_THAT(text, Not(HasSubstr("\033")));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2)
+      << "more than every few seconds: " << text;
+}
+
+TEST(Progress, IsSilentWhereTheLogIs) {
+  for (const auto& output : {on_terminal, in_file}) {
+    const std::string ends = output(spdlog::level::info);
+    EXPECT_THAT(ends, HasSubstr("Done things 4/4"));
+    EXPECT_THAT(ends, Not(HasSubstr("1/4")));
+    EXPECT_EQ(output(spdlog::level::warn), "");
+  }
+}
+
+}  // namespace
+}  // namespace axial
