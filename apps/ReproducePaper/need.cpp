@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "base/error.h"
 #include "chained.h"
 #include "experiments/charts.h"
 #include "experiments/tables.h"
+#include "need_cases.h"
 
 namespace axial {
 namespace {
@@ -20,114 +20,6 @@ using experiments::Document;
 using experiments::Experiment;
 using experiments::Part;
 using experiments::result_of;
-
-struct Case {
-  std::string name;    // of the part
-  std::string series;  // what is varied
-  double value;
-  SceneOptions scene;
-  // The lens was calibrated in this scene, before, and is not calibrated again.
-  std::optional<SceneOptions> calibrated_in;
-};
-
-constexpr const char* kUsual = "usual";
-
-SceneOptions usual_scene() {
-  SceneOptions scene;
-  scene.scale = 0.5;
-  scene.medium = "water";
-  return scene;
-}
-
-Words port(double distance_mm, double tilt_degrees) {
-  return {"--port-distance", fmt::format("{}", distance_mm / 1e3), "--tilt-degrees",
-          fmt::format("{}", tilt_degrees)};
-}
-
-SceneOptions with_port(double distance_mm, double tilt_degrees) {
-  SceneOptions scene = usual_scene();
-  scene.port = port(distance_mm, tilt_degrees);
-  return scene;
-}
-
-SceneOptions with_scale(double scale) {
-  SceneOptions scene = usual_scene();
-  scene.scale = scale;
-  return scene;
-}
-
-SceneOptions with_fov(double degrees) {
-  SceneOptions scene = usual_scene();
-  scene.fov_degrees = degrees;
-  return scene;
-}
-
-// `preset` at the usual distance.
-SceneOptions with_relief(const std::string& preset, double relief) {
-  SceneOptions scene = usual_scene();
-  scene.preset = preset;
-  if (preset == "reef") scene.scale = 0.42;
-  scene.relief = relief;
-  return scene;
-}
-
-SceneOptions as_it_comes(const std::string& preset) {
-  SceneOptions scene;
-  scene.preset = preset;
-  scene.views = preset == "closeup" ? 12 : 10;
-  scene.medium = "water";
-  return scene;
-}
-
-// Other ground, at another distance.
-SceneOptions second_survey(double factor) {
-  SceneOptions scene = with_scale(usual_scene().scale * factor);
-  scene.seed = 2;
-  return scene;
-}
-
-std::vector<Case> all_cases() {
-  std::vector<Case> cases{{kUsual, "usual", 0, usual_scene(), {}}};
-  const auto add = [&](const char* series, double value, const SceneOptions& scene) {
-    cases.push_back({fmt::format("{}_{:g}", series, value), series, value, scene, {}});
-  };
-  for (const double mm : {2.0, 50.0, 100.0}) add("port_distance_mm", mm, with_port(mm, 0));
-  for (const double scale : {0.25, 1.0, 2.0}) add("scale", scale, with_scale(scale));
-  for (const double degrees : {1.0, 3.0, 6.0}) add("tilt_degrees", degrees, with_port(20, degrees));
-  SceneOptions near = with_port(20, 6);
-  near.scale = 0.25;
-  add("near_tilt_degrees", 6, near);
-  for (const double degrees : {50.0, 65.0, 95.0}) add("fov_degrees", degrees, with_fov(degrees));
-  for (const double relief : {0.1, 1.0}) add("reef_relief", relief, with_relief("reef", relief));
-  for (const double relief : {0.3, 2.0}) add("relief", relief, with_relief("outcrop", relief));
-  for (const char* preset : {"reef", "closeup"})
-    cases.push_back({preset, preset, 0, as_it_comes(preset), {}});
-  for (const double factor : {0.5, 1.0, 2.0})
-    cases.push_back({fmt::format("second_survey_{:g}", factor), "second_survey", factor,
-                     second_survey(factor), usual_scene()});
-  return cases;
-}
-
-void shrink(SceneOptions& scene) {
-  scene.width = 384;
-  scene.height = 288;
-  scene.views = 5;
-  scene.coarseness = 4;
-}
-
-// Quick: the usual case, one that is worse, and one second survey.
-std::vector<Case> cases(bool quick) {
-  std::vector<Case> all = all_cases();
-  if (!quick) return all;
-  std::erase_if(all, [](const Case& one) {
-    return one.name != kUsual && one.name != "tilt_degrees_6" && one.name != "second_survey_0.5";
-  });
-  for (Case& one : all) {
-    shrink(one.scene);
-    if (one.calibrated_in) shrink(*one.calibrated_in);
-  }
-  return all;
-}
 
 Calibration calibration(const Chain& chain, const Case& one, const SimulatedScene& scene) {
   if (!one.calibrated_in) return self_calibration(scene);
@@ -189,7 +81,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   EvaluationOptions evaluation;
   if (quick) evaluation.samples = 20000;
   std::vector<Part> all;
-  for (const Case& one : cases(quick)) {
+  for (const Case& one : need_cases(quick)) {
     Json inputs{{"version", 2}, {"scene", to_json(one.scene)}, {"evaluation", to_json(evaluation)}};
     if (one.calibrated_in) inputs["calibrated_in"] = to_json(*one.calibrated_in);
     all.push_back({one.name, inputs, [=] { return measure(chain, one, evaluation); }});
@@ -198,23 +90,6 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
 }
 
 // What the reader sees.
-
-std::string title_of(const Case& one) {
-  const auto value = [&](const char* format) {
-    return fmt::format(fmt::runtime(format), one.value);
-  };
-  if (one.series == "port_distance_mm") return value("lens to glass {:g} mm");
-  if (one.series == "scale") return value("everything but the port, times {:g}");
-  if (one.series == "tilt_degrees") return value("tilt {:g}\u00b0");
-  if (one.series == "near_tilt_degrees")
-    return value("everything but the port, times 0.25, and tilt {:g}\u00b0");
-  if (one.series == "fov_degrees") return value("field of view {:g}\u00b0");
-  if (one.series == "reef_relief") return value("seen from above, heights times {:g}");
-  if (one.series == "relief") return value("heights times {:g}");
-  if (one.series == "second_survey") return value("second survey, distance times {:g}");
-  if (one.series == "usual") return "the usual case";
-  return "scene '" + one.series + "' as it comes";
-}
 
 double number(const Json& result, const char* field) {
   return result.at(field).get<double>();
@@ -249,7 +124,8 @@ std::string table(const Json& results, bool quick) {
        "field of view [degrees]", "known port on true poses: mean [mm]", "self-calibrated: images",
        "camera centres, RMS [mm]", "mean [mm]", "mean after a rigid move [mm]",
        "/ known port (upper bound)", "complete, known port [%]", "complete, self-calibrated [%]"}};
-  for (const Case& one : cases(quick)) rows.push_back(row_of(one, result_of(results, one.name)));
+  for (const Case& one : need_cases(quick))
+    rows.push_back(row_of(one, result_of(results, one.name)));
   return experiments::markdown_table(rows);
 }
 
@@ -281,12 +157,12 @@ experiments::LinePanel panel(const Json& results, const std::vector<Case>& shown
 std::string chart(const Json& results, bool quick) {
   const auto of = [&](const char* series, bool with_usual) {
     std::vector<Case> shown;
-    for (const Case& one : cases(quick))
-      if (one.series == series || (with_usual && one.name == kUsual)) shown.push_back(one);
+    for (const Case& one : need_cases(quick))
+      if (one.series == series || (with_usual && one.is_usual())) shown.push_back(one);
     return shown;
   };
   const auto value = [](double usual) {
-    return [usual](const Case& one, const Json&) { return one.name == kUsual ? usual : one.value; };
+    return [usual](const Case& one, const Json&) { return one.is_usual() ? usual : one.value; };
   };
   const auto field = [](const char* name) {
     return [name](const Case&, const Json& result) { return number(result, name); };
