@@ -1,55 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "chain.h"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
-#include <algorithm>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-
-#include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/hash.h"
 #include "base/subprocess.h"
-#include "evaluate/depth_evaluation.h"
-#include "evaluate/statistics.h"
+#include "evaluate/alignment.h"
 #include "io/colmap.h"
-#include "io/dmap.h"
 #include "io/housing.h"
-#include "io/image.h"
-#include "io/svg.h"
-#include "results.h"
+#include "steps.h"
 
 namespace axial {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kPictureWidth = 960;  // of depth pictures [px]
-
-Words& operator+=(Words& words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-// `folder` as `make` fills it, unless it was made from the same `inputs` before.
-template <class Make>
-void step(const fs::path& folder, const Json& inputs, Make make) {
-  const fs::path mark = folder / "made-from.json";
-  if (fs::is_regular_file(mark) && read_file(mark) == inputs.dump()) return;
-  fs::remove_all(folder);
-  make_folder(folder);
-  make();
-  write_atomically(mark, inputs.dump());
-}
-
-void run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
-                 const fs::path& log) {
-  Words command{(program_folder() / program).string()};
-  command += arguments;
-  command += {"--max-threads", std::to_string(chain.max_threads)};
-  run_subprocess(command, log);
-}
 
 Words options_of(const SceneOptions& o) {
   Words words{"--preset", o.preset, "--seed", fmt::format("{}", o.seed), "--medium", o.medium};
@@ -65,14 +29,6 @@ Words options_of(const SceneOptions& o) {
   add("--truth", o.truth ? 1 : 0);
   words += o.port;
   return words;
-}
-
-std::vector<fs::path> files_ending_in(const fs::path& folder, const std::string& end) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().string().ends_with(end)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 // The model with the most images; empty if there is none.
@@ -113,20 +69,16 @@ void extract_and_match(const Chain& chain, const fs::path& folder, const fs::pat
   run_subprocess(matches, folder / "matches.log");
 }
 
-// COLMAP's mapper fails where it finds no poses: that is a result, and no error.
+// Where COLMAP's mapper finds no poses it fails and says so: that is a result, and no error.
 void map(const Chain& chain, const fs::path& folder, const fs::path& images, bool refine) {
   const std::string flag = refine ? "1" : "0";
-  try {
-    run_subprocess(
-        {"colmap", "mapper", "--database_path", (folder / "database.db").string(), "--image_path",
-         images.string(), "--output_path", (folder / "models").string(), "--Mapper.num_threads",
-         std::to_string(chain.max_threads > 0 ? int(chain.max_threads) : -1),
-         "--Mapper.ba_refine_focal_length", flag, "--Mapper.ba_refine_principal_point", "0",
-         "--Mapper.ba_refine_extra_params", flag},
-        folder / "mapper.log");
-  } catch (const Error& error) {
-    spdlog::warn("{}", error.what());
-  }
+  run_unless_excused(
+      {"colmap", "mapper", "--database_path", (folder / "database.db").string(), "--image_path",
+       images.string(), "--output_path", (folder / "models").string(), "--Mapper.num_threads",
+       std::to_string(chain.max_threads > 0 ? int(chain.max_threads) : -1),
+       "--Mapper.ba_refine_focal_length", flag, "--Mapper.ba_refine_principal_point", "0",
+       "--Mapper.ba_refine_extra_params", flag},
+      folder / "mapper.log", {"failed to create sparse model"});
 }
 
 std::string joined(const std::vector<double>& values) {
@@ -136,29 +88,10 @@ std::string joined(const std::vector<double>& values) {
   return text;
 }
 
-// Small enough to be kept among the numbers.
-std::string small_picture(const fs::path& png) {
-  cv::Mat picture = cv::imread(png.string(), cv::IMREAD_COLOR);
-  if (picture.empty()) fail("{}: cannot be read", png.string());
-  const double factor = std::min(1.0, static_cast<double>(kPictureWidth) / picture.cols);
-  cv::resize(picture, picture, {}, factor, factor, cv::INTER_AREA);
-  return io::png_in_base64(picture);
-}
-
-fs::path truth_of(const SimulatedScene& scene, const std::string& medium, const fs::path& image) {
-  return scene.images(medium) / (image.stem().string() + ".distance.tiff");
-}
-
 }  // namespace
 
 Json to_json(const SceneOptions& options) {
   return options_of(options);
-}
-
-Json to_json(const EvaluationOptions& options) {
-  return {{"tolerance", options.tolerance},
-          {"samples", options.samples},
-          {"picture_width", options.picture_width}};
 }
 
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
@@ -176,16 +109,6 @@ SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
           fs::remove(file);
   });
   return scene;
-}
-
-SceneDistances scene_distances(const SimulatedScene& scene, const std::string& medium) {
-  std::vector<float> distances;
-  for (const fs::path& file : files_ending_in(scene.images(medium), ".distance.tiff"))
-    for (const float distance : cv::Mat1f(io::read_float_tiff(file)))
-      if (distance > 0) distances.push_back(distance);
-  std::sort(distances.begin(), distances.end());
-  const auto percentile = [&](double p) { return evaluate::percentile_of_sorted(distances, p); };
-  return {percentile(50), percentile(95) / percentile(5)};
 }
 
 refractive::FlatPort<double> port_of(const SimulatedScene& scene) {
@@ -225,7 +148,9 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
         folder / "align.log");
   });
   if (!fs::is_directory(metric)) return {};
-  return {metric, io::read_colmap_model(metric).images.size()};
+  const io::ColmapModel found = io::read_colmap_model(metric);
+  const auto truth = io::read_colmap_model(scene.model());
+  return {metric, found.images.size(), evaluate::align_centres(found, truth).rms};
 }
 
 fs::path densified(const Chain& chain, const std::string& name, const SimulatedScene& scene,
@@ -238,76 +163,21 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
                "-o",
                (folder / "scene.mvs").string()};
   Words densify{"-i", "scene.mvs", "-w", folder.string()};
+  // Files of the same name may hold other poses or another port.
+  Words contents{content_of(model)};
   if (!options.housing.empty()) {
     import += {"--housing", options.housing.string()};
     densify += {"--refractive"};
+    contents += {content_of(options.housing)};
   }
   densify += options.more;
-  step(folder, {import, densify}, [&] {
+  const Words excuses =
+      options.or_nothing ? Words{"no image has neighbours to be matched with"} : Words{};
+  step(folder, {import, densify, contents}, [&] {
     run_sibling(chain, "InterfaceCOLMAP", import, folder / "import.log");
-    run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log");
+    run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log", excuses);
   });
-  return folder;
-}
-
-Json evaluated(const Chain& chain, const fs::path& dense, const SimulatedScene& scene,
-               const EvaluationOptions& options) {
-  const fs::path file = dense / "evaluation.json", picture = dense / "evaluation.png";
-  Words arguments{"-i",
-                  (dense / "scene_dense.ply").string(),
-                  "--framed-only",
-                  "-m",
-                  scene.mesh().string(),
-                  "--cameras",
-                  scene.model().string(),
-                  "--housing",
-                  scene.housing().string(),
-                  "--tolerance",
-                  fmt::format("{}", options.tolerance),
-                  "--samples",
-                  std::to_string(options.samples),
-                  "--json",
-                  file.string()};
-  if (options.icp) arguments += {"--align", "icp"};
-  if (options.picture_width > 0)
-    arguments +=
-        {"--picture", picture.string(), "--picture-width", std::to_string(options.picture_width)};
-  run_sibling(chain, "EvaluateReconstruction", arguments, dense / "evaluate.log");
-  const Json all = Json::parse(read_file(file));
-  const Json &accuracy = all.at("accuracy"), &score = all.at("scores").at(0);
-  Json result{{"points", accuracy.at("count")},  {"mean", accuracy.at("mean")},
-              {"median", accuracy.at("median")}, {"variance", accuracy.at("variance")},
-              {"recall", score.at("recall")},    {"f_score", score.at("f_score")}};
-  if (options.picture_width > 0) result["picture"] = small_picture(picture);
-  return result;
-}
-
-Json ring_errors(const fs::path& dense, const SimulatedScene& scene, const std::string& medium) {
-  constexpr std::size_t kRings = 8;
-  std::vector<evaluate::DepthEvaluation> maps;
-  for (const fs::path& file : files_ending_in(dense, ".dmap")) {
-    const DepthMap map = io::read_dmap(file).map;
-    const cv::Mat1f truth = io::read_float_tiff(truth_of(scene, medium, map.image_path));
-    maps.push_back(evaluate::evaluate_depth(map.depth, truth, {}));
-  }
-  Json rings = Json::array();
-  for (const evaluate::RelativeRing& ring : evaluate::relative_rings(maps, kRings))
-    rings.push_back({{"inner", ring.inner},
-                     {"outer", ring.outer},
-                     {"count", ring.count},
-                     {"median", ring.signed_median}});
-  return rings;
-}
-
-std::string depth_picture(const Chain& chain, const fs::path& dense, const SimulatedScene& scene,
-                          const std::string& medium, double tolerance) {
-  const fs::path file = files_ending_in(dense, ".dmap").at(0), picture = dense / "depth.png";
-  const fs::path truth = truth_of(scene, medium, io::read_dmap(file).map.image_path);
-  run_sibling(chain, "EvaluateReconstruction",
-              {"-i", file.string(), "-m", truth.string(), "--tolerance",
-               fmt::format("{}", tolerance), "--picture", picture.string()},
-              dense / "depth.log");
-  return small_picture(picture);
+  return fs::is_regular_file(folder / "scene_dense.ply") ? folder : fs::path();
 }
 
 }  // namespace axial

@@ -68,6 +68,7 @@ Calibration calibration_of(const std::filesystem::path& colmap_model);  // as fo
 struct ColmapPoses {
   std::filesystem::path model;  // brought to metres by the true camera centres
   std::size_t images = 0;       // registered
+  double centre_rms = 0;        // of their centres, after that [m]
 };
 ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const SimulatedScene& scene,
                          const std::string& medium, const Calibration& calibration);
@@ -75,8 +76,9 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
 struct DenseOptions {
   std::filesystem::path housing;  // empty: no port is known
   Words more;                     // for DensifyPointCloud
+  bool or_nothing = false;        // nothing to match is a result, and no error
 };
-// The folder of a dense cloud and its depth maps.
+// The folder of a dense cloud and its depth maps; empty where there was nothing to match.
 std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const SimulatedScene& scene, const std::filesystem::path& model,
                                 const std::string& medium, const DenseOptions& options);
@@ -85,24 +87,31 @@ struct EvaluationOptions {
   double tolerance = 0.005;  // [m]
   bool icp = false;
   std::size_t samples = 200000;
-  int picture_width = 0;  // 0: no picture
+  int picture_width = 0;     // 0: no picture
+  double color_max = 0.010;  // error of the pictures' last colour [m]
+  bool or_nothing = false;   // a cloud that leaves nothing to measure is a result, and no error
 };
 Json to_json(const EvaluationOptions& options);
 
 // Distance statistics of a cloud within the field of view under water (points in the images of at
 // least two cameras there), whatever medium it is from, and completeness of what these cameras see:
 // "points", "mean", "median", "variance", "recall" and "f_score" at the tolerance, and "picture"
-// (PNG in base64). Lengths in metres.
+// (PNG in base64). Lengths in metres. Null: nothing to measure.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 
-// Signed errors of all depth maps of a folder as a fraction of the true distance:
-// "inner", "outer", "count" and "median" of each ring around the image centre.
-Json ring_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
-                 const std::string& medium);
+// Errors of all depth maps of a folder, as one: "pixels", "mean" and "median" of |estimate - truth|
+// [m], "within": share of these pixels at the tolerance, "completeness": share of the pixels with a
+// truth. "rings" around the image centre, each with "inner", "outer", "count" and the "median" of
+// the signed error as a fraction of the true distance.
+Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
+                  const std::string& medium, double tolerance);
 
 // EvaluateReconstruction's picture of the first view's depth, truth and error (PNG in base64).
 std::string depth_picture(const Chain& chain, const std::filesystem::path& dense,
-                          const SimulatedScene& scene, const std::string& medium, double tolerance);
+                          const SimulatedScene& scene, const std::string& medium, double color_max);
+
+// The first view as it was taken (PNG in base64).
+std::string photograph(const SimulatedScene& scene, const std::string& medium, int width);
 
 }  // namespace axial

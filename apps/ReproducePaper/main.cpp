@@ -13,18 +13,40 @@ using namespace axial;
 
 namespace {
 
-void reproduce(const experiments::Experiment& experiment, const Arguments& arguments,
-               const CommonOptions& common) {
-  const std::filesystem::path folder = in_working_folder(common, arguments.output);
-  const experiments::Json results =
-      computed_results(experiment, arguments.quick, folder, console_progress(experiment.name));
+void write_documents(const experiments::Experiment& experiment, const Arguments& arguments,
+                     const CommonOptions& common, const experiments::Json& results) {
+  const std::filesystem::path folder = results_folder(arguments, common);
   write_atomically(folder / (experiment.name + ".json"), results.dump() + "\n");
   const auto documents = experiment.documents(results);
   for (const experiments::Document& document : documents)
     write_atomically(folder / document.file, document.text);
-  std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
   if (!arguments.page.empty()) update_page(in_working_folder(common, arguments.page), documents);
+}
+
+void reproduce(const experiments::Experiment& experiment, const Arguments& arguments,
+               const CommonOptions& common) {
+  const std::filesystem::path folder = results_folder(arguments, common);
+  compute(experiment.name, chosen_parts(experiment, arguments.part), folder,
+          console_progress(experiment.name));
+  const experiments::Json results = kept_results(experiment, arguments.quick, folder);
+  if (results.is_null()) {
+    spdlog::info("{}: other parts are still to be computed", experiment.name);
+    return;
+  }
+  write_documents(experiment, arguments, common, results);
+  std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
   spdlog::info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
+}
+
+void log_times(const std::vector<experiments::Experiment>& experiments,
+               const std::filesystem::path& folder) {
+  spdlog::info("{:<16} {:>5} {:>9} {:>11}  {}", "experiment", "parts", "time [s]", "longest [s]",
+               "longest part");
+  for (const experiments::Experiment& experiment : experiments) {
+    const PartTimes times = part_times(experiment, folder);
+    spdlog::info("{:<16} {:>5} {:>9.1f} {:>11.1f}  {}", experiment.name, times.parts, times.sum,
+                 times.longest, times.longest_part);
+  }
 }
 
 }  // namespace
@@ -35,9 +57,12 @@ int main(int argc, char** argv) {
     const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
     if (!parsed.run) return parsed.exit_code;
     const auto experiments = chosen_experiments(arguments, parsed.common);
+    if (!arguments.page.empty())
+      check_page(in_working_folder(parsed.common, arguments.page), experiments);
     const ThreadLimit limit(parsed.common.max_threads);
     for (const experiments::Experiment& experiment : experiments)
       reproduce(experiment, arguments, parsed.common);
+    log_times(experiments, results_folder(arguments, parsed.common));
     return 0;
   });
 }

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "chained.h"
+#include "results.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -18,16 +19,23 @@ ProgramOptions describe(Arguments& a) {
                                 "folder of the results (required); finished parts found there are "
                                 "not computed again")(
       "quick", po::value(&a.quick)->default_value(false)->implicit_value(true),
-      "fewer samples, smaller images: a look in a few minutes")(
+      "fewer samples, smaller images: a look in a few minutes, in DIR/quick")(
+      "part", po::value(&a.part),
+      "compute only the parts whose names begin so; figures and tables come with the last part")(
       "page", po::value(&a.page), "Markdown page to bring up to date with the results");
   // The name that parse_options knows the positional argument by.
   program.hidden.add_options()("input-file", po::value(&a.experiment), "the experiment");
   return program;
 }
 
+std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common) {
+  const std::filesystem::path folder = in_working_folder(common, a.output);
+  return a.quick ? folder / "quick" : folder;
+}
+
 std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
                                   const std::string& experiment) {
-  return in_working_folder(common, a.output) / "work" / experiment;
+  return results_folder(a, common) / "work" / experiment;
 }
 
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
@@ -40,9 +48,13 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   all.push_back(reconstruction(chain("reconstruction"), a.quick));
   all.push_back(sensitivity(chain("sensitivity"), a.quick));
   all.push_back(need(chain("need"), a.quick));
+  if (a.experiment == "all" && !a.part.empty())
+    fail("--part {}: is for one experiment, not for all", a.part);
   if (a.experiment == "all") return all;
   std::string names;
   for (experiments::Experiment& experiment : all) {
+    if (experiment.name == a.experiment && chosen_parts(experiment, a.part).empty())
+      fail("--part {}: begins the name of no part of {}", a.part, experiment.name);
     if (experiment.name == a.experiment) return {std::move(experiment)};
     names += experiment.name + ", ";
   }

@@ -11,6 +11,7 @@ namespace axial {
 
 struct Arguments {
   std::string experiment, output, page;
+  std::string part;  // compute only parts whose names begin so
   bool quick = false;
 };
 
@@ -21,7 +22,11 @@ ProgramOptions describe(Arguments& a);
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
                                                         const CommonOptions& common);
 
-// Where the experiments of `a` keep intermediate files until they are finished.
+// Of everything that `a` asks for. A quick run has a folder of its own in the output folder: it
+// neither takes a full run's files away nor replaces its results.
+std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common);
+
+// Where an experiment keeps intermediate files until it is finished.
 std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
                                   const std::string& experiment);
 

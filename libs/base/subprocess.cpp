@@ -2,38 +2,57 @@
 #include "base/subprocess.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 
-extern char** environ;
-
 namespace axial {
 namespace {
 
-// What the child gets in place of this process's standard streams.
-class Streams {
+class Pipe {
  public:
-  explicit Streams(const std::filesystem::path& log) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions_, 1, 2);
+  Pipe() {
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0) fail("a pipe: {}", std::strerror(errno));
   }
-  ~Streams() { posix_spawn_file_actions_destroy(&actions_); }
-  Streams(const Streams&) = delete;
-  Streams& operator=(const Streams&) = delete;
+  ~Pipe() {
+    close_write_end();
+    close(ends_[0]);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
 
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
+  int read_end() const { return ends_[0]; }
+  int write_end() const { return ends_[1]; }
+  void close_write_end() {
+    if (ends_[1] >= 0) close(ends_[1]);
+    ends_[1] = -1;
+  }
 
  private:
-  posix_spawn_file_actions_t actions_;
+  std::array<int, 2> ends_{-1, -1};
 };
+
+// In the child: nothing but system calls, for other threads' locks were copied as they stood. A
+// child must not outlive its parent, as it would work on for hours on files that the next run
+// removes.
+[[noreturn]] void become(char* const* arguments, const char* log, pid_t parent, int report) {
+  const int in = open("/dev/null", O_RDONLY);
+  const int out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const bool ready = in >= 0 && out >= 0 && dup2(in, 0) == 0 && dup2(out, 1) == 1 &&
+                     dup2(out, 2) == 2 && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
+  if (getppid() != parent) _exit(127);
+  if (ready) execvp(arguments[0], arguments);
+  const int error = errno;
+  _exit(write(report, &error, sizeof error) == sizeof error ? 127 : 126);
+}
 
 std::string last_line(std::string text) {
   text.erase(text.find_last_not_of(" \n\r") + 1);
@@ -47,23 +66,39 @@ int wait_for(pid_t child) {
   return status;
 }
 
-}  // namespace
-
-void run_subprocess(const std::vector<std::string>& command, const std::filesystem::path& log) {
-  const Streams streams(log);
+pid_t start(const std::vector<std::string>& command, const std::filesystem::path& log) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, arguments[0], streams.get(), nullptr, arguments.data(), environ);
-  if (error != 0) fail("{}: cannot be started ({})", command[0], std::strerror(error));
-  const int status = wait_for(child);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  Pipe report;
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) become(arguments.data(), log.c_str(), parent, report.write_end());
+  int error = child < 0 ? errno : 0;
+  report.close_write_end();
+  // It ends without a byte once the child has become the program.
+  const bool failed = child < 0 || read(report.read_end(), &error, sizeof error) > 0;
+  if (failed && child > 0) wait_for(child);
+  if (failed) fail("{}: cannot be started ({})", command[0], std::strerror(error));
+  return child;
+}
+
+}  // namespace
+
+void run_subprocess(const std::vector<std::string>& command, const std::filesystem::path& log) {
+  run_unless_excused(command, log, {});
+}
+
+bool run_unless_excused(const std::vector<std::string>& command, const std::filesystem::path& log,
+                        const std::vector<std::string>& excuses) {
+  const int status = wait_for(start(command, log));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
+  const std::string said = read_file(log);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 1)
+    for (const std::string& excuse : excuses)
+      if (said.find(excuse) != std::string::npos) return false;
   const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                                               : fmt::format("exit code {}", WEXITSTATUS(status));
-  fail("{}: {} (all it said is in {}): {}", command[0], how, log.string(),
-       last_line(read_file(log)));
+  fail("{}: {} (all it said is in {}): {}", command[0], how, log.string(), last_line(said));
 }
 
 std::filesystem::path program_folder() {

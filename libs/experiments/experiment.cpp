@@ -18,12 +18,15 @@ std::string series_title(const std::string& series) {
   if (series == "distance_mm") return "interface distance [mm]";
   if (series == "tilt_degrees") return "interface tilt [degrees]";
   if (series == "plane_degrees") return "plane angle [degrees]";
+  if (series == "n_glass") return "refractive index of the glass";
+  if (series == "n_water") return "refractive index of the water";
   fail("'{}' is no parameter of the simulations", series);
 }
 
 std::string value_title(const std::string& series, double value) {
   if (series == "distance_mm") return fmt::format("distance {:g} mm", value);
   const std::string title = series_title(series);
+  if (series.starts_with("n_")) return fmt::format("{} {:g}", title, value);
   return fmt::format("{} {:g}\u00b0", title.substr(0, title.find(" [")), value);
 }
 

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <functional>
 
 #include "experiments/charts.h"
 #include "experiments/experiment.h"
 #include "experiments/projection_time.h"
 #include "experiments/tables.h"
+#include "experiments/verdicts.h"
 
 namespace axial::experiments {
 namespace {
@@ -92,35 +95,93 @@ LinePanel panel(const Json& results, Order order) {
   return panel;
 }
 
-std::string table(const Json& results) {
-  std::vector<std::vector<std::string>> rows{{"points", "method"}};
-  for (const int megapixels : kMegapixels) {
-    rows[0].push_back(fmt::format("{} MP [ns]", megapixels));
-    rows[0].push_back("of exact");
-  }
-  rows[0].push_back("mean error at 10 MP [px]");
+using Row = std::vector<std::string>;
+
+// One row a method and order of points, `cells` for each size.
+std::string table(const Json& results, const Row& cell_titles,
+                  const std::function<Row(const Json& time)>& cells) {
+  std::vector<Row> rows{{"points", "method"}};
+  for (const int megapixels : kMegapixels)
+    for (const std::string& title : cell_titles)
+      rows[0].push_back(fmt::format("{} MP{}", megapixels, title));
   for (const Order order : kOrders) {
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
-      std::vector<std::string> row{order_name(order), kTitles[m]};
+      Row row{order_name(order), kTitles[m]};
       for (const int megapixels : kMegapixels) {
-        const Json& time = result_of(results, part_name(order, megapixels)).at(kMethods[m]);
-        row.push_back(significant(time.at("nanoseconds")));
-        row.push_back(significant(time.at("ratio_to_exact")));
+        const Row more = cells(result_of(results, part_name(order, megapixels)).at(kMethods[m]));
+        row.insert(row.end(), more.begin(), more.end());
       }
-      const Json& largest = result_of(results, part_name(order, kMegapixels.back()));
-      row.push_back(significant(largest.at(kMethods[m]).at("mean_error")));
       rows.push_back(row);
     }
   }
+  return markdown_table(rows);
+}
+
+std::string times_table(const Json& results) {
   const Json& any = result_of(results, part_name(kOrders[0], kMegapixels[0]));
-  return markdown_table(rows) + "\nProcessor: " + any.at("processor").get<std::string>() + "\n";
+  return table(
+             results, {" [ns]", ", of exact"},
+             [](const Json& time) -> Row {
+               return {significant(time.at("nanoseconds")), significant(time.at("ratio_to_exact"))};
+             }) +
+         "\nProcessor: " + any.at("processor").get<std::string>() + "\n";
+}
+
+std::string errors_table(const Json& results) {
+  return table(results, {", mean error [px]", ", missed"}, [](const Json& time) -> Row {
+    return {significant(time.at("mean_error")),
+            fmt::format("{} of {}", time.at("missed").get<int>(), time.at("points").get<int>())};
+  });
+}
+
+double ratio(const Json& results, Order order, int megapixels, const char* method) {
+  return result_of(results, part_name(order, megapixels)).at(method).at("ratio_to_exact");
+}
+
+// What the paper measured of its method: how many times faster than a polynomial it is.
+std::string analytic_table(const Json& results) {
+  std::vector<Row> rows{{"points", "12th-degree polynomial / line search of"}};
+  for (const int megapixels : kMegapixels) rows[0].push_back(fmt::format("{} MP", megapixels));
+  rows[0].push_back("the paper, 2 to 10 MP");
+  for (const Order order : kOrders) {
+    for (std::size_t m = 1; m + 1 < kMethods.size(); ++m) {
+      Row row{order_name(order), std::string(kTitles[m]).substr(std::strlen("line search, "))};
+      for (const int megapixels : kMegapixels)
+        row.push_back(significant(ratio(results, order, megapixels, "analytic") /
+                                  ratio(results, order, megapixels, kMethods[m])));
+      row.push_back("18 to 34");
+      rows.push_back(row);
+    }
+  }
+  return markdown_table(rows);
+}
+
+std::string verdicts(const Json& results) {
+  std::vector<Verdict> all;
+  for (const int megapixels : {2, 10}) {
+    const double faster = ratio(results, Order::kScattered, megapixels, "line_search_compact");
+    all.push_back({fmt::format("scattered points, {} MP: exact projection at least 10 times faster "
+                               "than the compact line search",
+                               megapixels),
+                   significant(faster), faster >= 10});
+  }
+  double least = HUGE_VAL;
+  for (const Order order : kOrders)
+    for (const int megapixels : kMegapixels)
+      least = std::min(least, ratio(results, order, megapixels, "analytic"));
+  all.push_back({"exact projection at least 300 times faster than the polynomial, every size",
+                 significant(least), least >= 300});
+  return verdict_table(all);
 }
 
 std::vector<Document> documents(const Json& results) {
   std::vector<LinePanel> panels;
   for (const Order order : kOrders) panels.push_back(panel(results, order));
   return {{"runtime.svg", draw_lines("One forward projection, one thread, float", panels, 2)},
-          {"runtime.md", table(results)}};
+          {"runtime.md", times_table(results)},
+          {"runtime_errors.md", errors_table(results)},
+          {"runtime_analytic.md", analytic_table(results)},
+          {"runtime_verdicts.md", verdicts(results)}};
 }
 
 }  // namespace

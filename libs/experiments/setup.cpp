@@ -58,6 +58,10 @@ Variation vary(const std::string& series, double value, int stereo_number) {
     camera.tilt_degrees = value;
   else if (series == "plane_degrees")
     variation.setup.plane_degrees = value;
+  else if (series == "n_glass")
+    camera.n_glass = value;
+  else if (series == "n_water")
+    camera.n_water = value;
   else
     fail("'{}' is no parameter of the simulations", series);
   return variation;

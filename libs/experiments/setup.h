@@ -43,7 +43,8 @@ Vector3<double> plane_normal(const StereoSetup& setup);
 
 // One value of one varied parameter; all others have their defaults.
 struct Variation {
-  std::string series;  // "fov_degrees", "distance_mm", "tilt_degrees", "plane_degrees"
+  // "fov_degrees", "distance_mm", "tilt_degrees", "n_glass", "n_water", "plane_degrees"
+  std::string series;
   double value;
   StereoSetup setup;
 };

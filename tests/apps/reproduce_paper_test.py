@@ -8,6 +8,7 @@ import os
 import re
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 from programs import ProgramTest, files_below, main, read, run, write
@@ -21,10 +22,12 @@ class Quick(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.folder = cls.temporary.name
-        result = run(PROGRAM, "all", "-o", cls.folder, "--quick", "--max-threads", "1",
+        cls.output = cls.temporary.name
+        cls.folder = os.path.join(cls.output, "quick")
+        result = run(PROGRAM, "all", "-o", cls.output, "--quick", "--max-threads", "1",
                      timeout=1500)
         assert result.returncode == 0, result.stderr
+        cls.said = result.stdout
 
     @classmethod
     def tearDownClass(cls):
@@ -37,7 +40,7 @@ class Quick(unittest.TestCase):
 
     def test_projection_errors(self):
         parts = self.results("figure2")
-        self.assertEqual(len(parts), 10)
+        self.assertEqual(len(parts), 12)
         for name, part in parts.items():
             self.assertGreater(part["line_search"]["mean"], 0.24, name)
             self.assertLess(part["line_search"]["mean"], 0.29, name)
@@ -60,7 +63,7 @@ class Quick(unittest.TestCase):
 
     def test_patch_errors(self):
         parts = self.results("figure4")
-        self.assertEqual(len(parts), 2 * 2 * 13)
+        self.assertEqual(len(parts), 2 * 2 * 15)
         for name, part in parts.items():
             warps = {warp: values["mean"] for warp, values in part["warps"].items()}
             self.assertGreater(part["centres"], 100, name)
@@ -90,7 +93,11 @@ class Quick(unittest.TestCase):
         colmap, true = parts["seed1_colmap_poses"], parts["seed1_true_poses"]
         self.assertEqual(colmap["images"], 4)
         self.assertEqual(len(colmap["clouds"]), 5)
+        self.assertLess(colmap["centre_rms"], 0.1)
+        self.assertEqual(set(colmap["photographs"]), {"air", "water"})
         for name, cloud in colmap["clouds"].items():
+            # The motion is found on the median, among fewer points.
+            self.assertLess(cloud["moved"]["mean"], 1.05 * cloud["mean"], name)
             self.assertGreater(cloud["points"], 10_000, name)
             # A pixel is 1 cm wide there.
             self.assertLess(cloud["mean"], 0.02, name)
@@ -102,12 +109,39 @@ class Quick(unittest.TestCase):
         self.assertLess(true["clouds"]["ours"]["mean"], 1.1 * true["clouds"]["air"]["mean"])
         self.assertLess(true["clouds"]["ours"]["median"], 0.004)
         self.assertGreater(true["scene_distance"], 2)
-        for name, rings in true["rings"].items():
-            self.assertEqual(len(rings), 8)
-            for ring in rings:
+        self.assertEqual(set(true["maps"]), {"air", "ours", "papers"})
+        for name, maps in true["maps"].items():
+            self.assertEqual(maps["pixels"], sum(ring["count"] for ring in maps["rings"]), name)
+            self.assertLess(maps["median"], maps["mean"], name)
+            self.assertTrue(0 < maps["within"] < 1 and 0 < maps["completeness"] < 1, name)
+            self.assertEqual(len(maps["rings"]), 8)
+            for ring in maps["rings"]:
                 if ring["count"] >= 5000:
                     # A port that is ignored bends depths by a quarter.
                     self.assertLess(abs(ring["median"]), 2e-3, name)
+
+    def test_every_bound_has_its_verdict(self):
+        """Times and poses are not judged here: other programs may run, and COLMAP varies."""
+        for experiment, asked in (("figure2", 2), ("runtime", 3), ("figure4", 5),
+                                  ("reconstruction", 3)):
+            rows = read(os.path.join(self.folder, experiment + "_verdicts.md")).decode().splitlines()
+            self.assertEqual(len(rows), 2 + asked, experiment)
+            for row in rows[2:]:
+                self.assertRegex(row, r"\| (yes|no) \|$")
+            if experiment in ("figure2", "figure4"):
+                self.assertTrue(rows[2].endswith("| yes |"), rows[2])
+
+    def test_times_are_kept_beside_the_parts_and_told(self):
+        for experiment in ("figure3", "need"):
+            folder = os.path.join(self.folder, "parts", experiment)
+            parts = [name for name in os.listdir(folder) if name.endswith(".json")]
+            seconds = [float(read(os.path.join(folder, name[:-5] + ".seconds"))) for name in parts]
+            told = re.search(rf"{experiment} +(\d+) +([\d.]+) ", self.said)
+            self.assertEqual(int(told[1]), len(parts))
+            self.assertAlmostEqual(float(told[2]), sum(seconds), delta=0.1)
+
+    def test_full_results_are_left_alone(self):
+        self.assertEqual(os.listdir(self.output), ["quick"])
 
     def test_sensitivity(self):
         parts = self.results("sensitivity")
@@ -129,7 +163,10 @@ class Quick(unittest.TestCase):
             self.assertGreater(part["range_ratio"], 1.2, name)
             self.assertEqual(part["port_distance"], 0.02)
             self.assertLess(part["ours"]["mean"], 0.01 * part["scene_distance"], name)
+            self.assertAlmostEqual(part["tilt_degrees"], 6 if name == "tilt_degrees_6" else 0)
+            self.assertEqual(part["fov_degrees"], 80)
             today = part["today"]
+            self.assertEqual(today["images"] == 0, today["centre_rms"] is None, name)
             if today["images"] == 0:
                 self.assertIsNone(today["moved"], name)
         # No lens model absorbs a port tilted that far.
@@ -143,7 +180,7 @@ class Quick(unittest.TestCase):
 
     def test_figures_are_svg_that_need_no_other_file(self):
         figures = [name for name in files_below(self.folder) if name.endswith(".svg")]
-        self.assertEqual(len(figures), 1 + 1 + 2 + 5 + 2 + 1)
+        self.assertEqual(len(figures), 1 + 1 + 2 + 5 + 3 + 1)
         for name in figures:
             text = read(os.path.join(self.folder, name)).decode()
             root = xml.etree.ElementTree.fromstring(text)
@@ -165,10 +202,37 @@ class Quick(unittest.TestCase):
     def test_nothing_finished_is_computed_again(self):
         """Times would never come out the same twice."""
         before = {name: read(os.path.join(self.folder, name)) for name in files_below(self.folder)}
-        self.assertEqual(run(PROGRAM, "all", "-o", self.folder, "--quick").returncode, 0)
+        self.assertEqual(run(PROGRAM, "all", "-o", self.output, "--quick").returncode, 0)
         for name, content in before.items():
             self.assertEqual(read(os.path.join(self.folder, name)), content, name)
         self.assertEqual(files_below(self.folder), set(before))
+
+
+class WithoutPoses(ProgramTest):
+    """A mapper that finds no poses is a result; one that breaks is none."""
+
+    def need(self, mapper):
+        script = f"#!/bin/sh\nif [ $1 = mapper ]; then {mapper}; fi\n"
+        write(self.path("bin", "colmap"), script)
+        os.chmod(self.path("bin", "colmap"), 0o755)
+        folders = self.path("bin") + os.pathsep + os.environ["PATH"]
+        with unittest.mock.patch.dict(os.environ, PATH=folders):
+            return run(PROGRAM, "need", "--quick", "--part", "usual", "-o", self.path("a"))
+
+    def test_only_what_colmap_did_not_find_is_kept(self):
+        said = "echo ERROR: failed to create sparse model"
+        for mapper, how in (("kill -9 $$", "signal 9"), ("exit 1", "exit code 1"),
+                            (said + "; exit 3", "exit code 3")):
+            result = self.need(mapper)
+            self.assertEqual(result.returncode, 1, mapper)
+            self.assertIn("colmap: " + how, result.stderr)
+        folder = self.path("a", "quick", "parts", "need")
+        self.assertEqual(os.listdir(folder), [])
+        self.assertEqual(self.need(said + "; exit 1").returncode, 0)
+        part = [name for name in os.listdir(folder) if name.endswith(".json")][0]
+        today = json.loads(read(os.path.join(folder, part)))["result"]["today"]
+        self.assertEqual(today, {"images": 0, "centre_rms": None, "as_it_lies": None,
+                                 "moved": None})
 
 
 class Figure3(ProgramTest):
@@ -179,7 +243,9 @@ class Figure3(ProgramTest):
         return os.path.join(folder, sorted(os.listdir(folder))[0])
 
     def all_bytes(self, folder):
-        return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))}
+        """Of all but times."""
+        return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))
+                if not name.endswith(".seconds")}
 
     def test_same_bytes_for_any_number_of_threads(self):
         for folder, threads in (("a", 1), ("b", 3)):
@@ -219,6 +285,13 @@ class Figure3(ProgramTest):
         self.assertEqual(read(self.path("docs", "images", "figure3_setup1.svg")),
                          read(self.path("a", "figure3_setup1.svg")))
 
+    def test_parts_one_by_one_are_the_whole(self):
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("b"), "--part", "setup2")
+        self.assertEqual(os.listdir(self.path("b")), ["parts"])
+        self.succeeds(PROGRAM, "figure3", "-o", self.path("b"), "--part", "setup1")
+        self.assertEqual(self.all_bytes("a"), self.all_bytes("b"))
+
     def test_wrong_input(self):
         self.refuses("'figure9' is no experiment", PROGRAM, "figure9", "-o", self.path("a"))
         self.refuses("no output folder", PROGRAM, "figure3")
@@ -227,12 +300,20 @@ class Figure3(ProgramTest):
         self.refuses("cannot be created", PROGRAM, "figure3", "-o", "/proc/none")
         write(self.path("file"), "")
         self.refuses("cannot be created", PROGRAM, "figure3", "-o", self.path("file"))
-        self.succeeds(PROGRAM, "figure3", "-o", self.path("a"))
-        self.refuses("none.md", PROGRAM, "figure3", "-o", self.path("a"), "--page",
-                     self.path("none.md"))
-        write(self.path("page.md"), "<!-- figure3.md -->\n")
-        self.refuses("has no '<!-- end -->'", PROGRAM, "figure3", "-o", self.path("a"), "--page",
-                     self.path("page.md"))
+        self.refuses("begins the name of no part", PROGRAM, "figure3", "-o", self.path("a"),
+                     "--part", "setup3")
+        self.refuses("not for all", PROGRAM, "all", "-o", self.path("a"), "--part", "setup1")
+
+    def test_wrong_pages_are_refused_before_anything_is_computed(self):
+        page = self.path("page.md")
+        for text, said in ((None, "page.md"), ("no table", "has no line '<!-- figure3"),
+                           ("<!-- figure3.md -->\n", "has no '<!-- end -->'"),
+                           ("<!-- figure3.md -->\n<!-- figure4.md -->\n<!-- end -->\n",
+                            "has no '<!-- end -->'")):
+            if text is not None:
+                write(page, text)
+            self.refuses(said, PROGRAM, "figure3", "-o", self.path("a"), "--page", page)
+        self.assertFalse(os.path.exists(self.path("a")))
 
     def test_help_without_an_experiment(self):
         result = run(PROGRAM)

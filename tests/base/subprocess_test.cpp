@@ -3,6 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "support/empty_folder.h"
@@ -49,6 +57,36 @@ TEST_F(Subprocess, FailuresNameTheProgramAndItsLastWords) {
   EXPECT_THAT(said, testing::Not(HasSubstr("first")));
   EXPECT_THAT(error_of({"sh", "-c", "kill -9 $$"}), HasSubstr("signal 9"));
   EXPECT_THAT(error_of({"no-such-program"}), HasSubstr("no-such-program: cannot be started"));
+}
+
+TEST_F(Subprocess, OnlyAPlainFailureThatSaysSoIsExcused) {
+  const auto run = [&](const std::string& script) {
+    return run_unless_excused({"sh", "-c", script}, log_, {"found nothing"});
+  };
+  EXPECT_TRUE(run("echo found nothing"));
+  EXPECT_FALSE(run("echo found nothing; echo bye; exit 1"));
+  for (const char* script : {"exit 1", "echo found nothing; exit 2", "echo found nothing; kill $$"})
+    EXPECT_NE(test::error_of([&] { run(script); }), "") << script;
+}
+
+// The pipe's end closes with the last process that holds it.
+TEST_F(Subprocess, DoesNotOutliveItsParent) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    run_subprocess({"sh", "-c", "echo started; exec sleep 60"}, log_);
+    _exit(0);
+  }
+  close(ends[1]);
+  while (!fs::is_regular_file(log_) || read_file(log_).empty())
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  constexpr int kPatience = 20000;  // milliseconds
+  pollfd end{ends[0], POLLIN, 0};
+  EXPECT_EQ(poll(&end, 1, kPatience), 1);
+  close(ends[0]);
 }
 
 TEST_F(Subprocess, TheProgramsOwnFolder) {

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is measured of a chain's clouds and maps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "evaluate/depth_evaluation.h"
+#include "evaluate/statistics.h"
+#include "io/dmap.h"
+#include "io/image.h"
+#include "io/svg.h"
+#include "steps.h"
+
+namespace axial {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Small enough to be kept among the numbers.
+std::string small_picture(const fs::path& file, int width) {
+  cv::Mat picture = cv::imread(file.string(), cv::IMREAD_COLOR);
+  if (picture.empty()) fail("{}: cannot be read", file.string());
+  const double factor = std::min(1.0, static_cast<double>(width) / picture.cols);
+  cv::resize(picture, picture, {}, factor, factor, cv::INTER_AREA);
+  return io::png_in_base64(picture);
+}
+
+fs::path truth_of(const SimulatedScene& scene, const std::string& medium, const fs::path& image) {
+  return scene.images(medium) / (image.stem().string() + ".distance.tiff");
+}
+
+// What EvaluateReconstruction says of a cloud that leaves nothing to measure.
+Words nothing_to_measure() {
+  return {"the cloud has no points", "no point lies in enough of the images",
+          "too few to align a cloud", "the cloud has no extent to align by"};
+}
+
+Words evaluation_arguments(const fs::path& cloud, const SimulatedScene& scene,
+                           const EvaluationOptions& options) {
+  Words words{"-i", cloud.string(), "--framed-only"};
+  words += {"-m", scene.mesh().string(), "--cameras", scene.model().string()};
+  words += {"--housing", scene.housing().string()};
+  words += {"--tolerance", fmt::format("{}", options.tolerance)};
+  words += {"--samples", std::to_string(options.samples)};
+  if (options.icp) words += {"--align", "icp"};
+  return words;
+}
+
+Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
+  constexpr std::size_t kRings = 8;
+  Json rings = Json::array();
+  for (const evaluate::RelativeRing& ring : evaluate::relative_rings(maps, kRings))
+    rings.push_back({{"inner", ring.inner},
+                     {"outer", ring.outer},
+                     {"count", ring.count},
+                     {"median", ring.signed_median}});
+  return rings;
+}
+
+// All pixels of all maps as one.
+Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance) {
+  std::vector<float> errors;
+  std::size_t within = 0, truths = 0;
+  for (const evaluate::DepthEvaluation& map : maps) {
+    truths += map.truth_pixels;
+    for (const float error : map.error)
+      if (std::isfinite(error)) errors.push_back(std::abs(error));
+  }
+  for (const float error : errors) within += error <= tolerance ? 1 : 0;
+  const evaluate::DistanceStatistics statistics = evaluate::summarise(errors);
+  const auto part = [](std::size_t some, std::size_t all) {
+    return static_cast<double>(some) / static_cast<double>(std::max<std::size_t>(1, all));
+  };
+  return {{"pixels", errors.size()},
+          {"mean", statistics.mean},
+          {"median", statistics.median},
+          {"within", part(within, errors.size())},
+          {"completeness", part(errors.size(), truths)}};
+}
+
+}  // namespace
+
+Json to_json(const EvaluationOptions& options) {
+  return {{"tolerance", options.tolerance},
+          {"samples", options.samples},
+          {"picture_width", options.picture_width},
+          {"color_max", options.color_max}};
+}
+
+SceneDistances scene_distances(const SimulatedScene& scene, const std::string& medium) {
+  std::vector<float> distances;
+  for (const fs::path& file : files_ending_in(scene.images(medium), ".distance.tiff"))
+    for (const float distance : cv::Mat1f(io::read_float_tiff(file)))
+      if (distance > 0) distances.push_back(distance);
+  std::sort(distances.begin(), distances.end());
+  const auto percentile = [&](double p) { return evaluate::percentile_of_sorted(distances, p); };
+  return {percentile(50), percentile(95) / percentile(5)};
+}
+
+std::string photograph(const SimulatedScene& scene, const std::string& medium, int width) {
+  return small_picture(files_ending_in(scene.images(medium), ".jpg").at(0), width);
+}
+
+Json evaluated(const Chain& chain, const fs::path& dense, const SimulatedScene& scene,
+               const EvaluationOptions& options) {
+  const fs::path file = dense / "evaluation.json", picture = dense / "evaluation.png";
+  Words arguments = evaluation_arguments(dense / "scene_dense.ply", scene, options);
+  arguments += {"--json", file.string()};
+  if (options.picture_width > 0) {
+    arguments += {"--picture", picture.string()};
+    arguments += {"--picture-width", std::to_string(options.picture_width)};
+    arguments += {"--color-max", fmt::format("{}", options.color_max)};
+  }
+  if (!run_sibling(chain, "EvaluateReconstruction", arguments, dense / "evaluate.log",
+                   options.or_nothing ? nothing_to_measure() : Words()))
+    return nullptr;
+  const Json all = Json::parse(read_file(file));
+  const Json &accuracy = all.at("accuracy"), &score = all.at("scores").at(0);
+  Json result{{"points", accuracy.at("count")},  {"mean", accuracy.at("mean")},
+              {"median", accuracy.at("median")}, {"variance", accuracy.at("variance")},
+              {"recall", score.at("recall")},    {"f_score", score.at("f_score")}};
+  if (options.picture_width > 0) result["picture"] = small_picture(picture, options.picture_width);
+  return result;
+}
+
+Json depth_errors(const fs::path& dense, const SimulatedScene& scene, const std::string& medium,
+                  double tolerance) {
+  std::vector<evaluate::DepthEvaluation> maps;
+  for (const fs::path& file : files_ending_in(dense, ".dmap")) {
+    const DepthMap map = io::read_dmap(file).map;
+    const cv::Mat1f truth = io::read_float_tiff(truth_of(scene, medium, map.image_path));
+    maps.push_back(evaluate::evaluate_depth(map.depth, truth, {}));
+  }
+  Json result = errors_of(maps, tolerance);
+  result["rings"] = rings_of(maps);
+  return result;
+}
+
+std::string depth_picture(const Chain& chain, const fs::path& dense, const SimulatedScene& scene,
+                          const std::string& medium, double color_max) {
+  constexpr int kWidth = 960;
+  const fs::path file = files_ending_in(dense, ".dmap").at(0), picture = dense / "depth.png";
+  const fs::path truth = truth_of(scene, medium, io::read_dmap(file).map.image_path);
+  run_sibling(chain, "EvaluateReconstruction",
+              {"-i", file.string(), "-m", truth.string(), "--color-max",
+               fmt::format("{}", color_max), "--picture", picture.string()},
+              dense / "depth.log");
+  return small_picture(picture, kWidth);
+}
+
+}  // namespace axial

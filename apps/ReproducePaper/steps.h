@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all steps of a chain are made of.
+#pragma once
+
+#include "base/atomic_file.h"
+#include "chain.h"
+
+namespace axial {
+
+Words& operator+=(Words& words, const Words& more);
+
+// `folder` as `make` fills it, unless it was made from the same `inputs` before.
+template <class Make>
+void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
+  const std::filesystem::path mark = folder / "made-from.json";
+  if (std::filesystem::is_regular_file(mark) && read_file(mark) == inputs.dump()) return;
+  std::filesystem::remove_all(folder);
+  make_folder(folder);
+  make();
+  write_atomically(mark, inputs.dump());
+}
+
+// One of the project's programs. False: it said one of `excuses`, see run_unless_excused.
+bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
+                 const std::filesystem::path& log, const Words& excuses = {});
+
+std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& folder,
+                                                   const std::string& end);
+
+// Names and bytes of a file, or of all files of a folder, in a few digits.
+std::string content_of(const std::filesystem::path& file_or_folder);
+
+}  // namespace axial

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was asked of an experiment's numbers, and whether they keep to it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace axial::experiments {
+
+struct Verdict {
+  std::string asked;
+  std::string seen;
+  bool met = false;
+};
+
+std::string verdict_table(const std::vector<Verdict>& verdicts);
+
+}  // namespace axial::experiments
