@@ -98,41 +98,14 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
-// The processor's own minimum and maximum, which the compiler does not find in a selection.
 template <class Abi>
-Pack<Abi> lesser(Pack<Abi> a, const Pack<Abi>& b) {
-#ifdef __AVX512F__
-  if constexpr (Pack<Abi>::kWidth == 16)
-    a.part = typename Pack<Abi>::Part(
-        _mm512_min_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part)));
-  else
-#endif
-#ifdef __AVX2__
-      if constexpr (Pack<Abi>::kWidth == 8)
-    a.part = typename Pack<Abi>::Part(
-        _mm256_min_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part)));
-  else
-#endif
-    stdx::where(!(a.part < b.part), a.part) = b.part;
-  return a;
+Pack<Abi> lesser(const Pack<Abi>& a, const Pack<Abi>& b) {
+  return select(a < b, a, b);
 }
 
 template <class Abi>
-Pack<Abi> greater(Pack<Abi> a, const Pack<Abi>& b) {
-#ifdef __AVX512F__
-  if constexpr (Pack<Abi>::kWidth == 16)
-    a.part = typename Pack<Abi>::Part(
-        _mm512_max_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part)));
-  else
-#endif
-#ifdef __AVX2__
-      if constexpr (Pack<Abi>::kWidth == 8)
-    a.part = typename Pack<Abi>::Part(
-        _mm256_max_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part)));
-  else
-#endif
-    stdx::where(!(a.part > b.part), a.part) = b.part;
-  return a;
+Pack<Abi> greater(const Pack<Abi>& a, const Pack<Abi>& b) {
+  return select(a > b, a, b);
 }
 
 template <class Abi>
