@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/atomic_file.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "depth_stage.h"
 #include "fusion_stage.h"
@@ -45,6 +46,7 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  axial::share_one_heap();
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
   axial::require_writable(options.output);

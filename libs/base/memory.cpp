@@ -83,6 +83,10 @@ std::uint64_t allocated_memory() {
   return all.uordblks + all.hblkhd;
 }
 
+void share_one_heap() {
+  ::mallopt(M_ARENA_MAX, 1);
+}
+
 void map_large_blocks() {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   // Fixing the one number fixes the other, at so little that heaps grow and shrink all the time.

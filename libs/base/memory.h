@@ -20,6 +20,11 @@ std::uint64_t resident_memory();
 // system itself): the same in every run that did the same.
 std::uint64_t allocated_memory();
 
+// All threads take their blocks from one heap from now on, so that what one has freed serves the
+// next. Else each keeps a heap of its own, and how much they hold together depends on how the
+// threads' work happens to interleave. To be called before there are threads.
+void share_one_heap();
+
 // From now on every block of a megabyte or more comes straight from the system and goes back there
 // when freed. The C library would keep such blocks in its heaps as soon as one was freed, with
 // holes between them whose size depends on how the threads' work happens to interleave.

@@ -41,8 +41,8 @@ struct PatchMatchOptions {
   int last_pairs = 0;                    // in the last geometric pass, which only propagates
   float refinement_shrink = 0.65f;       // of the ranges, from pair to pair
   int restart_trials = 3;                // random planes of a hopeless pixel
-  float refinement_pixels = 1.5f;        // depth trial: largest motion in a source view
-  float refinement_angle = radians(16);  // normal trial
+  float refinement_pixels = 2.0f;        // depth trial: largest motion in a source view
+  float refinement_angle = radians(28);  // normal trial
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
   float keep_cost = 1.2f;  // hypotheses at or above are cleared

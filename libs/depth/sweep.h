@@ -6,8 +6,10 @@
 //
 // A visit scores the pixel's own plane in at most four views, and the planes of the two neighbours
 // that were visited before it in the two views which see these best: eight scores however many
-// views there are, one AVX2 register. On coarse levels, where there is little to do and little
-// known, every plane is scored in every view.
+// views there are, one AVX2 register. Trials follow around the best of these planes; where there
+// are few, they are scored together with the planes, around the one that was best at the visits
+// before: one AVX-512 register. On coarse levels, where there is little to do and little known,
+// every plane is scored in every view.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +19,7 @@
 #include <limits>
 #include <numeric>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -190,6 +193,7 @@ class Sweep {
     KeyedRandom random(input_.image_id, map_.index(x, y), input_.sweep);
     if (!(current.plane.depth > 0) || !in_range(current.plane.depth)) {
       if (!input_.first) return clear(current);
+      clear(current);
       current.plane = random_plane(pixel, random);
     }
     if (!(current.plane.normal.dot(pixel.ray.direction) < 0))
@@ -206,11 +210,20 @@ class Sweep {
     const Views own = own_views(x, y, current, before);
     Candidates candidates;
     candidates.add(current.plane, own.all());
-    for (const PlanePixel* from : before) propagate(pixel, *from, own, candidates);
+    std::optional<Best> likely;
+    offer(current.plane, current, likely);
+    for (const PlanePixel* from : before) {
+      const std::optional<PlaneHypothesis> plane = carried(pixel, *from);
+      if (!plane) continue;
+      offer(*plane, *from, likely);
+      propagate(*plane, *from, own, candidates);
+    }
+    const bool at_once = likely && trials_fit(candidates);
+    if (at_once) add_trials(at, *likely, random, candidates);
     Best best;
     keep_best(at, candidates, best);
-    refine(at, random, best);
-    current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views};
+    if (!at_once || best.cost >= options_.bad_cost) refine(at, random, best);
+    current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views, best.motion};
   }
 
   struct Views {
@@ -260,17 +273,22 @@ class Sweep {
     return {views.data(), views[0] == views[1] ? 1u : 2u};
   }
 
-  // Eq. (8): where this pixel's ray meets the neighbour's plane. Nothing if that is no news.
-  void propagate(const ReferencePixel& pixel, const PlanePixel& from, const Views& own,
-                 Candidates& candidates) const {
-    if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return;
+  // Eq. (8): where this pixel's ray meets the neighbour's plane.
+  std::optional<PlaneHypothesis> carried(const ReferencePixel& pixel,
+                                         const PlanePixel& from) const {
+    if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return {};
     const float along = from.plane.normal.dot(pixel.ray.direction);
-    if (!(along < -0.05f)) return;
+    if (!(along < -0.05f)) return {};
     const float depth = from.plane.normal.dot(from.point - pixel.ray.origin) / along;
-    if (!in_range(depth)) return;
-    const PlaneHypothesis plane{depth, from.plane.normal};
+    if (!in_range(depth)) return {};
+    return PlaneHypothesis{depth, from.plane.normal};
+  }
+
+  // Adds a neighbour's plane, if it is news.
+  void propagate(const PlaneHypothesis& plane, const PlanePixel& from, const Views& own,
+                 Candidates& candidates) const {
     for (const PlaneHypothesis& other : candidates.all())
-      if (std::abs(depth - other.depth) < 1e-5f * depth &&
+      if (std::abs(plane.depth - other.depth) < 1e-5f * plane.depth &&
           plane.normal.dot(other.normal) > 0.99999f)
         return;
     if (input_.all_views)
@@ -279,6 +297,18 @@ class Sweep {
       candidates.add(plane, own.all().first(std::min(own.count, from.views.size())));
     else
       candidates.add(plane, distinct(from.views));
+  }
+
+  // Makes `plane` the likely best one of a pixel, if it cost less where it comes `from`.
+  void offer(const PlaneHypothesis& plane, const PlanePixel& from,
+             std::optional<Best>& likely) const {
+    if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))
+      likely = Best{plane, from.cost, from.views, from.motion};
+  }
+
+  bool trials_fit(const Candidates& candidates) const {
+    return !input_.all_views && input_.trial_pairs > 0 &&
+           candidates.count + 2 * static_cast<std::size_t>(input_.trial_pairs) <= kMaxCandidates;
   }
 
   // Scores the candidates and keeps the best, if it is better than `best`.
@@ -317,24 +347,26 @@ class Sweep {
   void refine(const Visit& at, KeyedRandom& random, Best& best) const {
     if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
     if (input_.trial_pairs == 0) return;
-    float scale = 1;
-    if (best.cost <= options_.good_cost)
-      scale = 0.25f;
-    else if (best.cost <= options_.fair_cost)
-      scale = 0.5f;
-    const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
-                                                         0.05f * best.plane.depth)
-                                              : 0.003f * best.plane.depth;
     Candidates trials;
-    add_trials(at, best, depth_range, scale, random, trials);
+    add_trials(at, best, random, trials);
     keep_best(at, trials, best);
+  }
+
+  // How far the first trials go: less, the better the plane is already.
+  float trial_scale(float cost) const {
+    if (cost <= options_.good_cost) return 0.25f;
+    return cost <= options_.fair_cost ? 0.5f : 1.0f;
   }
 
   // Pairs of trials on either side of a plane, in turn along the ray and of the normal, ever
   // closer. A trial that moved both at once would seldom be better: near the optimum what one
   // gains the other loses.
-  void add_trials(const Visit& at, const Best& best, float depth_range, float scale,
-                  KeyedRandom& random, Candidates& trials) const {
+  void add_trials(const Visit& at, const Best& best, KeyedRandom& random,
+                  Candidates& trials) const {
+    const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
+                                                         0.05f * best.plane.depth)
+                                              : 0.003f * best.plane.depth;
+    float scale = trial_scale(best.cost);
     const PlaneHypothesis& plane = best.plane;
     const auto add = [&](float depth, const Eigen::Vector3f& normal) {
       if (in_range(depth) && normal.dot(at.pixel.ray.direction) < -0.05f)

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/error.h"
@@ -128,6 +129,28 @@ TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
   const std::uint64_t before = resident_memory();
   large.resize(1);
   EXPECT_LT(resident_memory(), before - (kBlocks - 2) * kBytes);
+}
+
+// What the other thread keeps at its end is at the top of its heap, which can therefore not shrink.
+TEST(ShareOneHeap, ServesOneThreadFromWhatAnotherHasFreed) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
+#endif
+  share_one_heap();
+  constexpr std::size_t kBlocks = 1000, kBytes = 64 << 10;
+  const auto take = [] {
+    std::vector<std::unique_ptr<char[]>> blocks;
+    for (std::size_t i = 0; i < kBlocks; ++i) {
+      blocks.push_back(std::make_unique<char[]>(kBytes));
+      std::fill_n(blocks.back().get(), kBytes, static_cast<char>(i));
+    }
+    return blocks;
+  };
+  std::unique_ptr<char[]> kept;
+  std::thread([&] { kept = std::move(take().back()); }).join();
+  const std::uint64_t before = resident_memory();
+  const auto blocks = take();
+  EXPECT_LT(resident_memory(), before + kBlocks / 4 * kBytes);
 }
 
 // Many small blocks, every other one of which stays: the C library would keep the rest.

@@ -98,14 +98,33 @@ TEST(SweepViews, AreFewHoweverManyThereAre) {
   constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
   ASSERT_GE(matcher.calls.size(), kInner);
   for (const auto& pairs : matcher.calls) {
-    ASSERT_LE(pairs.size(), 8u);
-    std::set<std::pair<int, int>> distinct;
+    std::array<std::set<int>, kMaxCandidates> of_plane;
     for (const ScorePair& pair : pairs) {
       ASSERT_LT(pair.view, kViews);
-      distinct.emplace(pair.plane, pair.view);
+      ASSERT_TRUE(of_plane.at(pair.plane).insert(pair.view).second);
     }
-    ASSERT_EQ(distinct.size(), pairs.size());
+    ASSERT_LE(of_plane[0].size(), kOwnViews);
+    for (std::size_t plane = 1; plane < of_plane.size(); ++plane)
+      ASSERT_LE(of_plane[plane].size(), 2u);
+    ASSERT_LE(pairs.size(), 16u);
   }
+}
+
+// How often a sweep asks the matcher, of pixels that a sweep has visited before.
+std::size_t calls_of_later_sweep(int trial_pairs) {
+  const FormulaMatcher matcher;
+  PlaneMap map = wall();
+  run(matcher, map, input(0));
+  matcher.calls.clear();
+  run(matcher, map, input(trial_pairs));
+  return matcher.calls.size();
+}
+
+TEST(SweepTrials, AreScoredAtOnceWithTheOtherPlanesWhereTheyAreFew) {
+  constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
+  EXPECT_EQ(calls_of_later_sweep(0), kInner);
+  EXPECT_EQ(calls_of_later_sweep(2), kInner);
+  EXPECT_EQ(calls_of_later_sweep(4), 2 * kInner);
 }
 
 TEST(SweepViews, TurnUntilThoseAreFoundThatSeeThePixel) {
