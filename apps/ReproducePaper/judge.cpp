@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "evaluate/depth_evaluation.h"
+#include "evaluate/depth_places.h"
 #include "evaluate/statistics.h"
 #include "io/dmap.h"
 #include "io/image.h"
@@ -47,6 +48,36 @@ Words evaluation_arguments(const fs::path& cloud, const SimulatedScene& scene,
   words += {"--samples", std::to_string(options.samples)};
   if (options.icp) words += {"--align", "icp"};
   return words;
+}
+
+// The view's photograph as it was matched.
+cv::Mat1b grey_of(const SimulatedScene& scene, const std::string& medium, const DepthMap& map) {
+  const fs::path file = scene.images(medium) / fs::path(map.image_path).filename();
+  cv::Mat1b grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  if (grey.empty()) fail("{}: cannot be read", file.string());
+  cv::resize(grey, grey, map.depth.size(), 0, 0, cv::INTER_AREA);
+  return grey;
+}
+
+Json places_of(std::span<const evaluate::PlacedMap> maps) {
+  Json places = Json::array();
+  for (const evaluate::PlaceErrors& errors : evaluate::errors_by_place(maps))
+    places.push_back({{"truths", errors.truth_pixels},
+                      {"pixels", errors.compared_pixels},
+                      {"mean", errors.mean},
+                      {"median", errors.median}});
+  return places;
+}
+
+Json phases_of(std::span<const evaluate::PlacedMap> maps) {
+  constexpr std::size_t kBins = 8;
+  Json phases = Json::array();
+  for (const evaluate::PhaseErrors& errors : evaluate::errors_by_phase(maps, kBins))
+    phases.push_back({{"begin", errors.begin},
+                      {"end", errors.end},
+                      {"count", errors.count},
+                      {"shift", errors.shift}});
+  return phases;
 }
 
 Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
@@ -128,14 +159,23 @@ Json evaluated(const Chain& chain, const fs::path& dense, const SimulatedScene& 
 
 Json depth_errors(const fs::path& dense, const SimulatedScene& scene, const std::string& medium,
                   double tolerance) {
-  std::vector<evaluate::DepthEvaluation> maps;
-  for (const fs::path& file : files_ending_in(dense, ".dmap")) {
-    const DepthMap map = io::read_dmap(file).map;
+  const std::vector<fs::path> files = files_ending_in(dense, ".dmap");
+  std::vector<DepthMap> maps;
+  for (const fs::path& file : files) maps.push_back(io::read_dmap(file).map);
+  std::vector<evaluate::DepthEvaluation> evaluations;
+  std::vector<evaluate::PlacedMap> placed;
+  for (const DepthMap& map : maps) {
     const cv::Mat1f truth = io::read_float_tiff(truth_of(scene, medium, map.image_path));
-    maps.push_back(evaluate::evaluate_depth(map.depth, truth, {}));
+    evaluations.push_back(evaluate::evaluate_depth(map.depth, truth, {}));
+    const evaluate::DepthEvaluation& evaluation = evaluations.back();
+    placed.push_back(
+        {&map, evaluation,
+         evaluate::places_of(evaluation.truth, map.camera, grey_of(scene, medium, map))});
   }
-  Json result = errors_of(maps, tolerance);
-  result["rings"] = rings_of(maps);
+  Json result = errors_of(evaluations, tolerance);
+  result["rings"] = rings_of(evaluations);
+  result["places"] = places_of(placed);
+  result["phases"] = phases_of(placed);
   return result;
 }
 

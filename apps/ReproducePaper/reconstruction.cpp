@@ -138,7 +138,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   for (const int seed : one.seeds) {
     one.scene.seed = seed;
     const auto inputs = [&](const std::vector<Method>& methods) -> Json {
-      return {{"version", 2},
+      return {{"version", 3},
               {"scene", to_json(one.scene)},
               {"evaluation", to_json(one.evaluation)},
               {"methods", to_json(methods)}};

@@ -220,6 +220,8 @@ std::vector<Document> reconstruction_documents(const Json& results, const Seeds&
           {"reconstruction_gains.md", gains_table({on_colmaps, on_true}, seeds)},
           {"reconstruction_maps.md", maps_table(results, seeds)},
           {"reconstruction_rings.md", rings_table(results, seeds)},
+          {"reconstruction_places.md", places_table(results, seeds)},
+          {"reconstruction_phases.md", phases_table(results, seeds)},
           {"reconstruction_verdicts.md", verdicts(results, on_colmaps, seeds)},
           {"reconstruction_views.svg", photographs(results, seeds.front())},
           {"reconstruction_clouds.svg", cloud_pictures(results, seeds.front())},

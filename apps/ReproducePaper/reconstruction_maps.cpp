@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "experiments/distribution.h"
@@ -16,6 +17,31 @@ using experiments::result_of;
 
 const Json& maps_of(const Json& results, int seed, const std::string& method) {
   return result_of(results, true_part(seed)).at("maps").at(method);
+}
+
+std::vector<const Method*> judged_methods() {
+  std::vector<const Method*> judged;
+  for (const Method& method : reconstruction_methods())
+    if (method.maps_judged) judged.push_back(&method);
+  return judged;
+}
+
+constexpr std::array kPlaces{"a depth edge within the window", "no texture",
+                             "steeper than 60 degrees", "all else"};
+
+// A number of one place, or of all places together.
+double sum_over_places(const Json& places, const std::function<double(const Json& place)>& value) {
+  double sum = 0;
+  for (const Json& place : places) sum += value(place);
+  return sum;
+}
+
+double number(const Json& place, const char* field) {
+  return place.at(field).get<double>();
+}
+
+double summed_error(const Json& place) {
+  return number(place, "pixels") * number(place, "mean");
 }
 
 constexpr std::size_t kFewest = 5000;  // pixels of a ring that counts
@@ -66,15 +92,61 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 std::string maps_table(const Json& results, const Seeds& seeds) {
   std::vector<Words> rows{{"depth maps", "pixels compared", "mean error [mm]", "median error [mm]",
                            "within 5 mm [%]", "completeness [%]"}};
-  for (const Method& method : reconstruction_methods()) {
-    if (!method.maps_judged) continue;
+  for (const Method* method : judged_methods()) {
     const auto middle = [&](const char* field) {
       return median_over(
-          seeds, [&](int s) { return maps_of(results, s, method.name).at(field).get<double>(); });
+          seeds, [&](int s) { return maps_of(results, s, method->name).at(field).get<double>(); });
     };
-    rows.push_back({method.title, fmt::format("{:.0f}", middle("pixels")),
+    rows.push_back({method->title, fmt::format("{:.0f}", middle("pixels")),
                     millimetres(middle("mean")), millimetres(middle("median")),
                     percent(middle("within")), percent(middle("completeness"))});
+  }
+  return experiments::markdown_table(rows);
+}
+
+std::string places_table(const Json& results, const Seeds& seeds) {
+  std::vector<Words> rows{{"depth maps", "pixels with", "of all [%]", "completeness [%]",
+                           "median error [mm]", "mean error [mm]", "of the sum of errors [%]"}};
+  for (const Method* method : judged_methods())
+    for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+      const auto middle = [&](const std::function<double(const Json& place, const Json& all)>& of) {
+        return median_over(seeds, [&](int s) {
+          const Json& places = maps_of(results, s, method->name).at("places");
+          return of(places.at(k), places);
+        });
+      };
+      const auto truths = [](const Json& place) { return number(place, "truths"); };
+      rows.push_back(
+          {method->title, kPlaces[k], percent(middle([&](const Json& place, const Json& all) {
+             return truths(place) / sum_over_places(all, truths);
+           })),
+           percent(middle([](const Json& place, const Json&) {
+             return number(place, "pixels") / std::max(1.0, number(place, "truths"));
+           })),
+           millimetres(
+               middle([](const Json& place, const Json&) { return number(place, "median"); })),
+           millimetres(
+               middle([](const Json& place, const Json&) { return number(place, "mean"); })),
+           percent(middle([](const Json& place, const Json& all) {
+             return summed_error(place) / sum_over_places(all, summed_error);
+           }))});
+    }
+  return experiments::markdown_table(rows);
+}
+
+std::string phases_table(const Json& results, const Seeds& seeds) {
+  std::vector<Words> rows{{"true position within the pixel"}};
+  for (const Method* method : judged_methods())
+    rows[0].push_back(fmt::format("{} [1/1000 px]", method->title));
+  const Json& first = maps_of(results, seeds.front(), "air").at("phases");
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    Words row{fmt::format("{:.3f} to {:.3f}", number(first[k], "begin"), number(first[k], "end"))};
+    for (const Method* method : judged_methods())
+      row.push_back(fmt::format(
+          "{:+.1f}", 1e3 * median_over(seeds, [&](int s) {
+                       return number(maps_of(results, s, method->name).at("phases").at(k), "shift");
+                     })));
+    rows.push_back(row);
   }
   return experiments::markdown_table(rows);
 }

@@ -16,6 +16,12 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 // Errors of all pixels of all maps.
 std::string maps_table(const Json& results, const Seeds& seeds);
 
+// Errors by what a pixel lies on.
+std::string places_table(const Json& results, const Seeds& seeds);
+
+// Shifts in the source view by where in its pixel the true image lies.
+std::string phases_table(const Json& results, const Seeds& seeds);
+
 // Signed errors in rings around the image centre.
 std::string rings_table(const Json& results, const Seeds& seeds);
 

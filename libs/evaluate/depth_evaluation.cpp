@@ -48,11 +48,6 @@ void check(const cv::Mat1f& estimate, const cv::Mat1f& truth, const DepthOptions
       fail("tolerance is {}: it must be a positive length in metres", tolerance);
 }
 
-double median_of(std::vector<float> values) {
-  std::sort(values.begin(), values.end());
-  return percentile_of_sorted(values, 50);
-}
-
 // `count` rings of equal width from the image centre to its corners.
 class Rings {
  public:

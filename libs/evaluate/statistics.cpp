@@ -27,6 +27,11 @@ double percentile_of_sorted(std::span<const float> sorted, double p) {
          part * static_cast<double>(sorted[above]);
 }
 
+double median_of(std::vector<float> values) {
+  std::sort(values.begin(), values.end());
+  return percentile_of_sorted(values, 50);
+}
+
 DistanceStatistics summarise(std::span<const float> distances) {
   DistanceStatistics result;
   result.count = distances.size();

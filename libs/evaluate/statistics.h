@@ -25,6 +25,9 @@ DistanceStatistics summarise(std::span<const float> distances);
 // The p-th percentile (0 to 100) of sorted values, linear between neighbours; 0 if there are none.
 double percentile_of_sorted(std::span<const float> sorted, double p);
 
+// 0 for none.
+double median_of(std::vector<float> values);
+
 // Counts in bins of equal width over [0, upper), and what lies at or beyond `upper`.
 struct Histogram {
   double upper = 0;

@@ -114,6 +114,12 @@ class Quick(unittest.TestCase):
             self.assertEqual(maps["pixels"], sum(ring["count"] for ring in maps["rings"]), name)
             self.assertLess(maps["median"], maps["mean"], name)
             self.assertTrue(0 < maps["within"] < 1 and 0 < maps["completeness"] < 1, name)
+            self.assertEqual(maps["pixels"], sum(place["pixels"] for place in maps["places"]), name)
+            *_, open_ground = maps["places"]
+            self.assertLess(open_ground["mean"], maps["mean"], name)
+            self.assertEqual(len(maps["phases"]), 8)
+            for phase in maps["phases"]:
+                self.assertLess(abs(phase["shift"]), 0.3, name)
             self.assertEqual(len(maps["rings"]), 8)
             for ring in maps["rings"]:
                 if ring["count"] >= 5000:

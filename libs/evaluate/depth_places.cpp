@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/depth_places.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+
+namespace axial::evaluate {
+namespace {
+
+// Windows of 2 reach + 1 pixels that hold a jump between neighbours.
+cv::Mat1b edges_of(const cv::Mat1f& truth, const PlaceOptions& options) {
+  cv::Mat1b jumps(truth.size(), std::uint8_t{0});
+  const auto jump = [&](float a, float b) {
+    return !(std::max(a, b) < static_cast<float>(options.jump) * std::min(a, b));
+  };
+  const auto mark = [&](int u, int v, int to_u, int to_v) {
+    if (to_u < truth.cols && to_v < truth.rows && jump(truth(v, u), truth(to_v, to_u)))
+      jumps(v, u) = jumps(to_v, to_u) = 1;
+  };
+  for (int v = 0; v < truth.rows; ++v)
+    for (int u = 0; u < truth.cols; ++u) {
+      mark(u, v, u + 1, v);
+      mark(u, v, u, v + 1);
+    }
+  // Both pixels at a jump are marked: a window that holds one of them alone holds no jump.
+  const int side = 2 * options.reach - 1;
+  cv::dilate(jumps, jumps, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  return jumps;
+}
+
+cv::Mat1f deviations_of(const cv::Mat1b& grey, int reach) {
+  const cv::Size window(2 * reach + 1, 2 * reach + 1);
+  cv::Mat1f values, mean, square;
+  grey.convertTo(values, CV_32F);
+  cv::blur(values, mean, window);
+  cv::blur(values.mul(values), square, window);
+  cv::Mat1f deviation;
+  cv::sqrt(cv::max(square - mean.mul(mean), 0.0), deviation);
+  return deviation;
+}
+
+// From the points that the neighbouring pixels see; 0 at the border and beside missing truth.
+template <class Camera>
+double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v) {
+  if (u < 1 || v < 1 || u + 1 >= truth.cols || v + 1 >= truth.rows) return 0;
+  bool whole = true;
+  const auto point = [&](int x, int y) -> Eigen::Vector3d {
+    whole &= truth(y, x) > 0;
+    return camera.ray({x, y}).at(truth(y, x));
+  };
+  const Eigen::Vector3d across = point(u + 1, v) - point(u - 1, v);
+  const Eigen::Vector3d down = point(u, v + 1) - point(u, v - 1);
+  if (!whole) return 0;
+  return std::abs(across.cross(down).normalized().dot(camera.ray({u, v}).direction));
+}
+
+// How the pixels of one map are seen by a source view.
+struct Seen {
+  double phase;  // of the true image
+  double shift;  // of the estimated one [px]
+};
+
+template <class Reference, class Source>
+void add_seen(const PlacedMap& placed, const Reference& reference, const Source& source,
+              const Pose& source_pose, std::vector<Seen>& all) {
+  const Pose& pose = placed.map->pose;
+  for (int v = 0; v < placed.places.height; ++v)
+    for (int u = 0; u < placed.places.width; ++u) {
+      const double error = placed.evaluation.error(v, u);
+      if (placed.places.at(u, v) != Place::open || std::isnan(error)) continue;
+      const auto ray = reference.ray({u, v});
+      refractive::Matrix23<double> jacobian;
+      const Eigen::Vector3d point =
+          source_pose.to_camera(pose.to_world(ray.at(placed.evaluation.truth(v, u))));
+      const auto image = source.project(point, &jacobian);
+      if (!image.visible) continue;
+      const Eigen::Vector2d motion =
+          jacobian * (source_pose.rotation * pose.rotation.transpose() * ray.direction);
+      const int axis = std::abs(motion.x()) > std::abs(motion.y()) ? 0 : 1;
+      const double shift = motion(axis) * error;
+      if (std::abs(shift) > 0.5) continue;
+      all.push_back({image.pixel(axis) - std::floor(image.pixel(axis)), shift});
+    }
+}
+
+const DepthMap* first_source(const PlacedMap& placed, std::span<const PlacedMap> maps) {
+  for (std::size_t k = 1; k < placed.map->ids.size(); ++k)
+    for (const PlacedMap& other : maps)
+      if (other.map->ids.front() == placed.map->ids[k]) return other.map;
+  return nullptr;
+}
+
+}  // namespace
+
+PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
+                   const PlaceOptions& options) {
+  if (truth.size() != cv::Size(camera.width, camera.height) || truth.size() != grey.size())
+    fail("a camera of {} x {}, a truth of {} x {} and a photograph of {} x {}: must be the same",
+         camera.width, camera.height, truth.cols, truth.rows, grey.cols, grey.rows);
+  const cv::Mat1b edges = edges_of(truth, options);
+  const cv::Mat1f deviations = deviations_of(grey, options.reach);
+  const double least_cosine = std::cos(options.steep_degrees * std::numbers::pi / 180);
+  PlaceMap places{truth.cols, truth.rows, {}};
+  const auto place = [&](const auto& model, int u, int v) {
+    if (!(truth(v, u) > 0)) return Place::nothing;
+    if (edges(v, u)) return Place::edge;
+    if (deviations(v, u) < options.least_deviation) return Place::plain;
+    return cosine_to_ray(model, truth, u, v) < least_cosine ? Place::steep : Place::open;
+  };
+  std::visit(
+      [&](const auto& model) {
+        for (int v = 0; v < truth.rows; ++v)
+          for (int u = 0; u < truth.cols; ++u) places.pixels.push_back(place(model, u, v));
+      },
+      make_camera<double>(camera));
+  return places;
+}
+
+std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
+  constexpr std::array kPlaces{Place::edge, Place::plain, Place::steep, Place::open};
+  std::array<PlaceErrors, 4> result;
+  for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+    result[k].place = kPlaces[k];
+    std::vector<float> magnitudes;
+    for (const PlacedMap& placed : maps)
+      for (int v = 0; v < placed.places.height; ++v)
+        for (int u = 0; u < placed.places.width; ++u) {
+          if (placed.places.at(u, v) != kPlaces[k]) continue;
+          ++result[k].truth_pixels;
+          const float error = placed.evaluation.error(v, u);
+          if (!std::isnan(error)) magnitudes.push_back(std::abs(error));
+        }
+    result[k].compared_pixels = magnitudes.size();
+    if (magnitudes.empty()) continue;
+    const DistanceStatistics statistics = summarise(magnitudes);
+    result[k].mean = statistics.mean;
+    result[k].median = statistics.median;
+  }
+  return result;
+}
+
+std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins) {
+  std::vector<Seen> seen;
+  for (const PlacedMap& placed : maps) {
+    const DepthMap* source = first_source(placed, maps);
+    if (!source) continue;
+    std::visit(
+        [&](const auto& from, const auto& to) { add_seen(placed, from, to, source->pose, seen); },
+        make_camera<double>(placed.map->camera), make_camera<double>(source->camera));
+  }
+  const auto count = static_cast<double>(bins);
+  std::vector<std::vector<float>> shifts(bins);
+  for (const Seen& pixel : seen)
+    shifts[std::min(bins - 1, static_cast<std::size_t>(pixel.phase * count))].push_back(
+        static_cast<float>(pixel.shift));
+  std::vector<PhaseErrors> result(bins);
+  for (std::size_t k = 0; k < bins; ++k)
+    result[k] = {static_cast<double>(k) / count, static_cast<double>(k + 1) / count,
+                 shifts[k].size(), median_of(shifts[k])};
+  return result;
+}
+
+}  // namespace axial::evaluate

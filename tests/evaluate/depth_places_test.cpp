@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/depth_places.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "base/error.h"
+
+namespace axial::evaluate {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+CameraModel pinhole() {
+  return {kWidth, kHeight, {120, 120, 79.5, 59.5}, {}};
+}
+
+CameraModel behind_glass() {
+  CameraModel model = pinhole();
+  model.port = refractive::FlatPort<double>{{0, 0, 1}, 0.02, 0.014, 1, 1.52, 1.333};
+  return model;
+}
+
+// How far along every ray the plane n.X = 1 is.
+cv::Mat1f distances_to(const Eigen::Vector3d& n, const CameraModel& camera) {
+  cv::Mat1f distances(kHeight, kWidth);
+  std::visit(
+      [&](const auto& model) {
+        for (int v = 0; v < kHeight; ++v)
+          for (int u = 0; u < kWidth; ++u) {
+            const auto ray = model.ray({u, v});
+            distances(v, u) = static_cast<float>((1 - n.dot(ray.origin)) / n.dot(ray.direction));
+          }
+      },
+      make_camera<double>(camera));
+  return distances;
+}
+
+cv::Mat1b noise() {
+  std::mt19937 random(3);
+  cv::Mat1b grey(kHeight, kWidth);
+  for (std::uint8_t& value : grey) value = static_cast<std::uint8_t>(random() % 256);
+  return grey;
+}
+
+cv::Mat1f wall(double z) {
+  return distances_to({0, 0, 1 / z}, pinhole());
+}
+
+TEST(Places, AreEdgesWhereAWindowSeesTwoSurfaces) {
+  cv::Mat1f truth = wall(3);
+  cv::Mat1f nearer = wall(2);
+  constexpr int kFirst = 100;  // column of the farther wall
+  nearer.colRange(0, kFirst).copyTo(truth.colRange(0, kFirst));
+  const PlaceMap places = places_of(truth, pinhole(), noise());
+  for (int u = 1; u + 1 < kWidth; ++u) {
+    const bool sees_both = u - 4 < kFirst && u + 4 >= kFirst;
+    EXPECT_EQ(places.at(u, 60) == Place::edge, sees_both) << u;
+  }
+  EXPECT_EQ(places.at(20, 60), Place::open);
+}
+
+TEST(Places, ArePlainWithoutTextureAndNothingWithoutTruth) {
+  cv::Mat1f truth = wall(2);
+  truth.rowRange(0, 30) = 0.0f;
+  cv::Mat1b grey = noise();
+  grey(cv::Rect(40, 60, 30, 30)) = std::uint8_t{128};
+  const PlaceMap places = places_of(truth, pinhole(), grey);
+  EXPECT_EQ(places.at(80, 10), Place::nothing);
+  EXPECT_EQ(places.at(55, 75), Place::plain);
+  EXPECT_EQ(places.at(100, 75), Place::open);
+}
+
+// At the image centre a plane's slant is the angle between its normal and the axis.
+TEST(Places, AreSteepWhereTheSurfaceTurnsAway) {
+  for (const CameraModel& camera : {pinhole(), behind_glass()})
+    for (const double degrees : {0.0, 55.0, 65.0}) {
+      const double angle = degrees * std::numbers::pi / 180;
+      const Eigen::Vector3d n = Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) / 2;
+      const auto places = places_of(distances_to(n, camera), camera, noise());
+      EXPECT_EQ(places.at(80, 60), degrees > 60 ? Place::steep : Place::open) << degrees;
+    }
+}
+
+TEST(Places, NeedOneSize) {
+  EXPECT_THROW(places_of(wall(2), pinhole(), cv::Mat1b(60, 80)), Error);
+  EXPECT_THROW(places_of(cv::Mat1f(60, 80, 1.0f), pinhole(), cv::Mat1b(60, 80)), Error);
+}
+
+PlacedMap placed(const DepthMap& map, const cv::Mat1f& truth, const cv::Mat1b& grey) {
+  return {&map, evaluate_depth(map.depth, truth, {}), places_of(truth, map.camera, grey)};
+}
+
+TEST(ErrorsByPlace, AreThoseOfItsPixels) {
+  const cv::Mat1f truth = wall(2);
+  cv::Mat1b grey = noise();
+  const cv::Rect plain(40, 60, 40, 40);
+  grey(plain) = std::uint8_t{128};
+  DepthMap map;
+  map.camera = pinhole();
+  map.ids = {0};
+  map.depth = truth.clone();
+  map.depth += 0.001f;
+  map.depth(plain) += 0.004f;
+  map.depth(cv::Rect(0, 0, kWidth, 10)) = 0.0f;
+  const std::vector maps{placed(map, truth, grey), placed(map, truth, grey)};
+  const auto places = errors_by_place(maps);
+  EXPECT_EQ(places[0].truth_pixels, 0u);
+  EXPECT_EQ(places[0].mean, 0);
+  EXPECT_EQ(places[1].place, Place::plain);
+  // Windows that the noise does not reach: a band of 4 pixels is lost on every side.
+  EXPECT_EQ(places[1].truth_pixels, 2u * 32 * 32);
+  EXPECT_NEAR(places[1].mean, 0.005, 1e-6);
+  EXPECT_NEAR(places[3].median, 0.001, 1e-6);
+  EXPECT_LT(places[3].compared_pixels, places[3].truth_pixels);
+}
+
+// Depths that are drawn towards a wave over the source's pixel, as finite differences say they
+// move.
+class Phases : public testing::TestWithParam<bool> {
+ protected:
+  static constexpr double kWave = 0.05;  // [px]
+
+  void SetUp() override {
+    for (const std::uint32_t id : {0u, 1u}) {
+      DepthMap& map = maps_[id];
+      map.camera = GetParam() ? behind_glass() : pinhole();
+      map.ids = {id, 7, 1 - id};  // a source without a map comes first
+      map.pose.centre = {id * 0.35, id * 0.05, 0};
+      truth_[id] = distances_to({0.02, 0.03, 0.5}, map.camera);
+      map.depth = truth_[id].clone();
+    }
+    truth_[1] = 0.0f;  // judged from the first map alone
+  }
+
+  Eigen::Vector2d seen_by_source(int u, int v, double distance) const {
+    return std::visit(
+        [&](const auto& camera) -> Eigen::Vector2d {
+          return camera.project(camera.ray({u, v}).at(distance) - maps_[1].pose.centre).pixel;
+        },
+        make_camera<double>(maps_[0].camera));
+  }
+
+  void add_wave() {
+    for (int v = 0; v < kHeight; ++v)
+      for (int u = 0; u < kWidth; ++u) {
+        const double d = truth_[0](v, u), h = 1e-4;
+        const double at = seen_by_source(u, v, d).x();
+        const double motion = (seen_by_source(u, v, d + h).x() - at) / h;
+        maps_[0].depth(v, u) +=
+            static_cast<float>(kWave * std::sin(2 * std::numbers::pi * at) / motion);
+      }
+  }
+
+  std::vector<PhaseErrors> phases() const {
+    std::vector<PlacedMap> placed_maps{placed(maps_[0], truth_[0], noise())};
+    placed_maps.push_back({&maps_[1], {}, {}});
+    return errors_by_phase(placed_maps, 8);
+  }
+
+  std::array<DepthMap, 2> maps_;
+  std::array<cv::Mat1f, 2> truth_;
+};
+
+TEST_P(Phases, ShowNoWaveWhereThereIsNone) {
+  for (const PhaseErrors& bin : phases()) {
+    EXPECT_GT(bin.count, 1000u);
+    EXPECT_EQ(bin.shift, 0);
+  }
+}
+
+TEST_P(Phases, ShowTheWaveThatIsThere) {
+  add_wave();
+  for (const PhaseErrors& bin : phases()) {
+    const double middle = (bin.begin + bin.end) / 2;
+    // Within a bin the sine departs from its middle by up to a fifth of the amplitude.
+    EXPECT_NEAR(bin.shift, kWave * std::sin(2 * std::numbers::pi * middle), 0.2 * kWave) << middle;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BehindGlass, Phases, testing::Bool());
+
+}  // namespace
+}  // namespace axial::evaluate
