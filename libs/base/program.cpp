@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -158,18 +159,27 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   return parsed;
 }
 
+namespace {
+
+// On a terminal a line of progress may be under way: what is written next takes its place.
+std::string line_start(int descriptor) {
+  return ::isatty(descriptor) != 0 ? "\r\033[K" : "";
+}
+
+}  // namespace
+
 int run_program(const std::string& name, const std::function<int()>& body) {
   const auto log =
       std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
-  log->set_pattern("%H:%M:%S [%n] %v");
+  log->set_pattern(line_start(STDOUT_FILENO) + "%H:%M:%S [%n] %v");
   log->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(log);
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    std::cerr << name << ": out of memory\n";
+    std::cerr << line_start(STDERR_FILENO) << name << ": out of memory\n";
   } catch (const std::exception& error) {
-    std::cerr << name << ": " << one_line(error.what()) << "\n";
+    std::cerr << line_start(STDERR_FILENO) << name << ": " << one_line(error.what()) << "\n";
   }
   return 1;
 }

@@ -43,7 +43,6 @@ ProgressSink console_progress(const std::string& title) {
       fmt::print("\r{}\033[K", line);
       std::fflush(stdout);
     } else {
-      if (terminal) fmt::print("\r\033[K");
       spdlog::log(level, line);
     }
   };
