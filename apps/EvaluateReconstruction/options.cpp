@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
-#include <charconv>
 #include <cmath>
+#include <ranges>
+#include <string_view>
 
 #include "base/error.h"
+#include "base/parse_number.h"
 
 namespace po = boost::program_options;
-using axial::fail;
+using axial::fail, axial::parse_finite;
 
 namespace {
 
@@ -18,15 +20,13 @@ struct Texts {
 };
 
 std::vector<double> parse_tolerances(const std::string& text) {
+  const std::string wanted = "must be positive lengths in metres, separated by commas";
+  if (text.empty()) fail("--tolerance is empty: {}", wanted);
   std::vector<double> values;
-  for (const char *at = text.data(), *end = at + text.size(); at <= end;) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || (stop != end && *stop != ',') || !(value > 0) ||
-        !std::isfinite(value))
-      fail("--tolerance {}: must be positive lengths in metres, separated by commas", text);
-    values.push_back(value);
-    at = stop + 1;
+  for (const auto& word : std::views::split(std::string_view(text), ',')) {
+    const auto value = parse_finite<double>(std::string_view(word.begin(), word.end()));
+    if (!value || !(*value > 0)) fail("--tolerance {}: {}", text, wanted);
+    values.push_back(*value);
   }
   return values;
 }
