@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From raw underwater photographs to a cloud in one command, killed at every step."""
 
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
 import json
 import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 from programs import BIN, main, read, run
 
@@ -28,6 +34,59 @@ def camera_centres(images):
                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
         centre = [-sum(rotation[row][column] * t[row] for row in range(3)) for column in range(3)]
         yield " ".join([rest[-1], *map(str, centre)]) + "\n"
+
+
+def loaded():
+    """The script as a module."""
+    loader = importlib.machinery.SourceFileLoader("reconstruct", str(SCRIPT))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("reconstruct", loader))
+    loader.exec_module(module)
+    return module
+
+
+class WithAnotherColmap(unittest.TestCase):
+    """Parts of the script, with a stand-in for COLMAP and its models."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.module = loaded()
+
+    def options_where_colmap_says(self, text):
+        program = self.folder / "colmap"
+        program.write_text(f"#!/bin/sh\necho '{text}'\n")
+        program.chmod(0o755)
+        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
+            return self.module.on_the_cpu("feature_extractor", "SiftExtraction.use_gpu",
+                                          "FeatureExtraction.use_gpu")
+
+    def test_keeps_every_version_off_the_graphics_card(self):
+        self.assertEqual(self.options_where_colmap_says("--SiftExtraction.use_gpu arg (=1)"),
+                         ["--SiftExtraction.use_gpu", 0])
+        self.assertEqual(self.options_where_colmap_says("--FeatureExtraction.use_gpu arg (=1)"),
+                         ["--FeatureExtraction.use_gpu", 0])
+        self.assertEqual(self.options_where_colmap_says("--other arg"), [])
+
+    def largest_of(self, *sizes):
+        for number, size in enumerate(sizes):
+            model = self.folder / "models" / str(number)
+            model.mkdir(parents=True)
+            (model / "images.bin").write_bytes(struct.pack("<Q", size))
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.module.largest(self.folder / "models")
+        best = self.folder / "models" / "best"
+        return self.module.registered(best), said.getvalue()
+
+    def test_says_how_many_pieces_there_are(self):
+        size, said = self.largest_of(3, 9, 2)
+        self.assertEqual(size, 9)
+        self.assertIn("9 images have poses", said)
+        self.assertIn("2 more models, of 3, 2 images", said)
+
+    def test_says_nothing_of_pieces_where_there_is_one(self):
+        self.assertNotIn("more", self.largest_of(4)[1])
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")
