@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "depth/filters.h"
+#include "depth/plane_map.h"
 
 namespace densify {
 namespace {
@@ -73,7 +74,8 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.read_map = 44 * pixels;
   // Planes of this level and the one before, priors, the result and its filtered copies; a source's
   // pixels twice as words of 2 x 2 neighbours, its depths.
-  sizes.match = (36 + 9 + 8 + 60) * pixels +
+  constexpr std::uint64_t kPlane = sizeof(axial::depth::PlanePixel);
+  sizes.match = (kPlane + kPlane / 4 + 8 + 60) * pixels +
                 sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
   // Rays, the result; what a neighbour sees.
   sizes.adjust = (24 + 20) * pixels + neighbours * 12 * pixels;

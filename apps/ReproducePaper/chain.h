@@ -103,7 +103,8 @@ Json evaluated(const Chain& chain, const std::filesystem::path& dense, const Sim
 // Errors of all depth maps of a folder, as one: "pixels", "mean" and "median" of |estimate - truth|
 // [m], "within": share of these pixels at the tolerance, "completeness": share of the pixels with a
 // truth. "rings" around the image centre, each with "inner", "outer", "count" and the "median" of
-// the signed error as a fraction of the true distance. "places" and "phases": depth_places.h.
+// the signed error as a fraction of the true distance. "places" (by "place", with "truths",
+// "pixels", "mean", "median") and "phases" ("begin", "end", "count", "shift"): depth_places.h.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);
 

@@ -59,10 +59,24 @@ cv::Mat1b grey_of(const SimulatedScene& scene, const std::string& medium, const 
   return grey;
 }
 
+std::string title_of(evaluate::Place place) {
+  switch (place) {
+    case evaluate::Place::edge:
+      return "a depth edge within the window";
+    case evaluate::Place::plain:
+      return "no texture";
+    case evaluate::Place::steep:
+      return "steeper than 60 degrees";
+    default:
+      return "all else";
+  }
+}
+
 Json places_of(std::span<const evaluate::PlacedMap> maps) {
   Json places = Json::array();
   for (const evaluate::PlaceErrors& errors : evaluate::errors_by_place(maps))
-    places.push_back({{"truths", errors.truth_pixels},
+    places.push_back({{"place", title_of(errors.place)},
+                      {"truths", errors.truth_pixels},
                       {"pixels", errors.compared_pixels},
                       {"mean", errors.mean},
                       {"median", errors.median}});

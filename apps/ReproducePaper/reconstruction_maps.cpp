@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "experiments/distribution.h"
 #include "experiments/tables.h"
+#include "steps.h"
 
 namespace axial {
 namespace {
@@ -26,9 +26,6 @@ std::vector<const Method*> judged_methods() {
   return judged;
 }
 
-constexpr std::array kPlaces{"a depth edge within the window", "no texture",
-                             "steeper than 60 degrees", "all else"};
-
 // A number of one place, or of all places together.
 double sum_over_places(const Json& places, const std::function<double(const Json& place)>& value) {
   double sum = 0;
@@ -42,6 +39,37 @@ double number(const Json& place, const char* field) {
 
 double summed_error(const Json& place) {
   return number(place, "pixels") * number(place, "mean");
+}
+
+const Json& places_of(const Json& results, int seed, const Method& method) {
+  return maps_of(results, seed, method.name).at("places");
+}
+
+Words place_row(const Json& results, const Seeds& seeds, const Method& method, std::size_t k) {
+  using Value = std::function<double(const Json& place, const Json& all)>;
+  const auto middle = [&](const Value& value) {
+    return median_over(seeds, [&](int s) {
+      const Json& places = places_of(results, s, method);
+      return value(places.at(k), places);
+    });
+  };
+  const auto field = [&](const char* name) {
+    return middle([=](const Json& place, const Json&) { return number(place, name); });
+  };
+  const auto truths = [](const Json& place) { return number(place, "truths"); };
+  Words row{method.title,
+            places_of(results, seeds.front(), method).at(k).at("place").get<std::string>(),
+            percent(middle([&](const Json& place, const Json& all) {
+              return truths(place) / sum_over_places(all, truths);
+            }))};
+  if (!(field("pixels") > 0)) return row += {"-", "-", "-", "-"};
+  return row += {percent(middle([&](const Json& place, const Json&) {
+                   return number(place, "pixels") / std::max(1.0, truths(place));
+                 })),
+                 millimetres(field("median")), millimetres(field("mean")),
+                 percent(middle([](const Json& place, const Json& all) {
+                   return summed_error(place) / sum_over_places(all, summed_error);
+                 }))};
 }
 
 constexpr std::size_t kFewest = 5000;  // pixels of a ring that counts
@@ -108,29 +136,8 @@ std::string places_table(const Json& results, const Seeds& seeds) {
   std::vector<Words> rows{{"depth maps", "pixels with", "of all [%]", "completeness [%]",
                            "median error [mm]", "mean error [mm]", "of the sum of errors [%]"}};
   for (const Method* method : judged_methods())
-    for (std::size_t k = 0; k < kPlaces.size(); ++k) {
-      const auto middle = [&](const std::function<double(const Json& place, const Json& all)>& of) {
-        return median_over(seeds, [&](int s) {
-          const Json& places = maps_of(results, s, method->name).at("places");
-          return of(places.at(k), places);
-        });
-      };
-      const auto truths = [](const Json& place) { return number(place, "truths"); };
-      rows.push_back(
-          {method->title, kPlaces[k], percent(middle([&](const Json& place, const Json& all) {
-             return truths(place) / sum_over_places(all, truths);
-           })),
-           percent(middle([](const Json& place, const Json&) {
-             return number(place, "pixels") / std::max(1.0, number(place, "truths"));
-           })),
-           millimetres(
-               middle([](const Json& place, const Json&) { return number(place, "median"); })),
-           millimetres(
-               middle([](const Json& place, const Json&) { return number(place, "mean"); })),
-           percent(middle([](const Json& place, const Json& all) {
-             return summed_error(place) / sum_over_places(all, summed_error);
-           }))});
-    }
+    for (std::size_t k = 0; k < places_of(results, seeds.front(), *method).size(); ++k)
+      rows.push_back(place_row(results, seeds, *method, k));
   return experiments::markdown_table(rows);
 }
 

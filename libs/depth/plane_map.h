@@ -27,7 +27,7 @@ struct PlanePixel {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // origin + depth * direction
   float cost = 2;                                   // aggregated, 0 (perfect) to 2
   BestViews views{kNoView, kNoView};
-  float motion = 0;  // of the pixel in the best view with depth [px/m]; 0 where that is not known
+  float motion = 0;  // of its image in the best view with depth [px/m]; 0: not known, or unseen
 };
 
 struct PlaneMap {

@@ -7,9 +7,9 @@
 // A visit scores the pixel's own plane in at most four views, and the planes of the two neighbours
 // that were visited before it in the two views which see these best: eight scores however many
 // views there are, one AVX2 register. Trials follow around the best of these planes; where there
-// are few, they are scored together with the planes, around the one that was best at the visits
-// before: one AVX-512 register. On coarse levels, where there is little to do and little known,
-// every plane is scored in every view.
+// are few, they are scored together with the planes, around the one that cost least when it was
+// scored before: one AVX-512 register. On coarse levels, where there is little to do and little
+// known, every plane is scored in every view, and trials follow.
 #pragma once
 
 #include <algorithm>
@@ -196,8 +196,10 @@ class Sweep {
       clear(current);
       current.plane = random_plane(pixel, random);
     }
-    if (!(current.plane.normal.dot(pixel.ray.direction) < 0))
+    if (!(current.plane.normal.dot(pixel.ray.direction) < 0)) {
       current.plane.normal = random.facing_normal(pixel.ray.direction);
+      current.motion = 0;  // what it cost and who saw it was said of the old plane
+    }
 
     const Neighbourhood around = neighbourhood(strip.number, x, y);
     const Visit at{pixel, around, strip.scores};
@@ -299,7 +301,9 @@ class Sweep {
       candidates.add(plane, distinct(from.views));
   }
 
-  // Makes `plane` the likely best one of a pixel, if it cost less where it comes `from`.
+  // Makes `plane` the likely best one of a pixel, if it cost less where it comes `from`. Only
+  // planes that this level or pass has scored, whose motion is known: after a depth map was read,
+  // none but those of the neighbours visited before.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
              std::optional<Best>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))

@@ -12,25 +12,27 @@
 namespace axial::evaluate {
 namespace {
 
-// Windows of 2 reach + 1 pixels that hold a jump between neighbours.
-cv::Mat1b edges_of(const cv::Mat1f& truth, const PlaceOptions& options) {
+// Windows of 2 reach + 1 pixels that hold both pixels of a jump to the next column, or to the next
+// row if `to_row` is 1.
+cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PlaceOptions& options) {
   cv::Mat1b jumps(truth.size(), std::uint8_t{0});
-  const auto jump = [&](float a, float b) {
-    return !(std::max(a, b) < static_cast<float>(options.jump) * std::min(a, b));
-  };
-  const auto mark = [&](int u, int v, int to_u, int to_v) {
-    if (to_u < truth.cols && to_v < truth.rows && jump(truth(v, u), truth(to_v, to_u)))
-      jumps(v, u) = jumps(to_v, to_u) = 1;
-  };
-  for (int v = 0; v < truth.rows; ++v)
-    for (int u = 0; u < truth.cols; ++u) {
-      mark(u, v, u + 1, v);
-      mark(u, v, u, v + 1);
+  for (int v = 0; v + to_row < truth.rows; ++v)
+    for (int u = 0; u + 1 - to_row < truth.cols; ++u) {
+      const float a = truth(v, u), b = truth(v + to_row, u + 1 - to_row);
+      if (std::max(a, b) < static_cast<float>(options.jump) * std::min(a, b)) continue;
+      jumps(v, u) = jumps(v + to_row, u + 1 - to_row) = 1;
     }
-  // Both pixels at a jump are marked: a window that holds one of them alone holds no jump.
-  const int side = 2 * options.reach - 1;
-  cv::dilate(jumps, jumps, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  // Both pixels are marked: where a window holds one alone, it holds no jump.
+  const int side = 2 * options.reach + 1;
+  const cv::Size window = to_row ? cv::Size(side, side - 2) : cv::Size(side - 2, side);
+  cv::dilate(jumps, jumps, cv::getStructuringElement(cv::MORPH_RECT, window));
   return jumps;
+}
+
+cv::Mat1b edges_of(const cv::Mat1f& truth, const PlaceOptions& options) {
+  cv::Mat1b edges = windows_with_jumps(truth, 0, options);
+  cv::bitwise_or(edges, windows_with_jumps(truth, 1, options), edges);
+  return edges;
 }
 
 cv::Mat1f deviations_of(const cv::Mat1b& grey, int reach) {
@@ -44,17 +46,18 @@ cv::Mat1f deviations_of(const cv::Mat1b& grey, int reach) {
   return deviation;
 }
 
-// From the points that the neighbouring pixels see; 0 at the border and beside missing truth.
+// From the points that the neighbouring pixels see, one-sided at the border; 0 beside missing
+// truth.
 template <class Camera>
 double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v) {
-  if (u < 1 || v < 1 || u + 1 >= truth.cols || v + 1 >= truth.rows) return 0;
   bool whole = true;
   const auto point = [&](int x, int y) -> Eigen::Vector3d {
     whole &= truth(y, x) > 0;
     return camera.ray({x, y}).at(truth(y, x));
   };
-  const Eigen::Vector3d across = point(u + 1, v) - point(u - 1, v);
-  const Eigen::Vector3d down = point(u, v + 1) - point(u, v - 1);
+  const int right = std::min(u + 1, truth.cols - 1), below = std::min(v + 1, truth.rows - 1);
+  const Eigen::Vector3d across = point(right, v) - point(std::max(u - 1, 0), v);
+  const Eigen::Vector3d down = point(u, below) - point(u, std::max(v - 1, 0));
   if (!whole) return 0;
   return std::abs(across.cross(down).normalized().dot(camera.ray({u, v}).direction));
 }
@@ -66,9 +69,10 @@ struct Seen {
 };
 
 template <class Reference, class Source>
-void add_seen(const PlacedMap& placed, const Reference& reference, const Source& source,
-              const Pose& source_pose, std::vector<Seen>& all) {
-  const Pose& pose = placed.map->pose;
+void add_seen(const PlacedMap& placed, const Reference& reference, const DepthMap& source_map,
+              const Source& source, std::vector<Seen>& all) {
+  const Pose &pose = placed.map->pose, &source_pose = source_map.pose;
+  const Eigen::Vector2d last(source_map.camera.width - 1, source_map.camera.height - 1);
   for (int v = 0; v < placed.places.height; ++v)
     for (int u = 0; u < placed.places.width; ++u) {
       const double error = placed.evaluation.error(v, u);
@@ -78,7 +82,8 @@ void add_seen(const PlacedMap& placed, const Reference& reference, const Source&
       const Eigen::Vector3d point =
           source_pose.to_camera(pose.to_world(ray.at(placed.evaluation.truth(v, u))));
       const auto image = source.project(point, &jacobian);
-      if (!image.visible) continue;
+      const Eigen::Array2d at = image.pixel.array();
+      if (!image.visible || !(at >= 0).all() || !(at <= last.array()).all()) continue;
       const Eigen::Vector2d motion =
           jacobian * (source_pose.rotation * pose.rotation.transpose() * ray.direction);
       const int axis = std::abs(motion.x()) > std::abs(motion.y()) ? 0 : 1;
@@ -102,6 +107,7 @@ PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::
   if (truth.size() != cv::Size(camera.width, camera.height) || truth.size() != grey.size())
     fail("a camera of {} x {}, a truth of {} x {} and a photograph of {} x {}: must be the same",
          camera.width, camera.height, truth.cols, truth.rows, grey.cols, grey.rows);
+  if (options.reach < 1) fail("a reach of {}: must be at least 1 pixel", options.reach);
   const cv::Mat1b edges = edges_of(truth, options);
   const cv::Mat1f deviations = deviations_of(grey, options.reach);
   const double least_cosine = std::cos(options.steep_degrees * std::numbers::pi / 180);
@@ -149,9 +155,8 @@ std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::s
   for (const PlacedMap& placed : maps) {
     const DepthMap* source = first_source(placed, maps);
     if (!source) continue;
-    std::visit(
-        [&](const auto& from, const auto& to) { add_seen(placed, from, to, source->pose, seen); },
-        make_camera<double>(placed.map->camera), make_camera<double>(source->camera));
+    std::visit([&](const auto& from, const auto& to) { add_seen(placed, from, *source, to, seen); },
+               make_camera<double>(placed.map->camera), make_camera<double>(source->camera));
   }
   const auto count = static_cast<double>(bins);
   std::vector<std::vector<float>> shifts(bins);

@@ -17,7 +17,7 @@ namespace axial::evaluate {
 // What a pixel lies on, the first that applies.
 enum class Place : std::uint8_t {
   nothing,  // no truth
-  edge,     // a window around the pixel sees two surfaces
+  edge,     // a window around the pixel sees two surfaces, or pixels without truth
   plain,    // no texture
   steep,    // the surface turns away
   open      // none of these
@@ -34,9 +34,9 @@ struct PlaceMap {
 };
 
 struct PlaceOptions {
-  int reach = 4;               // half of the matching window [px]
+  int reach = 4;               // half of the matching window [px], at least 1
   double jump = 1.02;          // ratio of neighbouring true distances that is an edge
-  double least_deviation = 5;  // of the grey values in the window, else it is plain
+  double least_deviation = 5;  // standard one of the grey values in the window, else it is plain
   double steep_degrees = 60;   // between the ray and the surface's normal
 };
 
@@ -68,10 +68,11 @@ struct PhaseErrors {
   double shift = 0;  // median of estimated minus true position there [px]
 };
 
-// Of all open pixels, along the axis of the source view (columns or rows) on which a depth moves
-// the image more; `bins` of equal width. The source view is the first one of a map's list that is
-// among `maps`. Pixels more than half a pixel off are left out: they are wrong for other reasons.
-// What interpolation or a rounded projection does to depths comes out as a wave over the pixel.
+// Of all open pixels that the source view images, along its axis (columns or rows) on which a depth
+// moves the image more; `bins` of equal width. The source view is the first one of a map's list
+// that is among `maps`. Pixels more than half a pixel off are left out: they are wrong for other
+// reasons. What interpolation or a rounded projection does to depths comes out as a wave over the
+// pixel.
 std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins);
 
 }  // namespace axial::evaluate

@@ -118,8 +118,9 @@ class Quick(unittest.TestCase):
             *_, open_ground = maps["places"]
             self.assertLess(open_ground["mean"], maps["mean"], name)
             self.assertEqual(len(maps["phases"]), 8)
+            self.assertGreater(sum(phase["count"] for phase in maps["phases"]), 10_000, name)
             for phase in maps["phases"]:
-                self.assertLess(abs(phase["shift"]), 0.3, name)
+                self.assertLess(abs(phase["shift"]), 0.05, name)
             self.assertEqual(len(maps["rings"]), 8)
             for ring in maps["rings"]:
                 if ring["count"] >= 5000:

@@ -37,15 +37,19 @@ class FormulaMatcher {
              std::span<const ScorePair> pairs, std::span<const SurfacePoint>,
              std::span<ViewScore> scores) const {
     calls.emplace_back(pairs.begin(), pairs.end());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool good =
-          std::find(kGoodViews.begin(), kGoodViews.end(), pairs[i].view) != kGoodViews.end();
-      const float off = std::abs(planes[pairs[i].plane].depth - kDepth);
-      scores[i] = {std::min(off + (good ? 0.1f : 0.8f), 0.9f), 100, 1};
-    }
+    planes_asked.emplace_back(planes.begin(), planes.end());
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      scores[i] = score_of(planes[pairs[i].plane].depth, pairs[i].view);
   }
 
-  mutable std::vector<std::vector<ScorePair>> calls;  // one thread
+  static ViewScore score_of(float depth, std::uint8_t view) {
+    const bool good = std::find(kGoodViews.begin(), kGoodViews.end(), view) != kGoodViews.end();
+    const float off = std::abs(depth - kDepth);
+    return {std::min(off + (good ? 0.1f : 0.8f), 0.9f), 50 * depth + view, 1};
+  }
+
+  mutable std::vector<std::vector<ScorePair>> calls;               // one thread
+  mutable std::vector<std::vector<PlaneHypothesis>> planes_asked;  // of each call
 
  private:
   cv::Mat1b image_ = noise();
@@ -125,6 +129,54 @@ TEST(SweepTrials, AreScoredAtOnceWithTheOtherPlanesWhereTheyAreFew) {
   EXPECT_EQ(calls_of_later_sweep(0), kInner);
   EXPECT_EQ(calls_of_later_sweep(2), kInner);
   EXPECT_EQ(calls_of_later_sweep(4), 2 * kInner);
+}
+
+// What a pixel keeps of its plane, however it came by that.
+TEST(SweepTrials, LeaveCostViewsAndMotionOfThePlaneThatWon) {
+  for (const int pairs : {0, 2, 4}) {
+    const FormulaMatcher matcher;
+    PlaneMap map = wall();
+    for (PlanePixel& pixel : map.pixels)
+      if (pixel.plane.depth > 0) pixel.plane.depth = 2.1f;
+    for (int sweep = 0; sweep < 3; ++sweep) run(matcher, map, input(pairs));
+    for (const PlanePixel& pixel : map.pixels) {
+      if (!(pixel.plane.depth > 0)) continue;
+      const ViewScore first = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[0]);
+      const ViewScore second = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[1]);
+      ASSERT_EQ(pixel.cost, aggregate(first.cost, second.cost));
+      ASSERT_EQ(pixel.motion, first.motion);
+    }
+  }
+}
+
+// The first pixel of the second strip: of its neighbours only the one above has been scored, at a
+// cost that nothing comes near, and it lies behind the wall.
+TEST(SweepTrials, GoAroundTheNeighbourThatCostLess) {
+  const FormulaMatcher matcher;
+  PlaneMap map = wall();
+  PlanePixel& above = map.at(kPatchRadius, kStripHeight - 1);
+  above.plane.depth = 2.4f;
+  above.point = matcher.pixels().prepare(kPatchRadius, kStripHeight - 1).ray.at(2.4f);
+  above.cost = 0.01f;
+  above.views = {3, 4};
+  above.motion = 100;
+  run(matcher, map, input(1));
+  std::size_t found = 0;
+  for (std::size_t call = 0; call < matcher.calls.size(); ++call) {
+    const std::vector<PlaneHypothesis>& planes = matcher.planes_asked[call];
+    const std::size_t last = planes.size() - 1;
+    if (planes.size() < 4 || std::abs(planes[last - 2].depth - 2.4f) > 0.1f) continue;
+    ++found;
+    const float of_neighbour = planes[last - 2].depth;  // as it meets this pixel's ray
+    EXPECT_NE(planes[last].depth, planes[last - 1].depth);
+    EXPECT_NEAR((planes[last].depth + planes[last - 1].depth) / 2, of_neighbour, 1e-5f);
+    for (const ScorePair& pair : matcher.calls[call]) {
+      const bool of_trial = planes[pair.plane].depth == planes[last].depth ||
+                            planes[pair.plane].depth == planes[last - 1].depth;
+      EXPECT_TRUE(!of_trial || pair.view == 3 || pair.view == 4);
+    }
+  }
+  EXPECT_EQ(found, 1u);
 }
 
 TEST(SweepViews, TurnUntilThoseAreFoundThatSeeThePixel) {

@@ -63,6 +63,22 @@ TEST(Places, AreEdgesWhereAWindowSeesTwoSurfaces) {
   EXPECT_EQ(places.at(20, 60), Place::open);
 }
 
+// A window that holds a jump in its outermost row alone.
+TEST(Places, AreEdgesByTheCornersOfWindowsToo) {
+  cv::Mat1f truth = wall(3);
+  truth(cv::Rect(0, 0, 60, 40)) *= 0.5f;  // its last row is 39, its last column 59
+  const PlaceMap places = places_of(truth, pinhole(), noise());
+  EXPECT_EQ(places.at(60, 43), Place::edge);
+  EXPECT_EQ(places.at(60, 44), Place::open);
+  EXPECT_EQ(places.at(63, 40), Place::edge);
+  EXPECT_EQ(places.at(64, 40), Place::open);
+}
+
+TEST(Places, AreOpenUpToTheBorder) {
+  const PlaceMap places = places_of(wall(2), pinhole(), noise());
+  for (const Place place : places.pixels) EXPECT_EQ(place, Place::open);
+}
+
 TEST(Places, ArePlainWithoutTextureAndNothingWithoutTruth) {
   cv::Mat1f truth = wall(2);
   truth.rowRange(0, 30) = 0.0f;
@@ -87,6 +103,9 @@ TEST(Places, AreSteepWhereTheSurfaceTurnsAway) {
 
 TEST(Places, NeedOneSize) {
   EXPECT_THROW(places_of(wall(2), pinhole(), cv::Mat1b(60, 80)), Error);
+  PlaceOptions options;
+  options.reach = 0;
+  EXPECT_THROW(places_of(wall(2), pinhole(), noise(), options), Error);
   EXPECT_THROW(places_of(cv::Mat1f(60, 80, 1.0f), pinhole(), cv::Mat1b(60, 80)), Error);
 }
 
@@ -136,10 +155,12 @@ class Phases : public testing::TestWithParam<bool> {
     truth_[1] = 0.0f;  // judged from the first map alone
   }
 
+  // Off the image where it is not seen.
   Eigen::Vector2d seen_by_source(int u, int v, double distance) const {
     return std::visit(
         [&](const auto& camera) -> Eigen::Vector2d {
-          return camera.project(camera.ray({u, v}).at(distance) - maps_[1].pose.centre).pixel;
+          const auto image = camera.project(camera.ray({u, v}).at(distance) - maps_[1].pose.centre);
+          return image.visible ? image.pixel : Eigen::Vector2d(-1, -1);
         },
         make_camera<double>(maps_[0].camera));
   }
@@ -165,18 +186,35 @@ class Phases : public testing::TestWithParam<bool> {
   std::array<cv::Mat1f, 2> truth_;
 };
 
+// All depths off by a thousandth: the shifts differ with the motion, but not over the pixel.
 TEST_P(Phases, ShowNoWaveWhereThereIsNone) {
-  for (const PhaseErrors& bin : phases()) {
+  maps_[0].depth *= 1.001f;
+  const auto bins = phases();
+  for (const PhaseErrors& bin : bins) {
     EXPECT_GT(bin.count, 1000u);
-    EXPECT_EQ(bin.shift, 0);
+    EXPECT_GT(std::abs(bin.shift), 0.01);
+    EXPECT_NEAR(bin.shift, bins[0].shift, 0.1 * std::abs(bins[0].shift));
   }
+}
+
+TEST_P(Phases, AreThoseOfPixelsThatTheSourceImages) {
+  std::size_t all = 0, inside = 0;
+  for (const PhaseErrors& bin : phases()) all += bin.count;
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const Eigen::Array2d at = seen_by_source(u, v, truth_[0](v, u)).array();
+      inside += (at >= 0).all() && at.x() <= kWidth - 1 && at.y() <= kHeight - 1 ? 1 : 0;
+    }
+  EXPECT_EQ(all, inside);
+  EXPECT_LT(inside, 0.9 * kWidth * kHeight);
 }
 
 TEST_P(Phases, ShowTheWaveThatIsThere) {
   add_wave();
   for (const PhaseErrors& bin : phases()) {
     const double middle = (bin.begin + bin.end) / 2;
-    // Within a bin the sine departs from its middle by up to a fifth of the amplitude.
+    // The sine is monotonic in a bin: its median is near the one at the middle, as phases are
+    // nearly uniform.
     EXPECT_NEAR(bin.shift, kWave * std::sin(2 * std::numbers::pi * middle), 0.2 * kWave) << middle;
   }
 }

@@ -96,7 +96,13 @@ void expect_same(const ColmapModel& found, const ColmapModel& written) {
   ASSERT_EQ(points.size(), written.points.size());
   for (const ColmapPoint3D& point : written.points) {
     EXPECT_EQ(points.at(point.id).position, point.position);
-    EXPECT_EQ(points.at(point.id).track.size(), point.track.size());
+    EXPECT_EQ(points.at(point.id).color, point.color);
+    const std::vector<ColmapTrackElement>& track = points.at(point.id).track;
+    ASSERT_EQ(track.size(), point.track.size());
+    for (std::size_t k = 0; k < track.size(); ++k) {
+      EXPECT_EQ(track[k].image, point.track[k].image);
+      EXPECT_EQ(track[k].point2d, point.track[k].point2d);
+    }
   }
 }
 
