@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -21,8 +22,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 // What a program whose standard output is `file` writes there while it does four things, with a
-// warning after two, logging at `level`: read from `reader`, which is open on the same file or
-// terminal.
+// warning after two, logging at `level`. Closes `file`, and reads to the end from `reader`, which
+// is open on the same file or terminal: a terminal may hand on what was written piece by piece.
 std::string written(int file, int reader, spdlog::level::level_enum level) {
   std::fflush(stdout);
   const int kept = ::dup(STDOUT_FILENO);
@@ -41,20 +42,21 @@ std::string written(int file, int reader, spdlog::level::level_enum level) {
   spdlog::set_default_logger(logger);
   ::dup2(kept, STDOUT_FILENO);
   ::close(kept);
-  std::string text(4096, '\0');
-  const auto size = ::read(reader, text.data(), text.size());
-  text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  ::close(file);
+  std::string text;
+  std::array<char, 4096> piece;
+  for (ssize_t size; (size = ::read(reader, piece.data(), piece.size())) > 0;)
+    text.append(piece.data(), static_cast<std::size_t>(size));
   return text;
 }
 
 std::string on_terminal(spdlog::level::level_enum level) {
-  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   EXPECT_EQ(::grantpt(terminal), 0);
   EXPECT_EQ(::unlockpt(terminal), 0);
   const int program_side = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);
   EXPECT_NE(::isatty(program_side), 0);
   const std::string text = written(program_side, terminal, level);
-  ::close(program_side);
   ::close(terminal);
   return text;
 }
@@ -62,7 +64,7 @@ std::string on_terminal(spdlog::level::level_enum level) {
 std::string in_file(spdlog::level::level_enum level) {
   std::FILE* file = std::tmpfile();
   const int reader = ::open(("/proc/self/fd/" + std::to_string(::fileno(file))).c_str(), O_RDONLY);
-  const std::string text = written(::fileno(file), reader, level);
+  const std::string text = written(::dup(::fileno(file)), reader, level);
   ::close(reader);
   std::fclose(file);
   return text;
