@@ -18,16 +18,16 @@
 
 namespace axial::depth::lanes {
 
-// Looks in registers of `Wide` where there are pairs for more than one of `Narrow`, and compares in
-// those of `Narrow`: projecting is one long chain of operations that wait for each other, which a
-// wider register goes through once instead of twice, while texels are loaded one by one.
+// Looks in registers of `Wide` and compares in those of `Narrow`: projecting is one long chain of
+// operations that wait for each other, which a wider register goes through once instead of twice
+// (and no slower where half of it is empty), while texels are loaded one by one.
 template <template <class> class Camera, class Narrow, class Wide>
 class LaneScorer final : public Scorer {
   using T = Pack<Narrow>;
+  using View = LaneView<Camera, Wide>;
 
  public:
-  explicit LaneScorer(const SceneTables& tables)
-      : tables_(tables), narrow_(tables), wide_(tables) {}
+  explicit LaneScorer(const SceneTables& tables) : tables_(tables), view_(tables) {}
 
   // Looks at all pairs before it compares any, so that the processor fills the waits of one
   // register with another's work.
@@ -35,28 +35,18 @@ class LaneScorer final : public Scorer {
                            std::span<const SurfacePoint> neighbours,
                            LaneScores& scores) const override {
     Seen seen;
-    if (pairs.count > T::kWidth)
-      look(wide_, pixel, planes, pairs, neighbours, scores, seen);
-    else
-      look(narrow_, pixel, planes, pairs, neighbours, scores, seen);
+    for (std::size_t first = 0; first < pairs.count; first += View::kWidth)
+      view_.look(pixel, planes, pairs, neighbours, first, scores, seen);
     for (std::size_t first = 0; first < pairs.count; first += T::kWidth)
       compare(pixel, pairs, seen, first, scores);
   }
 
   AXIAL_FLATTEN void rays(float x, float y, LaneRays& rays) const override {
-    for (std::size_t first = 0; first < kLanes; first += Pack<Wide>::kWidth)
-      wide_.rays(x + static_cast<float>(first), y, first, rays);
+    for (std::size_t first = 0; first < kLanes; first += View::kWidth)
+      view_.rays(x + static_cast<float>(first), y, first, rays);
   }
 
  private:
-  template <class View>
-  static void look(const View& view, const LanePixel& pixel, const LanePlanes& planes,
-                   const LanePairs& pairs, std::span<const SurfacePoint> neighbours,
-                   LaneScores& scores, Seen& seen) {
-    for (std::size_t first = 0; first < pairs.count; first += View::kWidth)
-      view.look(pixel, planes, pairs, neighbours, first, scores, seen);
-  }
-
   void compare(const LanePixel& pixel, const LanePairs& pairs, const Seen& seen, std::size_t first,
                LaneScores& scores) const {
     const auto at = [&](const LaneFloats& floats) { return T::load(floats.data() + first); };
@@ -76,8 +66,7 @@ class LaneScorer final : public Scorer {
   }
 
   const SceneTables& tables_;
-  LaneView<Camera, Narrow> narrow_;
-  LaneView<Camera, Wide> wide_;
+  View view_;
 };
 
 template <class Narrow, class Wide = Narrow>
