@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/huge_pages.h"
+
 namespace axial::depth {
 
 // The surface near a pixel: it meets the pixel's ray at distance `depth` (eq. 4) and has this
@@ -33,7 +35,7 @@ struct PlanePixel {
 struct PlaneMap {
   int width = 0;
   int height = 0;
-  std::vector<PlanePixel> pixels;  // row-major
+  std::vector<PlanePixel, HugePageAllocator<PlanePixel>> pixels;  // row-major
 
   PlaneMap() = default;
   PlaneMap(int w, int h)

@@ -17,6 +17,9 @@ class ByteWriter {
  public:
   const std::string& bytes() const { return bytes_; }
 
+  // Room for so many bytes: more is possible, and costs a copy.
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
+
   template <class T>
   void write(const T& value) {
     static_assert(std::is_arithmetic_v<T>);

@@ -154,10 +154,12 @@ DepthMap parse_dmap(ByteReader& in) {
   in.require_room(pixels, sizeof(float), "depth");
   map.depth.create(size);
   read_pixels(in, map.depth, "depth");
-  map.normal = cv::Mat3f(size, cv::Vec3f(0, 0, 0));
   if (content & kNormals) {
     in.require_room(pixels, 3 * sizeof(float), "normals");
+    map.normal.create(size);
     read_pixels(in, map.normal, "normal");
+  } else {
+    map.normal = cv::Mat3f(size, cv::Vec3f(0, 0, 0));
   }
   if (content & kConfidence) {
     in.require_room(pixels, sizeof(float), "confidence");
@@ -283,6 +285,8 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
       converted(map.depth, map.camera, file,
                 [](const DepthAlongRay& ray, double lambda) { return ray.z(lambda); });
   ByteWriter out;
+  constexpr std::size_t kHeader = 4096;  // more than enough
+  out.reserve(kHeader + map.depth.total() * 5 * sizeof(float));
   write_header(out, path, map, z_depth);
   write_pixels(out, z_depth);
   write_pixels(out, map.normal);
