@@ -12,7 +12,7 @@
 //
 // and, to be matched in SIMD lanes, each_field(visit): all its numbers in a fixed order, and
 //
-//     const Projector& projector()                  has each_field(visit), too
+//     Projector        projector()                  has each_field(visit), too
 //     Frame<T>         projector_frame()
 //     Image            projector().image(X)         of a point in that frame: its projection, how
 //                                                   it moves with the point, where its ray begins

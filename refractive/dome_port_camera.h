@@ -22,11 +22,17 @@ class DomePortCamera {
   // pixels on every side (default: an eighth of the longer side).
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
                  int margin = -1)
+      : DomePortCamera(lens, port,
+                       WidenedImage<T>(width, height,
+                                       WidenedImage<T>::margin_or_default(width, height, margin))) {
+  }
+
+  // The same for points within `image` [px].
+  DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, const WidenedImage<T>& image)
       : lens_(lens),
         inv_fx_(T(1) / lens.fx),
         inv_fy_(T(1) / lens.fy),
-        projector_(lens, port, width, height,
-                   WidenedImage<T>::margin_or_default(width, height, margin)) {}
+        projector_(lens, port, image) {}
 
   DomePortCamera() = default;  // means nothing before each_field() has filled it
 

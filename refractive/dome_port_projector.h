@@ -49,10 +49,10 @@ class DomePortProjector {
  public:
   DomePortProjector() = default;  // means nothing before each_field() has filled it
 
-  // Points are projected within the image of width x height, widened by `margin` pixels.
-  DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
-                    const T& margin)
-      : optics_(port), in_air_(lens), image_(width, height, margin), steps_(steps_for(optics_)) {}
+  // Points are projected within `image` [px].
+  DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port,
+                    const WidenedImage<T>& image)
+      : optics_(port), in_air_(lens), image_(image), steps_(steps_for(optics_)) {}
 
   // See DomePortCamera.
   template <class Visit>

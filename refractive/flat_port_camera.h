@@ -33,6 +33,16 @@ class FlatPortCamera {
         projector_(lens, port, width, height,
                    WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
+  // The same for points within `field`, which goes with the port, and `image` [px].
+  FlatPortCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, const FlatPortField<T>& field,
+                 const WidenedImage<T>& image)
+      : lens_(lens),
+        inv_fx_(T(1) / lens.fx),
+        inv_fy_(T(1) / lens.fy),
+        port_(port),
+        optics_(port),
+        projector_(lens, port, field, image) {}
+
   FlatPortCamera() = default;  // means nothing before each_field() has filled it
 
   // Calls visit(field) with every number the camera consists of, in a fixed order: how cameras are

@@ -79,12 +79,17 @@ class FlatPortProjector {
   // Points are projected within the image of width x height, widened by `margin` pixels.
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
-      : optics_(port),
-        field_(optics_, largest_incidence_tangent(lens, port, width, height, margin),
-               largest_incidence_tangent(lens, port, width, height, T(0))),
-        cx_(lens.cx),
-        cy_(lens.cy),
-        image_(width, height, margin) {
+      : FlatPortProjector(
+            lens, port,
+            FlatPortField<T>(FlatPortOptics<T>(port),
+                             largest_incidence_tangent(lens, port, width, height, margin),
+                             largest_incidence_tangent(lens, port, width, height, T(0))),
+            WidenedImage<T>(width, height, margin)) {}
+
+  // Points are projected within `field`, which goes with the port, and `image` [px].
+  FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port,
+                    const FlatPortField<T>& field, const WidenedImage<T>& image)
+      : optics_(port), field_(field), cx_(lens.cx), cy_(lens.cy), image_(image) {
     const Matrix3<T> axis = axis_from_camera(port.normal);
     row_u_ = lens.fx * axis.col(0);
     row_v_ = lens.fy * axis.col(1);

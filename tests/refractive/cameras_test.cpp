@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "refractive/affine_warp.h"
+#include "refractive/lens_camera.h"
 #include "refractive/line_search.h"
 #include "refractive/views.h"
 
@@ -43,10 +44,31 @@ struct SearchFloat {
     return Camera(view.lens.cast<float>(), view.port.cast<float>(), view.width, view.height);
   }
 };
+// The port's, with a mild barrel and some of everything else in front.
+template <class T>
+DistortedLens<T> distorted(const View& view) {
+  LensDistortion<double> distortion;
+  distortion.above[1] = -0.02;
+  distortion.below[0] = 0.05;
+  distortion.p1 = 1e-3;
+  distortion.prism = {0, -1e-3};
+  return {view.lens, distortion, view.width, view.height};
+}
+struct Lens {
+  using Camera = LensFlatPortCamera<double>;
+  static constexpr double kPixels = 1e-9;
+  static Camera make(const View& view) { return {distorted<double>(view), view.port}; }
+};
+struct LensFloat {
+  using Camera = LensFlatPortCamera<float>;
+  static constexpr double kPixels = 2e-3;
+  static Camera make(const View& view) { return {distorted<float>(view), view.port.cast<float>()}; }
+};
 
 template <class Kind>
 class Cameras : public ::testing::Test {};
-using Kinds = ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFloat>;
+using Kinds =
+    ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFloat, Lens, LensFloat>;
 TYPED_TEST_SUITE(Cameras, Kinds);
 
 // Calls check(camera, pixel, X): points 0.7 to 10 m away, well inside the water and the image.

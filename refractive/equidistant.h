@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The equidistant fisheye: a direction in air at the angle theta from the optical axis, whose
+// tangents are (x/z, y/z) with r = tan(theta), lies at the distance theta from the centre of the
+// image plane. Both ratios of theta and its tangent are functions of squares, so that nothing is
+// singular in the centre.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "refractive/scalar.h"
+
+namespace axial::refractive {
+
+namespace detail {
+
+// a[0] + a[1] x + a[2] x^2 + ...
+template <class T, class A, std::size_t N>
+T power_series(const std::array<A, N>& a, const T& x) {
+  T sum(a[N - 1]);
+  for (std::size_t i = N - 1; i-- > 0;) sum = sum * x + T(a[i]);
+  return sum;
+}
+
+// Half the angle twice: atan(r) = 2 atan(r / (1 + sqrt(1 + r^2))). What is left is below 0.42,
+// where nine terms of the series are good to 1e-8.
+template <class T>
+T arc_over_tangent_in_fixed_steps(const T& r2) {
+  using std::sqrt;
+  constexpr std::array<float, 9> kSeries{1.0f,       -1.0f / 3, 1.0f / 5,   -1.0f / 7, 1.0f / 9,
+                                         -1.0f / 11, 1.0f / 13, -1.0f / 15, 1.0f / 17};
+  const T half = T(1) / (T(1) + sqrt(T(1) + r2));
+  const T half2 = r2 * half * half;
+  const T quarter = T(1) / (T(1) + sqrt(T(1) + half2));
+  return T(4) * half * quarter * power_series(kSeries, half2 * quarter * quarter);
+}
+
+// The series of sine and cosine, good to 1e-9 up to 90 degrees.
+template <class T>
+T tangent_over_arc_in_fixed_steps(const T& theta2) {
+  constexpr std::array<float, 7> kSine{
+      1.0f,          -1.0f / 6,        1.0f / 120,       -1.0f / 5040,
+      1.0f / 362880, -1.0f / 39916800, 1.0f / 6227020800};
+  constexpr std::array<float, 8> kCosine{
+      1.0f,         -1.0f / 2,       1.0f / 24,        -1.0f / 720,
+      1.0f / 40320, -1.0f / 3628800, 1.0f / 479001600, -1.0f / 8.71782912e10f};
+  return power_series(kSine, theta2) / power_series(kCosine, theta2);
+}
+
+}  // namespace detail
+
+// theta / tan(theta), by the squared tangent.
+template <class T>
+T arc_over_tangent(const T& r2) {
+  if constexpr (kFixedSteps<T>) {
+    return detail::arc_over_tangent_in_fixed_steps(r2);
+  } else {
+    using std::atan;
+    using std::sqrt;
+    if (r2 < T(1e-4))
+      return detail::power_series(std::array{1.0, -1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9}, r2);
+    const T r = sqrt(r2);
+    return atan(r) / r;
+  }
+}
+
+// tan(theta) / theta, by the squared angle. Precondition: theta below 90 degrees.
+template <class T>
+T tangent_over_arc(const T& theta2) {
+  if constexpr (kFixedSteps<T>) {
+    return detail::tangent_over_arc_in_fixed_steps(theta2);
+  } else {
+    using std::sqrt;
+    using std::tan;
+    if (theta2 < T(1e-4))
+      return detail::power_series(std::array{1.0, 1.0 / 3, 2.0 / 15, 17.0 / 315, 62.0 / 2835},
+                                  theta2);
+    const T theta = sqrt(theta2);
+    return tan(theta) / theta;
+  }
+}
+
+}  // namespace axial::refractive
