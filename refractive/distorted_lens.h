@@ -24,6 +24,12 @@ struct DistortedLens {
     image = {width, height, static_cast<T>(widened)};
   }
 
+  // False where no direction is imaged at the pixel: it lies beyond the lens's field.
+  bool shows(const Vector2<T>& pixel) const {
+    const Vector2<T> found = project(tangents(pixel).point).projection.pixel;
+    return (found - pixel).squaredNorm() < T(1e-4);
+  }
+
   // See FlatPortCamera.
   template <class Visit>
   void each_field(Visit&& visit) {

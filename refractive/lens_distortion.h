@@ -39,6 +39,8 @@ struct LensDistortion {
   T p1 = T(0), p2 = T(0);
   Vector2<T> prism{T(0), T(0)};
 
+  bool operator==(const LensDistortion&) const = default;
+
   template <class U>
   LensDistortion<U> cast() const;
 
@@ -64,8 +66,13 @@ struct LensDistortion {
 };
 
 template <class T>
+T determinant_of(const Matrix2<T>& m) {
+  return m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
+}
+
+template <class T>
 Matrix2<T> inverse_of(const Matrix2<T>& m) {
-  const T inv = T(1) / (m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0));
+  const T inv = T(1) / determinant_of(m);
   Matrix2<T> inverse;
   inverse << m(1, 1) * inv, -m(0, 1) * inv, -m(1, 0) * inv, m(0, 0) * inv;
   return inverse;

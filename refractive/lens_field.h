@@ -42,7 +42,7 @@ inline FieldCircle field_circle(const LensDistortion<double>& distortion, double
     const PlanePoint<double> d = distortion.bent(radius * out);
     const double growth = out.dot(d.by * out) * by_angle;
     // False for NaN.
-    if (!(growth > kLeastGrowth && d.by.determinant() > 0)) circle.grows = false;
+    if (!(growth > kLeastGrowth && determinant_of(d.by) > 0)) circle.grows = false;
     circle.reaches = std::fmin(circle.reaches, d.point.norm());
   }
   return circle;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -127,28 +128,44 @@ class Canvas {
   std::vector<Splat> splats_;
 };
 
+// What the neighbour sees in its row y, in the reference's frame: visit(surface).
+template <class Visit>
+void each_surface(const DepthMap& neighbour, int y, const Motion& motion,
+                  std::span<const Ray> rays_of_row, Visit&& visit) {
+  for (int x = 0; x < neighbour.width(); ++x) {
+    const float depth = neighbour.depth(y, x);
+    if (!(depth > 0)) continue;
+    Surface surface{motion(rays_of_row[static_cast<std::size_t>(x)].at(depth)),
+                    Eigen::Vector3f::Zero(), confidence_at(neighbour, y, x)};
+    if (!neighbour.normal.empty()) {
+      const cv::Vec3f n = neighbour.normal(y, x);
+      surface.normal = motion.rotation * Eigen::Vector3f(n[0], n[1], n[2]);
+    }
+    visit(surface);
+  }
+}
+
+// Row by row, so that neither camera's type has to know of the other's.
 void draw_neighbour(const DepthMap& neighbour, const DepthMap& reference, Canvas& canvas) {
   const Motion motion(neighbour.pose, reference.pose);
-  std::visit(
-      [&](const auto& from, const auto& to) {
-        for (int y = 0; y < neighbour.height(); ++y) {
-          for (int x = 0; x < neighbour.width(); ++x) {
-            const float depth = neighbour.depth(y, x);
-            if (!(depth > 0)) continue;
-            Surface surface{
-                motion(from.ray({static_cast<float>(x), static_cast<float>(y)}).at(depth)),
-                Eigen::Vector3f::Zero(), confidence_at(neighbour, y, x)};
-            const auto projection = to.project(surface.point);
-            if (!projection.visible) continue;
-            if (!neighbour.normal.empty()) {
-              const cv::Vec3f n = neighbour.normal(y, x);
-              surface.normal = motion.rotation * Eigen::Vector3f(n[0], n[1], n[2]);
-            }
-            canvas.draw(surface, projection.pixel);
-          }
-        }
-      },
-      make_camera<float>(neighbour.camera), make_camera<float>(reference.camera));
+  const auto from = make_camera<float>(neighbour.camera), to = make_camera<float>(reference.camera);
+  std::vector<Ray> rays(static_cast<std::size_t>(neighbour.width()));
+  for (int y = 0; y < neighbour.height(); ++y) {
+    std::visit(
+        [&](const auto& camera) {
+          for (std::size_t x = 0; x < rays.size(); ++x)
+            rays[x] = camera.ray({static_cast<float>(x), static_cast<float>(y)});
+        },
+        from);
+    std::visit(
+        [&](const auto& camera) {
+          each_surface(neighbour, y, motion, rays, [&](const Surface& surface) {
+            const auto projection = camera.project(surface.point);
+            if (projection.visible) canvas.draw(surface, projection.pixel);
+          });
+        },
+        to);
+  }
 }
 
 // Where the neighbour sees through a point of the reference, what contradicts the point is the

@@ -7,6 +7,7 @@
 #include "depth/lanes/scorer.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
+#include "refractive/lens_camera.h"
 #include "refractive/pinhole_camera.h"
 
 namespace axial::depth {
@@ -26,6 +27,15 @@ consteval lanes::CameraKind lane_kind(const refractive::FlatPortCamera<float>*) 
 }
 consteval lanes::CameraKind lane_kind(const refractive::DomePortCamera<float>*) {
   return lanes::CameraKind::dome_port;
+}
+consteval lanes::CameraKind lane_kind(const refractive::LensPinholeCamera<float>*) {
+  return lanes::CameraKind::lens_pinhole;
+}
+consteval lanes::CameraKind lane_kind(const refractive::LensFlatPortCamera<float>*) {
+  return lanes::CameraKind::lens_flat_port;
+}
+consteval lanes::CameraKind lane_kind(const refractive::LensDomePortCamera<float>*) {
+  return lanes::CameraKind::lens_dome_port;
 }
 template <InLanes Camera>
 inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
+#include "refractive/lens_camera.h"
 
 namespace axial::depth {
 namespace {
@@ -14,6 +15,9 @@ namespace {
 using lanes::kLanes;
 using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
+using refractive::LensDomePortCamera;
+using refractive::LensFlatPortCamera;
+using refractive::LensPinholeCamera;
 using refractive::PinholeCamera;
 
 template <class Camera>
@@ -159,5 +163,8 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
 template class LaneMatcher<PinholeCamera<float>>;
 template class LaneMatcher<FlatPortCamera<float>>;
 template class LaneMatcher<DomePortCamera<float>>;
+template class LaneMatcher<LensPinholeCamera<float>>;
+template class LaneMatcher<LensFlatPortCamera<float>>;
+template class LaneMatcher<LensDomePortCamera<float>>;
 
 }  // namespace axial::depth

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matcher in SIMD lanes: exact projection and affine warp, for pinholes and both kinds of port.
+// The matcher in SIMD lanes: exact projection and affine warp, for pinholes and both kinds of port,
+// with straight and with distorted lenses.
 #pragma once
 
 #include <memory>

@@ -92,9 +92,13 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
       [&](const auto& cameras) {
         if (options.warp == Warp::affine)
           run_sweeps_with<AffineWarp>(input, level, cameras, maps, options, first, sweeps, planes);
-        else
+        else if constexpr (requires { cameras[0].lens(); })
           run_sweeps_with<HomographyWarp>(input, level, cameras, maps, options, first, sweeps,
                                           planes);
+        else
+          fail(
+              "the homography is the paper's warp for straight lenses: undistort the images "
+              "(InterfaceCOLMAP --undistort 1)");
       },
       make_camera_list<float>(level.cameras, input.projection));
 }

@@ -3,11 +3,15 @@
 
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
+#include "refractive/lens_camera.h"
 
 namespace axial::depth {
 
 using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
+using refractive::LensDomePortCamera;
+using refractive::LensFlatPortCamera;
+using refractive::LensPinholeCamera;
 using refractive::PinholeCamera;
 
 template <InLanes Camera>
@@ -37,5 +41,8 @@ void RayCaster<Camera>::rays(int x, int y, RayTile& tile) const {
 template class RayCaster<PinholeCamera<float>>;
 template class RayCaster<FlatPortCamera<float>>;
 template class RayCaster<DomePortCamera<float>>;
+template class RayCaster<LensPinholeCamera<float>>;
+template class RayCaster<LensFlatPortCamera<float>>;
+template class RayCaster<LensDomePortCamera<float>>;
 
 }  // namespace axial::depth

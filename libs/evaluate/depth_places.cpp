@@ -68,29 +68,47 @@ struct Seen {
   double shift;  // of the estimated one [px]
 };
 
-template <class Reference, class Source>
-void add_seen(const PlacedMap& placed, const Reference& reference, const DepthMap& source_map,
+using Ray = refractive::AxialRay<double>;
+
+// Of the open pixels of row v; `rays`: that row's.
+template <class Source>
+void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const DepthMap& source_map,
               const Source& source, std::vector<Seen>& all) {
   const Pose &pose = placed.map->pose, &source_pose = source_map.pose;
   const Eigen::Vector2d last(source_map.camera.width - 1, source_map.camera.height - 1);
-  for (int v = 0; v < placed.places.height; ++v)
-    for (int u = 0; u < placed.places.width; ++u) {
-      const double error = placed.evaluation.error(v, u);
-      if (placed.places.at(u, v) != Place::open || std::isnan(error)) continue;
-      const auto ray = reference.ray({u, v});
-      refractive::Matrix23<double> jacobian;
-      const Eigen::Vector3d point =
-          source_pose.to_camera(pose.to_world(ray.at(placed.evaluation.truth(v, u))));
-      const auto image = source.project(point, &jacobian);
-      const Eigen::Array2d at = image.pixel.array();
-      if (!image.visible || !(at >= 0).all() || !(at <= last.array()).all()) continue;
-      const Eigen::Vector2d motion =
-          jacobian * (source_pose.rotation * pose.rotation.transpose() * ray.direction);
-      const int axis = std::abs(motion.x()) > std::abs(motion.y()) ? 0 : 1;
-      const double shift = motion(axis) * error;
-      if (std::abs(shift) > 0.5) continue;
-      all.push_back({image.pixel(axis) - std::floor(image.pixel(axis)), shift});
-    }
+  for (int u = 0; u < placed.places.width; ++u) {
+    const double error = placed.evaluation.error(v, u);
+    if (placed.places.at(u, v) != Place::open || std::isnan(error)) continue;
+    const Ray& ray = rays[static_cast<std::size_t>(u)];
+    refractive::Matrix23<double> jacobian;
+    const Eigen::Vector3d point =
+        source_pose.to_camera(pose.to_world(ray.at(placed.evaluation.truth(v, u))));
+    const auto image = source.project(point, &jacobian);
+    const Eigen::Array2d at = image.pixel.array();
+    if (!image.visible || !(at >= 0).all() || !(at <= last.array()).all()) continue;
+    const Eigen::Vector2d motion =
+        jacobian * (source_pose.rotation * pose.rotation.transpose() * ray.direction);
+    const int axis = std::abs(motion.x()) > std::abs(motion.y()) ? 0 : 1;
+    const double shift = motion(axis) * error;
+    if (std::abs(shift) > 0.5) continue;
+    all.push_back({image.pixel(axis) - std::floor(image.pixel(axis)), shift});
+  }
+}
+
+// Row by row, so that neither camera's type has to know of the other's.
+void add_seen(const PlacedMap& placed, const DepthMap& source, std::vector<Seen>& all) {
+  const auto from = make_camera<double>(placed.map->camera),
+             to = make_camera<double>(source.camera);
+  std::vector<Ray> rays(static_cast<std::size_t>(placed.places.width));
+  for (int v = 0; v < placed.places.height; ++v) {
+    std::visit(
+        [&](const auto& camera) {
+          for (int u = 0; u < placed.places.width; ++u)
+            rays[static_cast<std::size_t>(u)] = camera.ray({u, v});
+        },
+        from);
+    std::visit([&](const auto& camera) { add_seen(placed, v, rays, source, camera, all); }, to);
+  }
 }
 
 const DepthMap* first_source(const PlacedMap& placed, std::span<const PlacedMap> maps) {
@@ -155,8 +173,7 @@ std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::s
   for (const PlacedMap& placed : maps) {
     const DepthMap* source = first_source(placed, maps);
     if (!source) continue;
-    std::visit([&](const auto& from, const auto& to) { add_seen(placed, from, *source, to, seen); },
-               make_camera<double>(placed.map->camera), make_camera<double>(source->camera));
+    add_seen(placed, *source, seen);
   }
   const auto count = static_cast<double>(bins);
   std::vector<std::vector<float>> shifts(bins);

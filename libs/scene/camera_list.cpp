@@ -16,8 +16,19 @@ std::vector<Camera> behind_ports(std::span<const CameraModel> models, const Port
   std::vector<Camera> cameras;
   for (const CameraModel& model : models) {
     const Port& port = model.port ? std::get<Port>(*model.port) : none;
-    cameras.emplace_back(model.lens.cast<T>(), port.template cast<T>(), model.width, model.height);
+    if constexpr (requires(const Camera& camera) { camera.distorted_lens(); })
+      cameras.emplace_back(distorted_lens<T>(model), port.template cast<T>());
+    else
+      cameras.emplace_back(model.lens.cast<T>(), port.template cast<T>(), model.width,
+                           model.height);
   }
+  return cameras;
+}
+
+template <class T>
+std::vector<refractive::LensPinholeCamera<T>> with_distortion(std::span<const CameraModel> models) {
+  std::vector<refractive::LensPinholeCamera<T>> cameras;
+  for (const CameraModel& model : models) cameras.emplace_back(distorted_lens<T>(model));
   return cameras;
 }
 
@@ -36,7 +47,14 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
   const bool dome = any_behind<refractive::DomePort<double>>(models);
   if (flat && dome)
     fail("images behind a flat port or a water surface cannot be matched with ones behind a dome");
+  const bool distorted = std::ranges::any_of(
+      models, [](const CameraModel& model) { return model.distortion.has_value(); });
+  if (distorted && method == ProjectionMethod::line_search)
+    fail(
+        "the line search is the paper's projection for straight lenses: undistort the images "
+        "(InterfaceCOLMAP --undistort 1)");
   if (!flat && !dome) {
+    if (distorted) return with_distortion<T>(models);
     std::vector<refractive::PinholeCamera<T>> cameras;
     for (const CameraModel& model : models) cameras.emplace_back(model.lens.template cast<T>());
     return cameras;
@@ -48,7 +66,9 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
   const refractive::FlatPort<double> no_port;
   // Points inside a dome are not seen: it has to be smaller than any distance.
   const refractive::DomePort<double> no_dome{{0, 0, 0}, 1e-4};
+  if (dome && distorted) return behind_ports<refractive::LensDomePortCamera<T>>(models, no_dome);
   if (dome) return behind_ports<refractive::DomePortCamera<T>>(models, no_dome);
+  if (distorted) return behind_ports<refractive::LensFlatPortCamera<T>>(models, no_port);
   if (method == ProjectionMethod::line_search)
     return behind_ports<refractive::LineSearchCamera<T>>(models, no_port);
   return behind_ports<refractive::FlatPortCamera<T>>(models, no_port);

@@ -20,11 +20,15 @@ enum class ProjectionMethod {
 template <class T>
 using CameraList = std::variant<
     std::vector<refractive::PinholeCamera<T>>, std::vector<refractive::FlatPortCamera<T>>,
-    std::vector<refractive::DomePortCamera<T>>, std::vector<refractive::LineSearchCamera<T>>>;
+    std::vector<refractive::DomePortCamera<T>>, std::vector<refractive::LineSearchCamera<T>>,
+    std::vector<refractive::LensPinholeCamera<T>>, std::vector<refractive::LensFlatPortCamera<T>>,
+    std::vector<refractive::LensDomePortCamera<T>>>;
 
 // All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
-// ones is a port of index 1, which is the pinhole exactly. Same order as `models`. Error: flat
-// ports and domes together, or the line search with a dome.
+// ones is a port of index 1, which is the pinhole exactly. In the same way straight lenses pay
+// nothing for distortion, and one among distorted ones is a distortion of nothing. Same order as
+// `models`. Error: flat ports and domes together, or the line search with a dome or a distorted
+// lens.
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models,
                                ProjectionMethod method = ProjectionMethod::exact);

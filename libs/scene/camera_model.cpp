@@ -13,6 +13,12 @@ CameraModel CameraModel::resized(int new_width, int new_height) const {
   return model;
 }
 
+template <class T>
+refractive::DistortedLens<T> distorted_lens(const CameraModel& model) {
+  return {model.lens, model.distortion.value_or(refractive::LensDistortion<double>{}), model.width,
+          model.height};
+}
+
 namespace {
 
 // The camera behind a port of either kind.
@@ -20,13 +26,16 @@ template <class T>
 struct BehindPort {
   const CameraModel& model;
 
+  template <template <class> class Straight, template <class> class Distorted, class Port>
+  CameraVariant<T> behind(const Port& port) const {
+    if (model.distortion) return Distorted<T>(distorted_lens<T>(model), port.template cast<T>());
+    return Straight<T>(model.lens.cast<T>(), port.template cast<T>(), model.width, model.height);
+  }
   CameraVariant<T> operator()(const refractive::FlatPort<double>& port) const {
-    return refractive::FlatPortCamera<T>(model.lens.cast<T>(), port.cast<T>(), model.width,
-                                         model.height);
+    return behind<refractive::FlatPortCamera, refractive::LensFlatPortCamera>(port);
   }
   CameraVariant<T> operator()(const refractive::DomePort<double>& port) const {
-    return refractive::DomePortCamera<T>(model.lens.cast<T>(), port.cast<T>(), model.width,
-                                         model.height);
+    return behind<refractive::DomePortCamera, refractive::LensDomePortCamera>(port);
   }
 };
 
@@ -34,10 +43,13 @@ struct BehindPort {
 
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model) {
-  if (!model.port) return refractive::PinholeCamera<T>(model.lens.cast<T>());
-  return std::visit(BehindPort<T>{model}, *model.port);
+  if (model.port) return std::visit(BehindPort<T>{model}, *model.port);
+  if (model.distortion) return refractive::LensPinholeCamera<T>(distorted_lens<T>(model));
+  return refractive::PinholeCamera<T>(model.lens.cast<T>());
 }
 
+template refractive::DistortedLens<float> distorted_lens<float>(const CameraModel&);
+template refractive::DistortedLens<double> distorted_lens<double>(const CameraModel&);
 template CameraVariant<float> make_camera<float>(const CameraModel&);
 template CameraVariant<double> make_camera<double>(const CameraModel&);
 

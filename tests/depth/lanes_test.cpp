@@ -19,42 +19,82 @@ namespace {
 
 using refractive::DomePortCamera;
 using refractive::FlatPortCamera;
+using refractive::LensDomePortCamera;
+using refractive::LensFlatPortCamera;
+using refractive::LensPinholeCamera;
 using refractive::PinholeCamera;
 using refractive::PinholeLens;
 
 constexpr int kWidth = 96, kHeight = 72;
 constexpr std::size_t kViews = 21;  // more than one group
 
+PinholeLens<float> lens_of(float focal) {
+  return {focal, focal, 47.5f, 35.5f};
+}
+
 template <class Camera>
 Camera make_camera_of(float focal, int index);
 
 template <>
 PinholeCamera<float> make_camera_of(float focal, int) {
-  return PinholeCamera<float>(PinholeLens<float>{focal, focal, 47.5f, 35.5f});
+  return PinholeCamera<float>(lens_of(focal));
 }
 
 // Ports differ from view to view, and so do their numbers of projection steps.
-template <>
-FlatPortCamera<float> make_camera_of(float focal, int index) {
+refractive::FlatPort<float> flat_port_of(int index) {
   refractive::FlatPort<float> port;
   port.normal = Eigen::Vector3f(0.02f * static_cast<float>(index % 3), 0.03f, 1).normalized();
   port.distance = 0.01f + 0.002f * static_cast<float>(index);
   port.thickness = 0.015f;
   port.n_glass = 1.5f;
   port.n_water = 1.333f;
-  if (index == 4) focal *= 0.3f;
-  return {PinholeLens<float>{focal, focal, 47.5f, 35.5f}, port, kWidth, kHeight};
+  return port;
 }
 
-template <>
-DomePortCamera<float> make_camera_of(float focal, int index) {
+refractive::DomePort<float> dome_port_of(int index) {
   refractive::DomePort<float> port;
   port.centre = Eigen::Vector3f(0.01f, -0.004f, 0.002f) * static_cast<float>(index % 4);
   port.inner_radius = 0.05f + 0.002f * static_cast<float>(index);
   port.thickness = 0.008f;
   port.n_glass = 1.5f;
   port.n_water = 1.333f;
-  return {PinholeLens<float>{focal, focal, 47.5f, 35.5f}, port, kWidth, kHeight};
+  return port;
+}
+
+// Straight, barrels, pincushions and fisheyes beside each other.
+refractive::DistortedLens<float> distorted_lens_of(float focal, int index) {
+  refractive::LensDistortion<double> distortion;
+  if (index % 4 != 0) {
+    distortion.fisheye = index % 2;
+    distortion.above[1] = 0.05 * (index % 3 - 1);
+    distortion.below[0] = 0.02 * (index % 5);
+    distortion.p1 = 1e-3;
+    distortion.prism = {0, -2e-3};
+  }
+  return {lens_of(focal).cast<double>(), distortion, kWidth, kHeight};
+}
+
+template <>
+FlatPortCamera<float> make_camera_of(float focal, int index) {
+  if (index == 4) focal *= 0.3f;
+  return {lens_of(focal), flat_port_of(index), kWidth, kHeight};
+}
+template <>
+DomePortCamera<float> make_camera_of(float focal, int index) {
+  return {lens_of(focal), dome_port_of(index), kWidth, kHeight};
+}
+template <>
+LensPinholeCamera<float> make_camera_of(float focal, int index) {
+  return LensPinholeCamera<float>(distorted_lens_of(focal, index));
+}
+template <>
+LensFlatPortCamera<float> make_camera_of(float focal, int index) {
+  if (index == 4) focal *= 0.5f;
+  return {distorted_lens_of(focal, index), flat_port_of(index)};
+}
+template <>
+LensDomePortCamera<float> make_camera_of(float focal, int index) {
+  return {distorted_lens_of(focal, index), dome_port_of(index)};
 }
 
 cv::Mat1b smooth_image(unsigned seed) {
@@ -153,7 +193,9 @@ std::uint32_t bits(float value) {
 
 template <class Camera>
 class Lanes : public testing::Test {};
-using Cameras = testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>>;
+using Cameras =
+    testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>,
+                   LensPinholeCamera<float>, LensFlatPortCamera<float>, LensDomePortCamera<float>>;
 TYPED_TEST_SUITE(Lanes, Cameras);
 
 TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {

@@ -35,7 +35,7 @@ CameraModel small_camera() {
   return camera;
 }
 
-enum class Kind { pinhole, flat_port, dome_port };
+enum class Kind { pinhole, flat_port, dome_port, fisheye_behind_flat_port };
 
 refractive::DomePort<double> dome() {
   return {{0.004, -0.003, -0.006}, 0.05, 0.008, 1, 1.49, 1.333};
@@ -61,6 +61,12 @@ Survey make_survey(Kind kind) {
     view.camera = small_camera();
     if (kind == Kind::flat_port) view.camera.port = thick_port();
     if (kind == Kind::dome_port) view.camera.port = dome();
+    if (kind == Kind::fisheye_behind_flat_port) {
+      view.camera.port = thick_port();
+      view.camera.distortion.emplace();
+      view.camera.distortion->fisheye = 1;
+      view.camera.distortion->above[1] = -0.02;
+    }
     const double x = 0.25 * (i % 2) - 0.12;
     const double y = 0.2 * (i / 2) - 0.1;
     view.pose.centre = {x, y, 0.05 * i};
@@ -114,11 +120,14 @@ class PatchMatchOn : public testing::TestWithParam<Kind> {};
 
 std::string name_of(const testing::TestParamInfo<Kind>& test) {
   if (test.param == Kind::pinhole) return "Pinhole";
+  if (test.param == Kind::fisheye_behind_flat_port) return "FisheyeBehindFlatPort";
   return test.param == Kind::flat_port ? "FlatPort" : "DomePort";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, PatchMatchOn,
-                         testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port), name_of);
+                         testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port,
+                                         Kind::fisheye_behind_flat_port),
+                         name_of);
 
 TEST_P(PatchMatchOn, FindsTheSurface) {
   const Survey survey = make_survey(GetParam());
@@ -205,6 +214,18 @@ TEST(PatchMatch, ThePublishedMethodsFindTheSurfaceToo) {
   // A quarter of a pixel of rounding is 1.3 % of depth here.
   EXPECT_LT(theirs, 0.02);
   EXPECT_LT(ours, theirs);
+}
+
+TEST(PatchMatch, ThePublishedMethodsAreForStraightLenses) {
+  const Survey survey = make_survey(Kind::fisheye_behind_flat_port);
+  std::vector<const MatchImage*> sources;
+  MatchInput input = survey.input(0, sources);
+  PatchMatchOptions options;
+  options.warp = Warp::homography;
+  EXPECT_THROW(estimate_depth_map(input, options), Error);
+  options.warp = Warp::affine;
+  input.projection = ProjectionMethod::line_search;
+  EXPECT_THROW(estimate_depth_map(input, options), Error);
 }
 
 TEST(PatchMatch, LeavesMaskedPixelsAlone) {

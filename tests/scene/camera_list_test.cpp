@@ -19,6 +19,12 @@ CameraModel behind_dome() {
   return model;
 }
 
+CameraModel with_barrel(CameraModel model) {
+  model.distortion.emplace();
+  model.distortion->above[1] = -0.05;
+  return model;
+}
+
 TEST(CameraList, IsOfTheKindOfItsPorts) {
   const CameraModel dry = test::dry_camera(), flat = test::behind_port(dry), dome = behind_dome();
   const auto kind = [](std::vector<CameraModel> models, ProjectionMethod method) {
@@ -30,13 +36,18 @@ TEST(CameraList, IsOfTheKindOfItsPorts) {
   EXPECT_EQ(kind({flat, dry}, kExact), 1u);
   EXPECT_EQ(kind({dry, dome}, kExact), 2u);
   EXPECT_EQ(kind({dry, flat}, ProjectionMethod::line_search), 3u);
+  EXPECT_EQ(kind({dry, with_barrel(dry)}, kExact), 4u);
+  EXPECT_EQ(kind({flat, with_barrel(dry)}, kExact), 5u);
+  EXPECT_EQ(kind({with_barrel(dome), dry}, kExact), 6u);
 }
 
 // Same pixels, same rays, whatever the company.
 TEST(CameraList, LeavesDryCamerasDry) {
   const CameraModel dry = test::dry_camera();
   const auto alone = std::get<refractive::PinholeCamera<double>>(make_camera<double>(dry));
-  for (const CameraModel& other : {test::behind_port(dry), behind_dome()}) {
+  for (const CameraModel& other :
+       {test::behind_port(dry), behind_dome(), with_barrel(dry),
+        with_barrel(test::behind_port(dry)), with_barrel(behind_dome())}) {
     const std::vector<CameraModel> models{dry, other};
     std::visit(
         [&](const auto& cameras) {
@@ -53,6 +64,27 @@ TEST(CameraList, LeavesDryCamerasDry) {
   }
 }
 
+// One camera, whether it is made alone or in a list, and at any resolution.
+TEST(CameraList, KeepsTheLens) {
+  const CameraModel barrel = with_barrel(test::behind_port(test::dry_camera()));
+  const std::vector<CameraModel> models{barrel};
+  const Eigen::Vector2d pixel(3, 60);
+  using Camera = refractive::LensFlatPortCamera<double>;
+  const auto listed = std::get<std::vector<Camera>>(make_camera_list<double>(models))[0];
+  const auto alone = std::get<Camera>(make_camera<double>(barrel));
+  EXPECT_EQ(listed.ray(pixel).direction, alone.ray(pixel).direction);
+  const auto doubled =
+      std::get<Camera>(make_camera<double>(barrel.resized(2 * barrel.width, 2 * barrel.height)));
+  const Eigen::Vector2d there = 2 * (pixel.array() + 0.5) - 0.5;
+  EXPECT_LT((doubled.ray(there).direction - alone.ray(pixel).direction).norm(), 1e-14);
+  // And it is not the straight one.
+  CameraModel straight = barrel;
+  straight.distortion.reset();
+  const auto other =
+      std::get<refractive::FlatPortCamera<double>>(make_camera<double>(straight)).ray(pixel);
+  EXPECT_GT((other.direction - alone.ray(pixel).direction).norm(), 1e-3);
+}
+
 TEST(CameraList, RefusesWhatCannotBeMatched) {
   const CameraModel dry = test::dry_camera();
   const std::vector<CameraModel> mixed{test::behind_port(dry), behind_dome()};
@@ -60,6 +92,10 @@ TEST(CameraList, RefusesWhatCannotBeMatched) {
   const std::vector<CameraModel> dome{behind_dome()};
   EXPECT_THAT(test::error_of([&] { make_camera_list<float>(dome, ProjectionMethod::line_search); }),
               HasSubstr("line search"));
+  const std::vector<CameraModel> barrel{with_barrel(test::behind_port(dry))};
+  EXPECT_THAT(
+      test::error_of([&] { make_camera_list<float>(barrel, ProjectionMethod::line_search); }),
+      HasSubstr("--undistort 1"));
 }
 
 }  // namespace

@@ -78,8 +78,9 @@ std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
       return std::make_unique<LaneScorer<refractive::FlatPortCamera, Narrow, Wide>>(tables);
     case CameraKind::dome_port:
       return std::make_unique<LaneScorer<refractive::DomePortCamera, Narrow, Wide>>(tables);
+    default:
+      return nullptr;
   }
-  return nullptr;
 }
 
 }  // namespace axial::depth::lanes

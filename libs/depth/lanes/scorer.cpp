@@ -19,16 +19,20 @@ InstructionSet fastest_instruction_set() {
 }
 
 std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet set) {
+  const bool straight = tables.kind < CameraKind::lens_pinhole;
   switch (set) {
     case InstructionSet::scalar:
-      return detail::make_scalar_scorer(tables);
+      return straight ? detail::make_scalar_scorer(tables)
+                      : detail::make_scalar_lens_scorer(tables);
     case InstructionSet::baseline:
-      return detail::make_baseline_scorer(tables);
+      return straight ? detail::make_baseline_scorer(tables)
+                      : detail::make_baseline_lens_scorer(tables);
 #ifdef AXIAL_WIDE_LANES
     case InstructionSet::avx2:
-      return detail::make_avx2_scorer(tables);
+      return straight ? detail::make_avx2_scorer(tables) : detail::make_avx2_lens_scorer(tables);
     case InstructionSet::avx512:
-      return detail::make_avx512_scorer(tables);
+      return straight ? detail::make_avx512_scorer(tables)
+                      : detail::make_avx512_lens_scorer(tables);
 #endif
     default:
       return nullptr;

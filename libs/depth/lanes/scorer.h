@@ -16,9 +16,17 @@
 
 namespace axial::depth::lanes {
 
-enum class CameraKind { pinhole, flat_port, dome_port };
+enum class CameraKind {
+  pinhole,
+  flat_port,
+  dome_port,
+  // The same with a distorted lens.
+  lens_pinhole,
+  lens_flat_port,
+  lens_dome_port
+};
 
-inline constexpr std::size_t kMaxCameraFields = 56;
+inline constexpr std::size_t kMaxCameraFields = 80;
 
 // The numbers of a camera or its projector as its each_field() visits them.
 struct CameraFields {
@@ -72,11 +80,15 @@ InstructionSet fastest_instruction_set();
 // `tables` must outlive the scorer. Precondition: `set` is available.
 std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet set);
 
-namespace detail {  // one translation unit each
+namespace detail {  // one translation unit each, for straight lenses and for distorted ones
 std::unique_ptr<Scorer> make_scalar_scorer(const SceneTables& tables);
 std::unique_ptr<Scorer> make_baseline_scorer(const SceneTables& tables);
 std::unique_ptr<Scorer> make_avx2_scorer(const SceneTables& tables);
 std::unique_ptr<Scorer> make_avx512_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_scalar_lens_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_baseline_lens_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_avx2_lens_scorer(const SceneTables& tables);
+std::unique_ptr<Scorer> make_avx512_lens_scorer(const SceneTables& tables);
 }  // namespace detail
 
 }  // namespace axial::depth::lanes

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled for avx2 alone: nothing here may be shared with other translation units.
+#include "depth/lanes/lane_lens_scorer.h"
+
+namespace axial::depth::lanes::detail {
+
+std::unique_ptr<Scorer> make_avx2_lens_scorer(const SceneTables& tables) {
+  return make_lane_lens_scorer<stdx::simd_abi::native<float>>(tables);
+}
+
+}  // namespace axial::depth::lanes::detail
