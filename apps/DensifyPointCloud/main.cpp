@@ -63,7 +63,7 @@ int run(int argc, char** argv) {
   const std::size_t points = options.fuse
                                  ? densify::write_cloud(project, options, plan, images, ply)
                                  : write_sparse_cloud(project.scene, ply);
-  densify::write_housing_beside_output(project, options);
+  densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   spdlog::info("{}: {} points", ply.string(), points);
   if (options.fuse && points == 0)

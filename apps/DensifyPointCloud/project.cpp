@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "io/housing.h"
 #include "io/image.h"
+#include "io/lenses.h"
 #include "io/mvs.h"
 
 namespace densify {
@@ -159,10 +160,17 @@ void add_port(axial::Fingerprint& print, const axial::refractive::DomePort<doubl
                       port.thickness, port.n_air, port.n_glass, port.n_water});
 }
 
+void add_distortion(axial::Fingerprint& print,
+                    axial::refractive::LensDistortion<double> distortion) {
+  print.add("distortion");
+  distortion.each_field([&](double number) { print.add(number); });
+}
+
 void add_camera(axial::Fingerprint& print, const axial::CameraModel& camera) {
   print.add(static_cast<std::uint64_t>(camera.width))
       .add(static_cast<std::uint64_t>(camera.height));
   print.add(camera.lens.fx).add(camera.lens.fy).add(camera.lens.cx).add(camera.lens.cy);
+  if (camera.distortion) add_distortion(print, *camera.distortion);
   print.add(std::uint64_t{camera.port.has_value()});
   if (!camera.port) return;
   std::visit([&](const auto& port) { add_port(print, port); }, *camera.port);
@@ -223,6 +231,9 @@ Project load_project(const Options& options) {
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
+  if (axial::io::attach_lenses_beside(project.scene, options.input))
+    spdlog::info("{}: lenses are distorted, and matched as they are",
+                 axial::io::lenses_beside(options.input).filename().string());
   project.housing = attach_housing(project.scene, options);
   spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
                project.scene.images.size(), project.scene.points.size());
@@ -233,7 +244,8 @@ Project load_project(const Options& options) {
   return project;
 }
 
-void write_housing_beside_output(const Project& project, const Options& options) {
+void write_cameras_beside_output(const Project& project, const Options& options) {
+  axial::io::write_lenses_beside(options.output, project.scene);
   const fs::path file = axial::io::housing_beside(options.output);
   if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (file == axial::io::housing_beside(options.input)) return;

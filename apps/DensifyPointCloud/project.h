@@ -43,8 +43,8 @@ struct Project {
 // shape than their camera; ImageStore::check_all finds the rest.
 Project load_project(const Options& options);
 
-// Leaves the housing beside the output scene, where every later program finds it. A scene without
-// ports gets none, and an older one of the same name goes.
-void write_housing_beside_output(const Project& project, const Options& options);
+// Leaves the housing and the lenses beside the output scene, where every later program finds them.
+// A scene without ports or distorted lenses gets none, and an older one of the same name goes.
+void write_cameras_beside_output(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -6,6 +6,7 @@
 #include "io/colmap.h"
 #include "io/colmap_scene.h"
 #include "io/housing.h"
+#include "io/lenses.h"
 #include "io/mvs.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
@@ -18,6 +19,12 @@ namespace {
 std::size_t count_behind_ports(const Scene& scene) {
   std::size_t count = 0;
   for (const SceneImage& image : scene.images) count += image.camera.port.has_value();
+  return count;
+}
+
+std::size_t count_distorted(const Scene& scene) {
+  std::size_t count = 0;
+  for (const SceneImage& image : scene.images) count += image.camera.distortion.has_value();
   return count;
 }
 
@@ -52,7 +59,9 @@ int run(int argc, char** argv) {
 
   const fs::path folder = options.scene_file.parent_path();
   make_folder(folder);
-  const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted"};
+  const bool undistort = options.undistort.value_or(housing.ports.empty());
+  const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted",
+                                undistort};
   Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"));
 
   // The housing goes first: a scene without the one it was made with would count as dry.
@@ -70,6 +79,10 @@ int run(int argc, char** argv) {
     spdlog::info("{}: {} of {} images behind a port", housing_file.string(),
                  count_behind_ports(scene), scene.images.size());
   }
+  io::write_lenses_beside(options.scene_file, scene);
+  if (const std::size_t distorted = count_distorted(scene))
+    spdlog::info("{}: {} of {} images keep their distorted lens",
+                 io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
   io::write_mvs(options.scene_file, scene, folder);
   spdlog::info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
                scene.points.size());

@@ -29,7 +29,7 @@ fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& c
 
 Options parse_command_line(int argc, const char* const* argv) {
   std::string input, output, image_folder, housing, point_cloud;
-  bool normalize = false, force_points = false;
+  bool normalize = false, force_points = false, undistort = false;
   axial::ProgramOptions program{
       "InterfaceCOLMAP", "turns a COLMAP model and its images into a scene (.mvs)", {}, {}};
   program.visible.add_options()  //
@@ -40,7 +40,11 @@ Options parse_command_line(int argc, const char* const* argv) {
        "folder of the images, in the working folder or else in DIR (the default: in DIR first); "
        "images must have the size of their cameras")  //
       ("housing", po::value(&housing),
-       "housing file: ports the cameras look through; written as <scene>.housing.json")        //
+       "housing file: ports the cameras look through; written as <scene>.housing.json")  //
+      ("undistort", po::value(&undistort),
+       "1: resample images of distorted lenses into a pinhole's, which all programs can read; 0: "
+       "keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind ports, 1 in "
+       "air)")                                                                                 //
       ("pointcloud-file,p", po::value(&point_cloud), "only to export a scene: not built yet")  //
       ("normalize,f", po::value(&normalize)->default_value(false),
        "only 0: intrinsics are always written in pixels")  //
@@ -63,6 +67,7 @@ Options parse_command_line(int argc, const char* const* argv) {
     fail("{}: is not a folder", options.colmap_folder.string());
   options.scene_file = output.empty() ? options.colmap_folder / "scene.mvs"
                                       : axial::in_working_folder(common, output);
+  if (axial::given(options.parsed.values, "undistort")) options.undistort = undistort;
   options.housing_file = axial::in_working_folder(common, housing);
   options.image_folder = find_image_folder(options.parsed, options.colmap_folder, image_folder);
   return options;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "base/program.h"
 
@@ -11,6 +12,7 @@ struct Options {
   std::filesystem::path scene_file;    // output
   std::filesystem::path image_folder;  // exists
   std::filesystem::path housing_file;  // empty: no housing
+  std::optional<bool> undistort;       // nothing: in air
 };
 
 // Parses and checks the command line; what is left to do is in `parsed.run`.

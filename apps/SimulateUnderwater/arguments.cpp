@@ -2,8 +2,11 @@
 #include "arguments.h"
 
 #include <cmath>
+#include <sstream>
+#include <vector>
 
 #include "base/error.h"
+#include "base/parse_number.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -22,9 +25,11 @@ ProgramOptions describe(Arguments& a) {
       "height", po::value(&a.preset.height)->default_value(preset.height), "of the images [px]")(
       "fov-degrees",
       po::value(&a.preset.horizontal_fov_degrees)->default_value(preset.horizontal_fov_degrees),
-      "horizontal field of view in air")("scale",
-                                         po::value(&a.preset.scale)->default_value(preset.scale),
-                                         "of the scene and the views' distances, not of the port")(
+      "horizontal field of view in air, without the lens's distortion")(
+      "lens", po::value(&a.lens),
+      "a distorted one: OPENCV,k1,k2,p1,p2 or OPENCV_FISHEYE,k1,k2,k3,k4")(
+      "scale", po::value(&a.preset.scale)->default_value(preset.scale),
+      "of the scene and the views' distances, not of the port")(
       "coarseness", po::value(&a.preset.coarseness)->default_value(preset.coarseness),
       "of the mesh: the distance between its vertices times this")(
       "relief", po::value(&a.preset.relief)->default_value(preset.relief),
@@ -63,6 +68,26 @@ void check(const Arguments& a) {
   if (a.samples < 1 || a.samples > 16) fail("--samples is {}: must be between 1 and 16", a.samples);
   if (!(std::abs(a.tilt_degrees) <= 45))
     fail("--tilt-degrees is {}: must be between -45 and 45", a.tilt_degrees);
+}
+
+void apply_lens_option(simulate::Preset& preset, const Arguments& a) {
+  if (a.lens.empty()) return;
+  std::vector<std::string> parts;
+  std::istringstream text(a.lens);
+  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
+  simulate::Bend bend;
+  bend.fisheye = parts[0] == "OPENCV_FISHEYE";
+  if (!bend.fisheye && parts[0] != "OPENCV")
+    fail("--lens is '{}': must begin with OPENCV or OPENCV_FISHEYE", a.lens);
+  if (parts.size() != bend.k.size() + 1)
+    fail("--lens is '{}': must have {} coefficients", a.lens, bend.k.size());
+  for (std::size_t i = 0; i < bend.k.size(); ++i) {
+    const auto number = parse_finite<double>(parts[i + 1]);
+    if (!number) fail("--lens is '{}': '{}' is no number", a.lens, parts[i + 1]);
+    bend.k[i] = *number;
+  }
+  preset.lens.bend = bend;
+  simulate::check_lens(preset.lens);
 }
 
 void apply_port_options(simulate::Preset& preset, const Arguments& a,

@@ -10,7 +10,7 @@ namespace axial {
 
 struct Arguments {
   simulate::PresetOptions preset;
-  std::string output, medium;
+  std::string output, medium, lens;
   int samples = 0, jpeg_quality = 0;
   double noise = 0;
   bool truth = true, truth_only = false;
@@ -24,6 +24,10 @@ ProgramOptions describe(Arguments& a);
 
 // Error that names the option and its value.
 void check(const Arguments& a);
+
+// Gives the preset the lens that the user asked for. Error for a model that is not known, a wrong
+// number of coefficients, and a lens that does not fill its image.
+void apply_lens_option(simulate::Preset& preset, const Arguments& a);
 
 // Replaces those properties of the preset's port that the user gave, or the port by the water's
 // surface.

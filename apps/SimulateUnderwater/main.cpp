@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
     check(arguments);
     const ThreadLimit limit(parsed.common.max_threads);
     simulate::Preset preset = simulate::make_preset(arguments.preset);
+    apply_lens_option(preset, arguments);
     apply_port_options(preset, arguments, parsed.values);
     simulate::check_ports(preset);
     simulate_scene(arguments, preset, in_working_folder(parsed.common, arguments.output));

@@ -22,6 +22,20 @@ io::ColmapImage colmap_image(std::size_t i, const simulate::View& view) {
   return image;
 }
 
+constexpr double kColmapCentre = 0.5;  // COLMAP's centre of the first pixel; ours is 0
+
+io::ColmapCamera colmap_camera(const simulate::Lens& lens) {
+  io::ColmapCamera camera;
+  camera.id = 1;
+  camera.model = !lens.bend ? "PINHOLE" : lens.bend->fisheye ? "OPENCV_FISHEYE" : "OPENCV";
+  camera.width = static_cast<std::uint64_t>(lens.width);
+  camera.height = static_cast<std::uint64_t>(lens.height);
+  camera.params = {lens.focal, lens.focal, lens.cx + kColmapCentre, lens.cy + kColmapCentre};
+  if (lens.bend)
+    camera.params.insert(camera.params.end(), lens.bend->k.begin(), lens.bend->k.end());
+  return camera;
+}
+
 Rgb to_rgb(const Eigen::Vector3f& color) {
   const auto byte = [](float c) {
     return static_cast<std::uint8_t>(std::clamp(255.0f * c, 0.0f, 255.0f) + 0.5f);
@@ -50,14 +64,8 @@ std::string view_name(std::size_t view) {
 void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
                         std::span<const simulate::View> views,
                         std::span<const simulate::SparsePoint> points) {
-  constexpr double kColmapCentre = 0.5;  // COLMAP's centre of the first pixel; ours is 0
   io::ColmapModel model;
-  model.cameras.push_back(
-      {1,
-       "PINHOLE",
-       static_cast<std::uint64_t>(lens.width),
-       static_cast<std::uint64_t>(lens.height),
-       {lens.focal, lens.focal, lens.cx + kColmapCentre, lens.cy + kColmapCentre}});
+  model.cameras.push_back(colmap_camera(lens));
   for (std::size_t i = 0; i < views.size(); ++i) model.images.push_back(colmap_image(i, views[i]));
   for (const simulate::SparsePoint& from : points) {
     io::ColmapPoint3D point;

@@ -15,7 +15,7 @@ namespace axial {
 // "0007": images, their truth and their entries in the sparse model share it.
 std::string view_name(std::size_t view);
 
-// <folder>/{cameras,images,points3D}.txt: one PINHOLE camera, the true poses and observations.
+// <folder>/{cameras,images,points3D}.txt: one camera, the true poses and observations.
 void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
                         std::span<const simulate::View> views,
                         std::span<const simulate::SparsePoint> points);

@@ -13,13 +13,14 @@ namespace {
 
 CameraModel dry_camera(const io::ColmapCamera& camera) {
   const auto lens = io::pinhole_lens(camera);
-  if (!lens)
-    fail("camera {} is {}: true cameras must be pinholes without distortion", camera.id,
-         camera.model);
   CameraModel model;
   model.width = static_cast<int>(camera.width);
   model.height = static_cast<int>(camera.height);
-  model.lens = *lens;
+  model.distortion = io::lens_distortion(camera);
+  if (!lens && !model.distortion)
+    fail("camera {} is {}: true cameras must have lenses that are matched as they are", camera.id,
+         camera.model);
+  model.lens = lens ? *lens : io::undistorted_lens(camera);
   return model;
 }
 

@@ -91,28 +91,77 @@ Vector2d eucm(Parameters k, const Vector2d& p) {
   return below > 0 ? Vector2d(p / below) : Vector2d::Constant(std::nan(""));
 }
 
+// The same models as the matcher has them. The parameters of two models in one: OPENCV is
+// FULL_OPENCV without the last four, and so on; what a model does not have is zero.
+using Bent = refractive::LensDistortion<double>;
+
+double at(Parameters k, std::size_t i) {
+  return i < k.size() ? k[i] : 0;
+}
+
+Bent bent_radially(Parameters k) {
+  Bent bent;
+  for (std::size_t i = 0; i < 4; ++i) bent.above[i + 1] = at(k, i);
+  return bent;
+}
+
+Bent bent_as_opencv(Parameters k) {
+  Bent bent;
+  bent.above = {1, k[0], k[1], at(k, 4), 0};
+  bent.below = {at(k, 5), at(k, 6), at(k, 7)};
+  bent.p1 = k[2];
+  bent.p2 = k[3];
+  return bent;
+}
+
+Bent bent_as_fisheye(Parameters k) {
+  Bent bent = bent_radially(k);
+  bent.fisheye = 1;
+  return bent;
+}
+
+Bent bent_as_thin_prism_fisheye(Parameters k) {
+  Bent bent;
+  bent.fisheye = 1;
+  bent.above = {1, k[0], k[1], k[4], k[5]};
+  bent.p1 = k[2];
+  bent.p2 = k[3];
+  bent.prism = {k[6], k[7]};
+  return bent;
+}
+
+Bent bent_by_field_of_view(Parameters k) {
+  Bent bent;
+  if (k[0] == 0) return bent;
+  bent.fisheye = 1;
+  bent.spread = 2 * std::tan(k[0] / 2);
+  bent.above[0] = 1 / k[0];
+  return bent;
+}
+
 struct Lens {
   std::string_view model;
   int focal_lengths;  // 1: f cx cy ..., 2: fx fy cx cy ...
   Vector2d (*distort)(Parameters, const Vector2d&);
-  bool flat;  // the pinhole where all distortion parameters are zero
+  bool flat;                   // the pinhole where all distortion parameters are zero
+  Bent (*bent)(Parameters){};  // null: the matcher has no such lens
 };
 
 constexpr std::array kLenses = {
     Lens{"SIMPLE_PINHOLE", 1, pinhole, true},
     Lens{"PINHOLE", 2, pinhole, true},
-    Lens{"SIMPLE_RADIAL", 1, radial, true},
-    Lens{"RADIAL", 1, radial, true},
-    Lens{"OPENCV", 2, opencv, true},
-    Lens{"FULL_OPENCV", 2, full_opencv, true},
-    Lens{"OPENCV_FISHEYE", 2, fisheye, false},
-    Lens{"SIMPLE_RADIAL_FISHEYE", 1, fisheye, false},
-    Lens{"RADIAL_FISHEYE", 1, fisheye, false},
-    Lens{"SIMPLE_FISHEYE", 1, fisheye, false},
-    Lens{"FISHEYE", 2, fisheye, false},
-    Lens{"THIN_PRISM_FISHEYE", 2, thin_prism_fisheye, false},
+    Lens{"SIMPLE_RADIAL", 1, radial, true, bent_radially},
+    Lens{"RADIAL", 1, radial, true, bent_radially},
+    Lens{"OPENCV", 2, opencv, true, bent_as_opencv},
+    Lens{"FULL_OPENCV", 2, full_opencv, true, bent_as_opencv},
+    Lens{"OPENCV_FISHEYE", 2, fisheye, false, bent_as_fisheye},
+    Lens{"SIMPLE_RADIAL_FISHEYE", 1, fisheye, false, bent_as_fisheye},
+    Lens{"RADIAL_FISHEYE", 1, fisheye, false, bent_as_fisheye},
+    Lens{"SIMPLE_FISHEYE", 1, fisheye, false, bent_as_fisheye},
+    Lens{"FISHEYE", 2, fisheye, false, bent_as_fisheye},
+    Lens{"THIN_PRISM_FISHEYE", 2, thin_prism_fisheye, false, bent_as_thin_prism_fisheye},
     Lens{"RAD_TAN_THIN_PRISM_FISHEYE", 2, rad_tan_thin_prism_fisheye, false},
-    Lens{"FOV", 2, field_of_view, true},
+    Lens{"FOV", 2, field_of_view, true, bent_by_field_of_view},
     Lens{"SIMPLE_DIVISION", 1, division, true},
     Lens{"DIVISION", 2, division, true},
     Lens{"EUCM", 2, eucm, false},
@@ -233,6 +282,12 @@ refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera) {
 
 Vector2d image_direction(const ColmapCamera& camera, double u, double v) {
   return image_point(take_apart(camera), {u, v});
+}
+
+std::optional<refractive::LensDistortion<double>> lens_distortion(const ColmapCamera& camera) {
+  const Parts parts = take_apart(camera);
+  if (!parts.lens->bent || pinhole_lens(camera)) return std::nullopt;
+  return parts.lens->bent(parts.distortion);
 }
 
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const ColmapCamera& camera) {

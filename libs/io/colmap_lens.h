@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/colmap.h"
+#include "refractive/lens_distortion.h"
 #include "refractive/pinhole_camera.h"
 
 namespace axial::io {
@@ -31,6 +32,11 @@ std::optional<ImagedDirection> direction_at(const ColmapCamera& camera,
 
 // The lens without its distortion: focal lengths and principal point. Pixel centres at integers.
 refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera);
+
+// How the lens bends the picture of undistorted_lens(), for models that the matcher follows: the
+// polynomials, perspective and fisheye, and FOV. Nothing for the others
+// (RAD_TAN_THIN_PRISM_FISHEYE, the division models, EUCM), and for pinholes.
+std::optional<refractive::LensDistortion<double>> lens_distortion(const ColmapCamera& camera);
 
 // The lens if `camera` is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a lens model whose distortion is
 // exactly zero. Pixel centres at integers.

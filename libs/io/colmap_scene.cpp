@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/colmap_scene.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -13,6 +15,7 @@
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
+#include "io/image_names.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
@@ -32,7 +35,28 @@ struct ImportedCamera {
   cv::Mat2f map;
 };
 
-ImportedCamera import_camera(const ColmapCamera& camera, const fs::path& model_folder) {
+// The lens as it is. A warning where it does not show its whole image.
+void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double>& distortion,
+               const fs::path& model_folder, CameraModel& camera) {
+  camera.distortion = distortion;
+  const auto lens = distorted_lens<double>(camera);
+  if (!(lens.field > 0))
+    fail("{}: camera {}: the distortion of its {} lens turns the image over", model_folder.string(),
+         from.id, from.model);
+  const double right = camera.width - 1, bottom = camera.height - 1;
+  bool whole = true;
+  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0),
+                                        Eigen::Vector2d(0, bottom), Eigen::Vector2d(right, bottom)})
+    whole = whole && lens.shows(corner);
+  if (!whole)
+    spdlog::warn(
+        "{}: camera {} ({}): its lens is not defined as far as the corners of its image; pixels "
+        "beyond are not matched",
+        model_folder.string(), from.id, from.model);
+}
+
+ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& import) {
+  const fs::path& model_folder = import.model_folder;
   constexpr std::uint64_t kLargest = 1u << 16;
   if (camera.width == 0 || camera.height == 0 || camera.width > kLargest ||
       camera.height > kLargest)
@@ -42,21 +66,29 @@ ImportedCamera import_camera(const ColmapCamera& camera, const fs::path& model_f
   imported.camera.width = static_cast<int>(camera.width);
   imported.camera.height = static_cast<int>(camera.height);
   const auto lens = pinhole_lens(camera);
-  imported.camera.lens = lens ? *lens : pinhole_inside(camera, model_folder.string());
+  const auto distortion = lens_distortion(camera);
+  const bool resampled = !lens && (import.undistort || !distortion);
+  if (!lens && !import.undistort && !distortion)
+    spdlog::info("camera {} ({}): images are undistorted: not a lens that is matched as it is",
+                 camera.id, camera.model);
+  if (lens) imported.camera.lens = *lens;
+  if (resampled) imported.camera.lens = pinhole_inside(camera, model_folder.string());
+  if (!lens && !resampled) imported.camera.lens = undistorted_lens(camera);
   if (const auto& l = imported.camera.lens; !(l.fx > 0 && l.fy > 0))
     fail("{}: camera {}: focal length ({}, {}) is not positive", model_folder.string(), camera.id,
          l.fx, l.fy);
-  if (!lens) imported.map = undistortion_map(camera, imported.camera.lens);
+  if (resampled) imported.map = undistortion_map(camera, imported.camera.lens);
+  if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera);
   return imported;
 }
 
 std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
-                                                       const fs::path& model_folder) {
+                                                       const ColmapImport& import) {
   std::set<std::uint32_t> used;
   for (const ColmapImage& image : model.images) used.insert(image.camera);
   std::map<std::uint32_t, ImportedCamera> imported;
   for (const ColmapCamera& camera : model.cameras)
-    if (used.contains(camera.id)) imported.emplace(camera.id, import_camera(camera, model_folder));
+    if (used.contains(camera.id)) imported.emplace(camera.id, import_camera(camera, import));
   return imported;
 }
 
@@ -168,7 +200,7 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   if (model.images.size() < 2)
     fail("{}: the model has {} registered images, at least 2 are needed",
          import.model_folder.string(), model.images.size());
-  const auto cameras = import_cameras(model, import.model_folder);
+  const auto cameras = import_cameras(model, import);
   const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
                                      [](const ColmapImage& image) { return image.id == 0; });
 
@@ -227,12 +259,8 @@ Housing housing_by_image(const Housing& housing, const ColmapModel& model, const
     const ColmapImage& image = model.images[i];
     names.push_back(scene_name(image, scene.images[i].path, import));
     ports.push_back(housing.port_of(image.name, image.camera));
-    if (ports[i] != housing.default_port) resolved.images[names[i]] = ports[i];
   }
-  // Without an entry of its own an image would take that of a shorter name.
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (ports[i] == housing.default_port && resolved.entry_of(names[i]) != resolved.images.end())
-      resolved.images[names[i]] = ports[i];
+  resolved.images = entries_for(names, ports, housing.default_port);
   check_ports(resolved, scene, ports);
   return resolved;
 }

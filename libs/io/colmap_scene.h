@@ -17,14 +17,15 @@ struct ColmapImport {
   std::filesystem::path model_folder;        // for messages
   std::filesystem::path image_folder;        // image names are relative to it
   std::filesystem::path undistorted_folder;  // where undistorted images go; made when needed
+  bool undistort = true;  // false: lenses stay distorted where the matcher follows their model
 };
 
 // The scene of `model`, images in the model's order, at least two. Every image file must exist and
-// have its camera's size. Cameras that are no pinholes are replaced by one (pinhole_inside) and
-// their images resampled into `undistorted_folder`, with the masks beside them: JPEGs stay JPEGs,
-// everything else becomes PNG.
-// Image ids are COLMAP's less one, or COLMAP's own if they start at 0. Views of sparse points are
-// sorted by image and have no confidence. Error that names file, field and value.
+// have its camera's size. Cameras that are no pinholes keep their lens (lens_distortion), or are
+// replaced by a pinhole (pinhole_inside) and their images resampled into `undistorted_folder`, with
+// the masks beside them: JPEGs stay JPEGs, everything else becomes PNG. Image ids are COLMAP's less
+// one, or COLMAP's own if they start at 0. Views of sparse points are sorted by image and have no
+// confidence. Error that names file, field and value.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& progress = {});
 

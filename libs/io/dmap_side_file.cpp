@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "io/lens_json.h"
 #include "io/port_json.h"
 
 namespace axial::io {
@@ -42,14 +43,15 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   if (!fs::exists(path, ignored)) return {};
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": depth map"};
-  root.require_object({"version", "width", "height", "lens", "port", "min_depth_m", "max_depth_m",
-                       "made_from", "content"});
+  root.require_object({"version", "width", "height", "lens", "distortion", "port", "min_depth_m",
+                       "max_depth_m", "made_from", "content"});
   if (root.at("version").json != 1)
     fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
   DmapSideFile side;
   side.camera.width = read_side(root, "width");
   side.camera.height = read_side(root, "height");
   side.camera.lens = read_lens(root.at("lens"));
+  if (root.has("distortion")) side.camera.distortion = distortion_from_json(root.at("distortion"));
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
     // A water surface is a flat port as far away as the camera is high.
     side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());
@@ -73,6 +75,7 @@ void write_dmap_side_file(const fs::path& dmap, const DmapSideFile& side) {
       {"made_from", side.made_from},
       {"content", side.content}};
   if (side.camera.port) json["port"] = port_to_json(*side.camera.port);
+  if (side.camera.distortion) json["distortion"] = distortion_to_json(*side.camera.distortion);
   write_json(dmap_side_path(dmap), json);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "io/image_names.h"
 #include "io/port_json.h"
 #include "io/text_reader.h"
 
@@ -116,11 +117,7 @@ Housing housing_with(const HousingPort& port) {
 
 std::map<std::string, std::string>::const_iterator Housing::entry_of(
     const std::string& image_name) const {
-  auto entry = images.find(image_name);
-  for (std::size_t slash = image_name.find('/');
-       entry == images.end() && slash != std::string::npos; slash = image_name.find('/', slash + 1))
-    entry = images.find(image_name.substr(slash + 1));
-  return entry;
+  return io::entry_of(images, image_name);
 }
 
 const std::string& Housing::port_of(const std::string& image_name, std::uint32_t camera_id) const {

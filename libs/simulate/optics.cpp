@@ -122,8 +122,7 @@ std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
 }
 
 std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u, double v) {
-  const Eigen::Vector3d bearing((u - lens.cx) / lens.focal, (v - lens.cy) / lens.focal, 1.0);
-  const Eigen::Vector3d in_air = bearing.normalized();
+  const Eigen::Vector3d in_air = direction_of(lens, u, v);
   if (!port) return SceneRay{Eigen::Vector3d::Zero(), in_air, Eigen::Vector3d::Zero()};
   const auto path = pass_port(*port, in_air);
   if (!path) return std::nullopt;

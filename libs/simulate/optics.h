@@ -4,17 +4,35 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 
 namespace axial::simulate {
 
-// A pinhole in air: u = focal * x/z + cx; pixel centres at integers; camera axes x right, y down,
-// z forward.
+// How a lens departs from the pinhole, as OpenCV defines it for perspective lenses (k1 k2 p1 p2)
+// and for fisheyes (k1 k2 k3 k4).
+struct Bend {
+  bool fisheye = false;
+  std::array<double, 4> k{};
+};
+
+// A lens in air: u = focal * x/z + cx, bent where it is; pixel centres at integers; camera axes x
+// right, y down, z forward.
 struct Lens {
   int width = 0, height = 0;
   double focal = 0;  // [px]
   double cx = 0, cy = 0;
+  std::optional<Bend> bend = {};
 };
+
+// The pixel of a direction with z > 0, and the unit direction of a pixel. Precondition of both:
+// check_lens.
+Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction);
+Eigen::Vector3d direction_of(const Lens& lens, double u, double v);
+
+// Error that names the coefficients unless every pixel of the image, corners included, has a
+// direction that pixel_of brings back.
+void check_lens(const Lens& lens);
 
 // Square pixels, principal point in the image centre. Error unless 1 <= width, height and
 // 1 <= horizontal_fov_degrees <= 150.

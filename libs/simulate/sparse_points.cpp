@@ -15,9 +15,11 @@ std::optional<Eigen::Vector2d> observe(const RayScene& scene, const Lens& lens, 
                                        const Eigen::Vector3d& point) {
   const Eigen::Vector3d in_camera = view.rotation * (point - view.centre);
   if (!(in_camera.z() > 0)) return std::nullopt;
-  const Eigen::Vector2d pixel(lens.focal * in_camera.x() / in_camera.z() + lens.cx,
-                              lens.focal * in_camera.y() / in_camera.z() + lens.cy);
+  const Eigen::Vector2d pixel = pixel_of(lens, in_camera);
   if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > lens.width - 1 || pixel.y() > lens.height - 1)
+    return std::nullopt;
+  // What lies beyond a lens's field is imaged inside again, but not where it is.
+  if (lens.bend && direction_of(lens, pixel.x(), pixel.y()).dot(in_camera.normalized()) < 1 - 1e-9)
     return std::nullopt;
   const double range = in_camera.norm();
   const Eigen::Vector3d direction = (point - view.centre) / range;

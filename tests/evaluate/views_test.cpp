@@ -135,6 +135,14 @@ TEST(ViewsOfModel, TakesLensPoseAndPort) {
   EXPECT_EQ(wet[0].pose.centre, Eigen::Vector3d(1, 2, 3));
 }
 
+TEST(ViewsOfModel, KeepsADistortedLens) {
+  const auto views =
+      views_of_model(small_model("OPENCV", {500, 510, 320, 240, -0.1, 0, 0, 0}), nullptr);
+  ASSERT_TRUE(views[0].camera.distortion);
+  EXPECT_EQ(views[0].camera.distortion->above[1], -0.1);
+  EXPECT_EQ(views[0].camera.lens.cx, 319.5);
+}
+
 TEST(ViewsOfModel, SeesAWaterSurfaceFromEachPose) {
   auto model = small_model("PINHOLE", {500, 510, 320, 240});
   model.images.push_back(model.images[0]);
@@ -162,9 +170,8 @@ TEST(ViewsOfModel, FindsPortsByTheEndOfTheName) {
   EXPECT_TRUE(views_of_model(model, &housing)[0].camera.port.has_value());
 }
 
-TEST(ViewsOfModel, RefusesDistortedLensesAndEmptyModels) {
-  EXPECT_THROW(views_of_model(small_model("OPENCV", {500, 500, 320, 240, 0.1, 0, 0, 0}), nullptr),
-               Error);
+TEST(ViewsOfModel, RefusesLensesThatAreNotMatchedAsTheyAreAndEmptyModels) {
+  EXPECT_THROW(views_of_model(small_model("DIVISION", {500, 500, 320, 240, 0.1}), nullptr), Error);
   EXPECT_THROW(views_of_model(io::ColmapModel{}, nullptr), Error);
 }
 

@@ -10,6 +10,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "base/error.h"
+#include "refractive/distorted_lens.h"
 
 namespace axial::io {
 namespace {
@@ -159,6 +160,42 @@ RC_GTEST_PROP(ColmapLens, DirectionsAreFoundAgain, ()) {
         (image_direction(camera, u + h, v) - image_direction(camera, u - h, v)) / (2 * h);
     RC_ASSERT((found->derivative.col(0) - slope).norm() < 1e-4 * slope.norm());
   }
+}
+
+// The matcher's formula against each model's own, which share no code.
+RC_GTEST_PROP(ColmapLens, TheMatchersLensesImageTheSame, ()) {
+  const std::vector<ColmapCamera> cameras{
+      one_focal_camera("SIMPLE_RADIAL", {-0.1}),
+      one_focal_camera("RADIAL", {-0.1, 0.02}),
+      two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -2e-3}),
+      two_focal_camera("FULL_OPENCV", {-0.1, 0.02, 1e-3, -2e-3, 0.01, 0.02, 0.03, 0.004}),
+      two_focal_camera("OPENCV_FISHEYE", {0.02, -0.01, 0.002, 0.001}),
+      one_focal_camera("SIMPLE_RADIAL_FISHEYE", {0.02}),
+      one_focal_camera("RADIAL_FISHEYE", {0.02, -0.01}),
+      one_focal_camera("SIMPLE_FISHEYE", {}),
+      two_focal_camera("FISHEYE", {}),
+      two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-3, 2e-3, 0.003, 1e-3, 4e-3, 5e-3}),
+      two_focal_camera("FOV", {0.9})};
+  const double u = within(0.7), v = within(0.7);
+  for (const ColmapCamera& camera : cameras) {
+    const auto distortion = lens_distortion(camera);
+    RC_ASSERT(distortion.has_value());
+    const refractive::DistortedLens<double> lens(undistorted_lens(camera), *distortion, 640, 480,
+                                                 400);
+    const auto seen = lens.project({u, v});
+    RC_ASSERT(seen.projection.visible);
+    RC_ASSERT((seen.projection.pixel - image_direction(camera, u, v)).norm() < kRounding);
+    RC_ASSERT((lens.tangents(seen.projection.pixel).point - Vector2d(u, v)).norm() < kRounding);
+  }
+}
+
+TEST(ColmapLens, TheMatcherHasNoLensForOtherModels) {
+  for (const ColmapCamera& camera :
+       {two_focal_camera("DIVISION", {0.1}), two_focal_camera("EUCM", {0.5, 1}),
+        two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE", std::vector<double>(12, 0.001)),
+        two_focal_camera("PINHOLE", {}), two_focal_camera("OPENCV", {0, 0, 0, 0}),
+        two_focal_camera("FOV", {0})})
+    EXPECT_FALSE(lens_distortion(camera)) << camera.model;
 }
 
 // At the edge of a fisheye's view the plane of directions is far out.

@@ -110,6 +110,29 @@ TEST_F(ColmapScene, UndistortsImagesThatAreNoPinholes) {
   EXPECT_LT(worst, 3.0);
 }
 
+TEST_F(ColmapScene, KeepsImagesAndLensesAsTheyAre) {
+  import_.undistort = false;
+  model_.cameras.push_back({11, "DIVISION", kWidth, kHeight, {150, 150, 80, 60, -0.1}});
+  add_image(8, 11, "d.png");
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_FALSE(scene.images[0].camera.distortion);
+  EXPECT_EQ(scene.images[2].path, (folder_ / "images" / "c.png").string());
+  ASSERT_TRUE(scene.images[2].camera.distortion);
+  EXPECT_EQ(scene.images[2].camera.distortion->above[1], -0.1);
+  EXPECT_EQ(scene.images[2].camera.lens.fx, 150);
+  EXPECT_EQ(scene.images[2].camera.lens.cx, 79.5);
+  // A model that the matcher does not have.
+  EXPECT_EQ(scene.images[3].path, (import_.undistorted_folder / "d.png").string());
+  EXPECT_FALSE(scene.images[3].camera.distortion);
+}
+
+TEST_F(ColmapScene, RefusesALensThatTurnsItsImageOver) {
+  import_.undistort = false;
+  model_.cameras[1] = {
+      9, "THIN_PRISM_FISHEYE", kWidth, kHeight, {150, 150, 80, 60, 0, 0, 99, 99, 0, 0, 0, 0}};
+  EXPECT_THAT(error(), HasSubstr("camera 9: the distortion of its THIN_PRISM_FISHEYE lens"));
+}
+
 TEST_F(ColmapScene, NamesTheImageThatDoesNotFit) {
   write_png(folder_ / "images" / "a.png", cv::Mat3b(100, 200));
   EXPECT_EQ(error(), (folder_ / "images" / "a.png").string() +

@@ -127,6 +127,19 @@ TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
   }
 }
 
+TEST_F(DmapTest, KeepsTheLens) {
+  DepthMap map = depth_map(folder_, Port::flat);
+  map.camera.distortion.emplace();
+  map.camera.distortion->fisheye = 1;
+  map.camera.distortion->above[1] = 1.0 / 30;
+  write_dmap(file_, map, "fingerprint");
+  const DepthMap kept = read_dmap(file_).map;
+  EXPECT_EQ(kept.camera.distortion, map.camera.distortion);
+  for (int v = 0; v < 7; ++v)
+    for (int u = 0; u < 9; ++u)
+      EXPECT_NEAR(kept.depth(v, u), map.depth(v, u), 4e-7f * map.depth(v, u)) << u << ", " << v;
+}
+
 // The file's depth is z in the real camera's frame, found here without the conversion under test:
 // the pixel's ray is followed for lambda and its end point looked at.
 TEST_F(DmapTest, StoresZDepthOfTheRealCamera) {

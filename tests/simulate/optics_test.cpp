@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "refractive/dome_port_camera.h"
 #include "refractive/flat_port_camera.h"
+#include "refractive/lens_camera.h"
 
 namespace axial::simulate {
 namespace {
@@ -129,6 +130,43 @@ View any_view_of_water(double level) {
   view.rotation = Eigen::AngleAxisd(incline, axis) * Vector3d(1, -1, -1).asDiagonal();
   view.centre = {between(-3, 3), between(-3, 3), level + between(0.1, 30)};
   return view;
+}
+
+// Bent lenses are written down twice and solved in two ways.
+RC_GTEST_PROP(Optics, AgreesWithTheClosedFormOfDistortedLenses, ()) {
+  Lens lens = make_lens(1024, 768, between(50, 90));
+  refractive::LensDistortion<double> distortion;
+  const bool fisheye = *rc::gen::inRange(0, 2) == 1;
+  if (fisheye) {
+    lens.bend = Bend{true, {between(-0.03, 0.03), between(-0.01, 0.01), 0.001, 0.0005}};
+    distortion.fisheye = 1;
+    for (std::size_t i = 0; i < 4; ++i) distortion.above[i + 1] = lens.bend->k[i];
+  } else {
+    lens.bend = Bend{false, {between(-0.05, 0.05), between(0, 0.02), between(-2e-3, 2e-3), 1e-3}};
+    for (std::size_t i = 0; i < 2; ++i) distortion.above[i + 1] = lens.bend->k[i];
+    distortion.p1 = lens.bend->k[2];
+    distortion.p2 = lens.bend->k[3];
+  }
+  check_lens(lens);
+  const Port port = any_port();
+  const Eigen::Vector2d pixel(between(0, 1023), between(0, 767));
+  const refractive::DistortedLens<double> bent({lens.focal, lens.focal, lens.cx, lens.cy},
+                                               distortion, lens.width, lens.height);
+  const refractive::FlatPort<double> through{port.normal, port.distance, port.thickness,
+                                             port.n_air,  port.n_glass,  port.n_water};
+  const auto traced = trace_pixel(lens, &port, pixel.x(), pixel.y());
+  RC_ASSERT(traced.has_value());
+  const auto ray = refractive::LensFlatPortCamera<double>(bent, through).ray(pixel);
+  RC_ASSERT((ray.direction - traced->direction).norm() < 1e-12);
+  RC_ASSERT((pixel_of(lens, direction_of(lens, pixel.x(), pixel.y())) - pixel).norm() < 1e-8);
+}
+
+TEST(Optics, RefusesLensesThatDoNotFillTheImage) {
+  Lens lens = make_lens(640, 480, 80);
+  lens.bend = Bend{false, {-0.5, 0, 0, 0}};
+  EXPECT_THROW(check_lens(lens), Error);
+  lens.bend = Bend{true, {-0.3, 0, 0, 0}};
+  EXPECT_THROW(check_lens(lens), Error);
 }
 
 RC_GTEST_PROP(Optics, TheWaterSurfaceStaysInTheWorld, ()) {

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/lenses.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "io/image_names.h"
+#include "io/lens_json.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Distortion = refractive::LensDistortion<double>;
+
+const std::string kStraight = "none";
+
+std::string lens_name(const JsonPlace& place, const char* key, const Lenses& lenses) {
+  const std::string name = place.text(key);
+  if (name != kStraight && !lenses.lenses.contains(name))
+    fail("{}.{} is '{}', a lens that is not defined", place.where, key, name);
+  return name;
+}
+
+void read_definitions(const JsonPlace& place, Lenses& lenses) {
+  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  for (const auto& [name, unused] : place.json.items()) {
+    if (name == kStraight || name.empty())
+      fail("{}: '{}' cannot be the name of a lens ('none' means straight)", place.where, name);
+    lenses.lenses[name] = distortion_from_json(place.at(name));
+  }
+}
+
+void read_images(const JsonPlace& place, Lenses& lenses) {
+  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    if (key.empty()) fail("{}: an image name is empty", place.where);
+    lenses.images[key] = lens_name(place, key.c_str(), lenses);
+  }
+}
+
+const std::string& name_for(const Lenses& lenses, const std::string& image) {
+  const auto entry = entry_of(lenses.images, image);
+  return entry == lenses.images.end() ? lenses.default_lens : entry->second;
+}
+
+bool images_anything(const CameraModel& camera) {
+  return distorted_lens<double>(camera).field > 0;
+}
+
+// The end of an image's path that a scene keeps when its folder is moved.
+std::string name_beside(const fs::path& scene_path, const std::string& image) {
+  const fs::path from = fs::absolute(scene_path).parent_path();
+  fs::path name;
+  for (const fs::path& part : fs::absolute(image).lexically_normal().lexically_relative(from))
+    if (part != "..") name /= part;
+  return name.generic_string();
+}
+
+// The lens's name; a new one for a distortion that has none yet.
+std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
+  if (!distortion) return kStraight;
+  for (const auto& [name, known] : lenses.lenses)
+    if (known == *distortion) return name;
+  const std::string name = fmt::format("lens_{}", lenses.lenses.size() + 1);
+  lenses.lenses[name] = *distortion;
+  return name;
+}
+
+Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
+  Lenses lenses;
+  std::vector<std::string> names, values;
+  for (const SceneImage& image : scene.images) {
+    if (!image.calibrated) continue;
+    names.push_back(name_beside(scene_path, image.path));
+    values.push_back(named(lenses, image.camera.distortion));
+  }
+  if (!values.empty()) lenses.default_lens = values.front();
+  lenses.images = entries_for(names, values, lenses.default_lens);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (name_for(lenses, names[i]) != values[i])
+      fail("{}: its lens is '{}', but by the end of its path it would get '{}': rename a folder",
+           names[i], values[i], name_for(lenses, names[i]));
+  return lenses;
+}
+
+}  // namespace
+
+fs::path lenses_beside(const fs::path& scene_path) {
+  fs::path path = scene_path;
+  path.replace_extension();
+  path += ".lenses.json";
+  return path;
+}
+
+Lenses read_lenses(const fs::path& path) {
+  const nlohmann::json json = read_json(path);
+  const JsonPlace root{json, path.string() + ": lenses"};
+  root.require_object({"version", "lenses", "default", "images"});
+  if (root.at("version").json != 1)
+    fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
+  Lenses lenses;
+  read_definitions(root.at("lenses"), lenses);
+  lenses.default_lens = lens_name(root, "default", lenses);
+  if (root.has("images")) read_images(root.at("images"), lenses);
+  return lenses;
+}
+
+void write_lenses(const fs::path& path, const Lenses& lenses) {
+  nlohmann::json json{{"version", 1}, {"default", lenses.default_lens}};
+  json["lenses"] = nlohmann::json::object();
+  for (const auto& [name, lens] : lenses.lenses) json["lenses"][name] = distortion_to_json(lens);
+  for (const auto& [image, name] : lenses.images) json["images"][image] = name;
+  write_json(path, json);
+}
+
+void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
+  for (SceneImage& image : scene.images) {
+    if (!image.calibrated) continue;
+    const std::string& name = name_for(lenses, fs::path(image.path).generic_string());
+    image.camera.distortion.reset();
+    if (name == kStraight) continue;
+    image.camera.distortion = lenses.lenses.at(name);
+    if (!images_anything(image.camera))
+      fail("{}: lenses.{}: is no lens of {}: the image would be turned over", file.string(), name,
+           image.path);
+  }
+}
+
+bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
+  const fs::path file = lenses_beside(scene_path);
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  attach_lenses(scene, read_lenses(file), file);
+  return std::ranges::any_of(
+      scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
+}
+
+void write_lenses_beside(const fs::path& scene_path, const Scene& scene) {
+  const fs::path file = lenses_beside(scene_path);
+  const Lenses lenses = lenses_of(scene, scene_path);
+  if (!lenses.lenses.empty()) return write_lenses(file, lenses);
+  std::error_code error;
+  fs::remove(file, error);
+}
+
+}  // namespace axial::io

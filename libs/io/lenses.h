@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The file beside a scene that says how its images' lenses are distorted: .mvs has no place for it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "refractive/lens_distortion.h"
+#include "scene/scene.h"
+
+namespace axial::io {
+
+struct Lenses {
+  std::map<std::string, refractive::LensDistortion<double>> lenses;
+  std::string default_lens = "none";          // "none": straight
+  std::map<std::string, std::string> images;  // image name -> lens name, as Housing::images
+};
+
+// "<scene without extension>.lenses.json".
+std::filesystem::path lenses_beside(const std::filesystem::path& scene_path);
+
+// Error that names file, key and value: unknown keys, wrong types, a lens name that is not defined,
+// a version other than 1, numbers no lens has.
+Lenses read_lenses(const std::filesystem::path& path);
+void write_lenses(const std::filesystem::path& path, const Lenses& lenses);
+
+// Gives the scene's images their lenses, by their paths. Error that starts with `file` for a lens
+// that shows its image's centre not at all, or turned over.
+void attach_lenses(Scene& scene, const Lenses& lenses, const std::filesystem::path& file);
+
+// The file beside the scene, if there is one, attached. True if any image has a distorted lens.
+bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path);
+
+// The file beside the scene says what the scene's images have; none is left if all lenses are
+// straight. Error for images that the ends of their paths do not tell apart.
+void write_lenses_beside(const std::filesystem::path& scene_path, const Scene& scene);
+
+}  // namespace axial::io

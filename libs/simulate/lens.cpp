@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Distorted lenses, written down apart from refractive/ and solved in another way: the two check
+// each other.
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "simulate/optics.h"
+
+namespace axial::simulate {
+namespace {
+
+// Beyond, a lens is none for a port.
+constexpr double kWidestAngle = 85 * std::numbers::pi / 180;
+
+double radius_of_angle(const Bend& bend, double angle) {
+  const double a2 = angle * angle;
+  const auto& k = bend.k;
+  return angle * (1 + a2 * (k[0] + a2 * (k[1] + a2 * (k[2] + a2 * k[3]))));
+}
+
+double angle_of_radius(const Bend& bend, double radius) {
+  double low = 0, high = kWidestAngle;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (radius_of_angle(bend, middle) < radius ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+double stretch_at(const Bend& bend, const Eigen::Vector2d& p) {
+  const double r2 = p.squaredNorm();
+  return 1 + bend.k[0] * r2 + bend.k[1] * r2 * r2;
+}
+
+Eigen::Vector2d shift_at(const Bend& bend, const Eigen::Vector2d& p) {
+  const double r2 = p.squaredNorm(), p1 = bend.k[2], p2 = bend.k[3];
+  return {2 * p1 * p.x() * p.y() + p2 * (r2 + 2 * p.x() * p.x()),
+          p1 * (r2 + 2 * p.y() * p.y()) + 2 * p2 * p.x() * p.y()};
+}
+
+// What the perspective lens images at d: what is left of d when the shift at the last guess is
+// taken away and the rest shrunk by the stretch there.
+Eigen::Vector2d unbend(const Bend& bend, const Eigen::Vector2d& d) {
+  Eigen::Vector2d p = d;
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector2d next = (d - shift_at(bend, p)) / stretch_at(bend, p);
+    if ((next - p).norm() < 1e-15) return next;
+    p = (p + next) / 2;
+  }
+  return p;
+}
+
+}  // namespace
+
+Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction) {
+  if (!lens.bend)
+    return {lens.focal * direction.x() / direction.z() + lens.cx,
+            lens.focal * direction.y() / direction.z() + lens.cy};
+  Eigen::Vector2d p = direction.head<2>() / direction.z();
+  if (lens.bend->fisheye) {
+    const double r = p.norm();
+    if (r > 0) p *= radius_of_angle(*lens.bend, std::atan(r)) / r;
+  } else {
+    p = (stretch_at(*lens.bend, p) * p + shift_at(*lens.bend, p)).eval();
+  }
+  return {lens.focal * p.x() + lens.cx, lens.focal * p.y() + lens.cy};
+}
+
+Eigen::Vector3d direction_of(const Lens& lens, double u, double v) {
+  const Eigen::Vector2d d((u - lens.cx) / lens.focal, (v - lens.cy) / lens.focal);
+  if (!lens.bend) return Eigen::Vector3d(d.x(), d.y(), 1.0).normalized();
+  if (!lens.bend->fisheye) {
+    const Eigen::Vector2d p = unbend(*lens.bend, d);
+    return Eigen::Vector3d(p.x(), p.y(), 1.0).normalized();
+  }
+  const double r = d.norm(), angle = angle_of_radius(*lens.bend, r);
+  if (!(r > 0)) return Eigen::Vector3d::UnitZ();
+  const Eigen::Vector2d across = d * (std::sin(angle) / r);
+  return {across.x(), across.y(), std::cos(angle)};
+}
+
+void check_lens(const Lens& lens) {
+  if (!lens.bend) return;
+  constexpr int kSamples = 64;
+  // From the centre to the corners: a lens that folds back images something closer in again.
+  for (int i = 1; i <= kSamples; ++i)
+    for (const double x : {-0.5, lens.width - 0.5})
+      for (const double y : {-0.5, lens.height - 0.5}) {
+        const double share = double(i) / kSamples;
+        const Eigen::Vector2d pixel(lens.cx + share * (x - lens.cx),
+                                    lens.cy + share * (y - lens.cy));
+        const double off =
+            (pixel_of(lens, direction_of(lens, pixel.x(), pixel.y())) - pixel).norm();
+        if (!(off < 1e-6))
+          fail("a lens with the coefficients {} {} {} {} images nothing at pixel ({}, {})",
+               lens.bend->k[0], lens.bend->k[1], lens.bend->k[2], lens.bend->k[3], pixel.x(),
+               pixel.y());
+      }
+}
+
+}  // namespace axial::simulate

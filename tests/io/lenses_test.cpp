@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/lenses.h"
+
+#include <gmock/gmock.h>
+
+#include "base/atomic_file.h"
+#include "wrong_input.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using ::testing::HasSubstr;
+using Distortion = refractive::LensDistortion<double>;
+
+Distortion fisheye() {
+  Distortion lens;
+  lens.fisheye = 1;
+  lens.spread = 1.1;
+  lens.above = {0.9, 0.02, -0.01, 0.002, 1.0 / 3};
+  lens.below = {0.01, 0, 0.1};
+  lens.p1 = 1e-3;
+  lens.prism = {0, -2e-3};
+  return lens;
+}
+
+Distortion barrel() {
+  Distortion lens;
+  lens.above[1] = -0.1;
+  return lens;
+}
+
+class LensesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test::empty_folder();
+    scene_file_ = folder_ / "scene.mvs";
+    file_ = folder_ / "scene.lenses.json";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void add(const std::string& path, std::optional<Distortion> distortion) {
+    SceneImage image;
+    image.path = path;
+    image.camera.width = 640;
+    image.camera.height = 480;
+    image.camera.lens = {500, 500, 319.5, 239.5};
+    image.camera.distortion = distortion;
+    scene_.images.push_back(image);
+  }
+
+  // What the images get from the file beside the scene, their paths as they are.
+  std::vector<std::optional<Distortion>> read_again() {
+    Scene again = scene_;
+    for (SceneImage& image : again.images) image.camera.distortion = barrel();  // to be replaced
+    attach_lenses_beside(again, scene_file_);
+    std::vector<std::optional<Distortion>> found;
+    for (const SceneImage& image : again.images) found.push_back(image.camera.distortion);
+    return found;
+  }
+
+  std::string error(const std::string& json) {
+    test::put(file_, json);
+    const std::string message = error_of([&] { attach_lenses_beside(scene_, scene_file_); });
+    EXPECT_THAT(message, HasSubstr(file_.string()));
+    return message;
+  }
+
+  fs::path folder_, scene_file_, file_;
+  Scene scene_;
+};
+
+TEST_F(LensesTest, ReadsBackWhatItWrites) {
+  add((folder_ / "images/a.jpg").string(), fisheye());
+  add((folder_ / "images/b.jpg").string(), std::nullopt);
+  add((folder_ / "more/images/b.jpg").string(), fisheye());
+  add((folder_ / "../elsewhere/b.jpg").string(), barrel());
+  write_lenses_beside(scene_file_, scene_);
+  EXPECT_EQ(read_lenses(file_).lenses.size(), 2u);
+  EXPECT_EQ(read_again(),
+            (std::vector<std::optional<Distortion>>{fisheye(), std::nullopt, fisheye(), barrel()}));
+  const std::string bytes = read_file(file_);
+  write_lenses(file_, read_lenses(file_));
+  EXPECT_EQ(read_file(file_), bytes);
+}
+
+TEST_F(LensesTest, FollowsASceneThatIsMoved) {
+  add((folder_ / "images/a.jpg").string(), fisheye());
+  add((folder_ / "images/b.jpg").string(), barrel());
+  write_lenses_beside(scene_file_, scene_);
+  scene_.images[0].path = "/somewhere/else/images/a.jpg";
+  scene_.images[1].path = "images/b.jpg";
+  EXPECT_EQ(read_again(), (std::vector<std::optional<Distortion>>{fisheye(), barrel()}));
+}
+
+TEST_F(LensesTest, StraightLensesHaveNoFileAndLeaveNone) {
+  add("a.jpg", barrel());
+  write_lenses_beside(scene_file_, scene_);
+  EXPECT_TRUE(fs::exists(file_));
+  scene_.images[0].camera.distortion.reset();
+  write_lenses_beside(scene_file_, scene_);
+  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_FALSE(attach_lenses_beside(scene_, scene_file_));
+}
+
+constexpr const char* kExample = R"({ "version": 1, "default": "main", "lenses": { "main":
+  { "type": "perspective", "radial": [1, -0.1] } }, "images": { "a.jpg": "none" } })";
+
+TEST_F(LensesTest, WhatIsLeftOutIsStraight) {
+  test::put(file_, kExample);
+  add("b.jpg", std::nullopt);
+  add("a.jpg", barrel());
+  EXPECT_TRUE(attach_lenses_beside(scene_, scene_file_));
+  EXPECT_EQ(scene_.images[0].camera.distortion, barrel());
+  EXPECT_FALSE(scene_.images[1].camera.distortion);
+}
+
+TEST_F(LensesTest, NamesKeyAndValue) {
+  add("b.jpg", std::nullopt);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string json = kExample;
+    json.replace(json.find(from), from.size(), to);
+    return error(json);
+  };
+  EXPECT_THAT(with("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
+  EXPECT_THAT(with("perspective", "catadioptric"), HasSubstr("main.type is 'catadioptric'"));
+  EXPECT_THAT(with("-0.1]", "0, 0, 0, 0, 0]"), HasSubstr("main.radial is [1,0,0,0,0,0]"));
+  EXPECT_THAT(with("-0.1", "\"x\""), HasSubstr("main.radial[1] is no number"));
+  EXPECT_THAT(with("[1,", "[0,"), HasSubstr("main.radial begins with 0"));
+  EXPECT_THAT(with("\"radial\"", "\"spread\": -1, \"radial\""), HasSubstr("main.spread is -1"));
+  EXPECT_THAT(with("\"radial\"", "\"k1\": 1, \"radial\""), HasSubstr("'k1'"));
+  EXPECT_THAT(with("\"none\"", "\"other\""), HasSubstr("images.a.jpg is 'other'"));
+  EXPECT_THAT(with("\"default\": \"main\"", "\"default\": \"other\""),
+              HasSubstr("default is 'other'"));
+  EXPECT_THAT(with("{ \"main\":", "{ \"none\":"), HasSubstr("'none' cannot be the name"));
+  // Folds back in the very centre.
+  EXPECT_THAT(with("-0.1]", "-0.1], \"tangential\": [999, 999], \"thin_prism\": [99, 0]"),
+              HasSubstr("lenses.main"));
+}
+
+TEST_F(LensesTest, SurvivesDamage) {
+  add("b.jpg", std::nullopt);
+  test::expect_damage_survived(file_, kExample,
+                               [&](const fs::path&) { attach_lenses_beside(scene_, scene_file_); });
+}
+
+}  // namespace
+}  // namespace axial::io
