@@ -85,9 +85,9 @@ Vector3d crossing(const WaterSurface& surface, const Vector3d& centre, const Vec
 
 // A point of the water that the pinhole without water would see: no ray of refractive/ is involved.
 Vector3d any_point(Random& random, const Flight& flight) {
-  const auto& [width, height, lens, port] = flight.camera;
-  const Vector3d bearing =
-      lens.bearing({random.between(0, width - 1), random.between(0, height - 1)});
+  const CameraModel& camera = flight.camera;
+  const Vector3d bearing = camera.lens.bearing(
+      {random.between(0, camera.width - 1), random.between(0, camera.height - 1)});
   const Vector3d towards = flight.pose.rotation.transpose() * bearing;
   const double sink = towards.dot(flight.surface.normal);
   const double height_above = flight.surface.height_of(flight.pose.centre);
