@@ -30,6 +30,14 @@ struct DistortedLens {
     return (found - pixel).squaredNorm() < T(1e-4);
   }
 
+  // True if the corners of the image of width x height are shown, beyond which no pixel lies.
+  bool shows_all(int width, int height) const {
+    bool all = true;
+    for (const T& u : {T(0), T(width - 1)})
+      for (const T& v : {T(0), T(height - 1)}) all = all && shows({u, v});
+    return all;
+  }
+
   // See FlatPortCamera.
   template <class Visit>
   void each_field(Visit&& visit) {

@@ -97,12 +97,14 @@ class DepthMapRun {
     return 0;
   }
 
-  // A map of no known camera lies where one behind a port is to be written: another program's.
+  // A map of no known camera lies where one behind a port or of a distorted lens is to be written:
+  // another program's.
   void refuse_foreign_maps() const {
     for (const std::size_t image : project_.references) {
       const fs::path file = depth_map_path(project_, options_, image);
       std::error_code ignored;
-      if (project_.views[image].camera.port && fs::exists(file, ignored) &&
+      const axial::CameraModel& camera = project_.views[image].camera;
+      if ((camera.port || camera.distortion) && fs::exists(file, ignored) &&
           !fs::exists(file.string() + ".json", ignored))
         axial::fail(
             "{}: has no side file, so it is the depth map of a pinhole, and would be overwritten",

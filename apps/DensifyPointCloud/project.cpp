@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -12,7 +13,6 @@
 #include "base/progress.h"
 #include "io/housing.h"
 #include "io/image.h"
-#include "io/lenses.h"
 #include "io/mvs.h"
 
 namespace densify {
@@ -232,8 +232,12 @@ Project load_project(const Options& options) {
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
   if (axial::io::attach_lenses_beside(project.scene, options.input))
-    spdlog::info("{}: lenses are distorted, and matched as they are",
-                 axial::io::lenses_beside(options.input).filename().string());
+    spdlog::info("{}: {} images have distorted lenses, and are matched as they are",
+                 axial::io::lenses_beside(options.input).filename().string(),
+                 std::ranges::count_if(project.scene.images, [](const axial::SceneImage& image) {
+                   return image.camera.distortion.has_value();
+                 }));
+  project.lenses = axial::io::lenses_of(project.scene, options.output);
   project.housing = attach_housing(project.scene, options);
   spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
                project.scene.images.size(), project.scene.points.size());
@@ -245,7 +249,7 @@ Project load_project(const Options& options) {
 }
 
 void write_cameras_beside_output(const Project& project, const Options& options) {
-  axial::io::write_lenses_beside(options.output, project.scene);
+  axial::io::write_lenses_beside(options.output, project.lenses);
   const fs::path file = axial::io::housing_beside(options.output);
   if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (file == axial::io::housing_beside(options.input)) return;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/housing.h"
+#include "io/lenses.h"
 #include "options.h"
 #include "scene/scene.h"
 #include "scene/view_selection.h"
@@ -30,6 +31,7 @@ struct View {
 struct Project {
   axial::Scene scene;                         // as read, with ports and neighbour scores
   std::optional<axial::io::Housing> housing;  // that the ports come from
+  axial::io::Lenses lenses;                   // to be written beside the output
   std::vector<axial::ViewPreparation> preparations;
   std::vector<View> views;                                // one an image of the scene
   std::vector<std::vector<axial::ViewScore>> neighbours;  // filtered

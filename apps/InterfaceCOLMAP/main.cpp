@@ -59,16 +59,18 @@ int run(int argc, char** argv) {
 
   const fs::path folder = options.scene_file.parent_path();
   make_folder(folder);
-  const bool undistort = options.undistort.value_or(housing.ports.empty());
+  const fs::path housing_file = io::housing_beside(options.scene_file);
+  std::error_code ignored;
+  const bool behind_ports = !housing.ports.empty() || fs::exists(housing_file, ignored);
+  const bool undistort = options.undistort.value_or(!behind_ports);
   const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted",
                                 undistort};
   Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"));
 
+  const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing goes first: a scene without the one it was made with would count as dry.
-  const fs::path housing_file = io::housing_beside(options.scene_file);
   if (options.housing_file.empty() && housing.ports.empty()) {
-    std::error_code error;
-    if (fs::exists(housing_file, error))
+    if (behind_ports)
       spdlog::warn("{}: is left as it is, and goes with this scene", housing_file.string());
   } else {
     const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
@@ -79,7 +81,7 @@ int run(int argc, char** argv) {
     spdlog::info("{}: {} of {} images behind a port", housing_file.string(),
                  count_behind_ports(scene), scene.images.size());
   }
-  io::write_lenses_beside(options.scene_file, scene);
+  io::write_lenses_beside(options.scene_file, lenses);
   if (const std::size_t distorted = count_distorted(scene))
     spdlog::info("{}: {} of {} images keep their distorted lens",
                  io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());

@@ -202,10 +202,21 @@ int usable_levels(const MatchInput& input, const PatchMatchOptions& options) {
   return levels;
 }
 
+// Clears the pixels that the lens images no direction at.
+void clear_unseen(const CameraModel& camera, cv::Mat1b& mask) {
+  const auto lens = distorted_lens<float>(camera);
+  if (lens.shows_all(camera.width, camera.height)) return;
+  if (mask.empty()) mask = cv::Mat1b(camera.height, camera.width, std::uint8_t{255});
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!lens.shows({static_cast<float>(x), static_cast<float>(y)})) mask(y, x) = 0;
+}
+
 cv::Mat1b mask_at(const MatchInput& input, const CameraModel& camera) {
   cv::Mat1b mask;
   if (input.mask)
     cv::resize(*input.mask, mask, {camera.width, camera.height}, 0, 0, cv::INTER_NEAREST);
+  if (camera.distortion) clear_unseen(camera, mask);
   return mask;
 }
 

@@ -27,7 +27,7 @@ struct Viewpoint {
   bool orthographic = false;
 };
 
-// What the camera of `view` would see in air, `width` pixels wide.
+// What the camera of `view` would see in air with a straight lens, `width` pixels wide.
 Viewpoint viewpoint_of(const View& view, int width);
 
 // Along the direction of least extent of the points, against their normals where there are any, so

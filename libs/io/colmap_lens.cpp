@@ -132,10 +132,11 @@ Bent bent_as_thin_prism_fisheye(Parameters k) {
 
 Bent bent_by_field_of_view(Parameters k) {
   Bent bent;
-  if (k[0] == 0) return bent;
+  const double omega = std::abs(k[0]);  // the model is even in it
+  if (omega == 0) return bent;
   bent.fisheye = 1;
-  bent.spread = 2 * std::tan(k[0] / 2);
-  bent.above[0] = 1 / k[0];
+  bent.spread = 2 * std::tan(omega / 2);
+  bent.above[0] = 1 / omega;
   return bent;
 }
 

@@ -43,12 +43,7 @@ void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double
   if (!(lens.field > 0))
     fail("{}: camera {}: the distortion of its {} lens turns the image over", model_folder.string(),
          from.id, from.model);
-  const double right = camera.width - 1, bottom = camera.height - 1;
-  bool whole = true;
-  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0),
-                                        Eigen::Vector2d(0, bottom), Eigen::Vector2d(right, bottom)})
-    whole = whole && lens.shows(corner);
-  if (!whole)
+  if (!lens.shows_all(camera.width, camera.height))
     spdlog::warn(
         "{}: camera {} ({}): its lens is not defined as far as the corners of its image; pixels "
         "beyond are not matched",

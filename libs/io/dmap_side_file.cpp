@@ -51,7 +51,11 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   side.camera.width = read_side(root, "width");
   side.camera.height = read_side(root, "height");
   side.camera.lens = read_lens(root.at("lens"));
-  if (root.has("distortion")) side.camera.distortion = distortion_from_json(root.at("distortion"));
+  if (root.has("distortion")) {
+    side.camera.distortion = distortion_from_json(root.at("distortion"));
+    if (!(distorted_lens<double>(side.camera).field > 0))
+      fail("{}.distortion is no lens's: the image would be turned over", root.where);
+  }
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
     // A water surface is a flat port as far away as the camera is high.
     side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/lenses.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "io/image_names.h"
@@ -67,21 +70,20 @@ std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
   return name;
 }
 
-Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
-  Lenses lenses;
-  std::vector<std::string> names, values;
+// Images are found again by their whole paths, of which the names written are but the ends.
+void check_names(const Lenses& lenses, const Scene& scene, const fs::path& file) {
   for (const SceneImage& image : scene.images) {
     if (!image.calibrated) continue;
-    names.push_back(name_beside(scene_path, image.path));
-    values.push_back(named(lenses, image.camera.distortion));
+    const std::string path = fs::path(image.path).generic_string();
+    const std::string& name = name_for(lenses, path);
+    const std::optional<Distortion> read =
+        name == kStraight ? std::nullopt : std::optional(lenses.lenses.at(name));
+    if (read != image.camera.distortion)
+      fail(
+          "{}: images: {} would get the lens '{}' of another by the end of its path: rename a "
+          "folder",
+          file.string(), path, name);
   }
-  if (!values.empty()) lenses.default_lens = values.front();
-  lenses.images = entries_for(names, values, lenses.default_lens);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (name_for(lenses, names[i]) != values[i])
-      fail("{}: its lens is '{}', but by the end of its path it would get '{}': rename a folder",
-           names[i], values[i], name_for(lenses, names[i]));
-  return lenses;
 }
 
 }  // namespace
@@ -114,10 +116,28 @@ void write_lenses(const fs::path& path, const Lenses& lenses) {
   write_json(path, json);
 }
 
-void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
-  for (SceneImage& image : scene.images) {
+Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
+  Lenses lenses;
+  std::vector<std::string> names, values;
+  for (const SceneImage& image : scene.images) {
     if (!image.calibrated) continue;
-    const std::string& name = name_for(lenses, fs::path(image.path).generic_string());
+    names.push_back(name_beside(scene_path, image.path));
+    values.push_back(named(lenses, image.camera.distortion));
+  }
+  if (!values.empty()) lenses.default_lens = values.front();
+  lenses.images = entries_for(names, values, lenses.default_lens);
+  check_names(lenses, scene, lenses_beside(scene_path));
+  return lenses;
+}
+
+void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
+  std::set<std::string> used;
+  for (SceneImage& image : scene.images) {
+    const std::string path = fs::path(image.path).generic_string();
+    if (const auto entry = entry_of(lenses.images, path); entry != lenses.images.end())
+      used.insert(entry->first);
+    if (!image.calibrated) continue;
+    const std::string& name = name_for(lenses, path);
     image.camera.distortion.reset();
     if (name == kStraight) continue;
     image.camera.distortion = lenses.lenses.at(name);
@@ -125,6 +145,8 @@ void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
       fail("{}: lenses.{}: is no lens of {}: the image would be turned over", file.string(), name,
            image.path);
   }
+  for (const auto& [name, unused] : lenses.images)
+    if (!used.contains(name)) spdlog::warn("{}: no image goes by images.{}", file.string(), name);
 }
 
 bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
@@ -136,9 +158,8 @@ bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
       scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
 }
 
-void write_lenses_beside(const fs::path& scene_path, const Scene& scene) {
+void write_lenses_beside(const fs::path& scene_path, const Lenses& lenses) {
   const fs::path file = lenses_beside(scene_path);
-  const Lenses lenses = lenses_of(scene, scene_path);
   if (!lenses.lenses.empty()) return write_lenses(file, lenses);
   std::error_code error;
   fs::remove(file, error);

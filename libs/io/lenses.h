@@ -25,15 +25,19 @@ std::filesystem::path lenses_beside(const std::filesystem::path& scene_path);
 Lenses read_lenses(const std::filesystem::path& path);
 void write_lenses(const std::filesystem::path& path, const Lenses& lenses);
 
-// Gives the scene's images their lenses, by their paths. Error that starts with `file` for a lens
-// that shows its image's centre not at all, or turned over.
+// Gives the scene's images their lenses, by their paths. A warning for entries that no image goes
+// by. Error that starts with `file` for a lens that shows its image's centre not at all, or turned
+// over.
 void attach_lenses(Scene& scene, const Lenses& lenses, const std::filesystem::path& file);
 
 // The file beside the scene, if there is one, attached. True if any image has a distorted lens.
 bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path);
 
-// The file beside the scene says what the scene's images have; none is left if all lenses are
-// straight. Error for images that the ends of their paths do not tell apart.
-void write_lenses_beside(const std::filesystem::path& scene_path, const Scene& scene);
+// What the scene's images have, for the file beside `scene_path`. Error for images that the ends of
+// their paths do not tell apart.
+Lenses lenses_of(const Scene& scene, const std::filesystem::path& scene_path);
+
+// Writes the file beside the scene; none is left if all lenses are straight.
+void write_lenses_beside(const std::filesystem::path& scene_path, const Lenses& lenses);
 
 }  // namespace axial::io

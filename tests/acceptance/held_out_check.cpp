@@ -20,7 +20,9 @@
 
 #include "base/error.h"
 #include "depth/matcher.h"
+#include "io/housing.h"
 #include "io/image.h"
+#include "io/lenses.h"
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "scene/resolution.h"
@@ -90,6 +92,8 @@ float median(std::vector<float>& values) {
 
 int run(char** argv) {
   const Scene scene = io::read_mvs(argv[1], std::filesystem::path(argv[1]).parent_path());
+  for (const auto& beside : {io::housing_beside(argv[1]), io::lenses_beside(argv[1])})
+    if (std::filesystem::exists(beside)) fail("{}: expected a scene of pinholes", beside.string());
   const PointCloud cloud = io::read_cloud_ply(argv[2]);
   if (cloud.normals.size() != cloud.size()) fail("{}: has no normals", argv[2]);
   const auto level = static_cast<unsigned>(std::stoul(argv[5]));

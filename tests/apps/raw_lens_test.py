@@ -71,7 +71,7 @@ class OpencvLens(LensTest):
 
     def test_lenses_are_kept_and_obeyed(self):
         self.import_scene("scene", "--housing", self.housing)
-        self.assertIn("lenses are distorted", self.densify("scene", "--refractive", *QUICK))
+        self.assertIn("4 images have distorted lenses", self.densify("scene", "--refractive", *QUICK))
         obeyed, _ = self.evaluate("scene")
         # The dense scene has the lenses, too: its maps are those that are there.
         self.assertEqual(read(self.path("scene", "scene_dense.lenses.json")),
@@ -108,8 +108,11 @@ class OpencvLens(LensTest):
         write(self.path("wrong", "scene.lenses.json"), '{ "version": 1 }\n')
         self.refuses("scene.lenses.json", "DensifyPointCloud", "-i", "scene.mvs", "-w",
                      self.path("wrong"), "--refractive", *QUICK)
-        for lens in ("OPENCV,1", "PINHOLE,1,2,3,4", "OPENCV,0,0,0,x", "OPENCV,-0.5,0,0,0"):
-            self.refuses("", "SimulateUnderwater", "--lens", lens, "-o", self.path("none"))
+        for lens, reason in (("OPENCV,1", "must have 4 coefficients"),
+                             ("PINHOLE,1,2,3,4", "must begin with OPENCV"),
+                             ("OPENCV,0,0,0,x", "'x' is no number"),
+                             ("OPENCV,-0.5,0,0,0", "images nothing at pixel")):
+            self.refuses(reason, "SimulateUnderwater", "--lens", lens, "-o", self.path("none"))
 
 
 class FisheyeLens(LensTest):

@@ -35,7 +35,7 @@ CameraModel small_camera() {
   return camera;
 }
 
-enum class Kind { pinhole, flat_port, dome_port, fisheye_behind_flat_port };
+enum class Kind { pinhole, flat_port, dome_port, fisheye_behind_flat_port, folding_lens };
 
 refractive::DomePort<double> dome() {
   return {{0.004, -0.003, -0.006}, 0.05, 0.008, 1, 1.49, 1.333};
@@ -67,6 +67,7 @@ Survey make_survey(Kind kind) {
       view.camera.distortion->fisheye = 1;
       view.camera.distortion->above[1] = -0.02;
     }
+    if (kind == Kind::folding_lens) view.camera.distortion.emplace().above[1] = -1;
     const double x = 0.25 * (i % 2) - 0.12;
     const double y = 0.2 * (i / 2) - 0.1;
     view.pose.centre = {x, y, 0.05 * i};
@@ -226,6 +227,23 @@ TEST(PatchMatch, ThePublishedMethodsAreForStraightLenses) {
   options.warp = Warp::affine;
   input.projection = ProjectionMethod::line_search;
   EXPECT_THROW(estimate_depth_map(input, options), Error);
+}
+
+// e (1 - e^2) is largest at e = 1/sqrt(3), 57.7 pixels from the centre.
+TEST(PatchMatch, LeavesPixelsBeyondTheLensAlone) {
+  const Survey survey = make_survey(Kind::folding_lens);
+  std::vector<const MatchImage*> sources;
+  const DepthMap map = estimate_depth_map(survey.input(0, sources), {});
+  int found_inside = 0, inside = 0;
+  for (int y = 8; y < map.height() - 8; ++y)
+    for (int x = 0; x < map.width(); ++x) {
+      const double radius = std::hypot(x - 79.5, y - 59.5);
+      if (radius > 58) EXPECT_EQ(map.depth(y, x), 0) << x << " " << y;
+      if (radius > 50) continue;
+      ++inside;
+      found_inside += map.depth(y, x) > 0;
+    }
+  EXPECT_GT(found_inside, inside / 2);
 }
 
 TEST(PatchMatch, LeavesMaskedPixelsAlone) {

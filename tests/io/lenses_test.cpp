@@ -76,7 +76,7 @@ TEST_F(LensesTest, ReadsBackWhatItWrites) {
   add((folder_ / "images/b.jpg").string(), std::nullopt);
   add((folder_ / "more/images/b.jpg").string(), fisheye());
   add((folder_ / "../elsewhere/b.jpg").string(), barrel());
-  write_lenses_beside(scene_file_, scene_);
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
   EXPECT_EQ(read_lenses(file_).lenses.size(), 2u);
   EXPECT_EQ(read_again(),
             (std::vector<std::optional<Distortion>>{fisheye(), std::nullopt, fisheye(), barrel()}));
@@ -88,18 +88,28 @@ TEST_F(LensesTest, ReadsBackWhatItWrites) {
 TEST_F(LensesTest, FollowsASceneThatIsMoved) {
   add((folder_ / "images/a.jpg").string(), fisheye());
   add((folder_ / "images/b.jpg").string(), barrel());
-  write_lenses_beside(scene_file_, scene_);
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
   scene_.images[0].path = "/somewhere/else/images/a.jpg";
   scene_.images[1].path = "images/b.jpg";
   EXPECT_EQ(read_again(), (std::vector<std::optional<Distortion>>{fisheye(), barrel()}));
 }
 
+// Written are ends of paths, "left/a.jpg" for the second and "a.jpg" for the first, which is an end
+// of the second's, too.
+TEST_F(LensesTest, RefusesImagesThatTheEndsOfTheirPathsDoNotTellApart) {
+  add((folder_ / "a.jpg").string(), fisheye());
+  add((folder_ / folder_.filename() / "a.jpg").string(), barrel());
+  const std::string message = error_of([&] { lenses_of(scene_, scene_file_); });
+  EXPECT_THAT(message, HasSubstr(file_.string()));
+  EXPECT_THAT(message, HasSubstr("rename a folder"));
+}
+
 TEST_F(LensesTest, StraightLensesHaveNoFileAndLeaveNone) {
   add("a.jpg", barrel());
-  write_lenses_beside(scene_file_, scene_);
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
   EXPECT_TRUE(fs::exists(file_));
   scene_.images[0].camera.distortion.reset();
-  write_lenses_beside(scene_file_, scene_);
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
   EXPECT_FALSE(fs::exists(file_));
   EXPECT_FALSE(attach_lenses_beside(scene_, scene_file_));
 }
@@ -136,7 +146,7 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   EXPECT_THAT(with("{ \"main\":", "{ \"none\":"), HasSubstr("'none' cannot be the name"));
   // Folds back in the very centre.
   EXPECT_THAT(with("-0.1]", "-0.1], \"tangential\": [999, 999], \"thin_prism\": [99, 0]"),
-              HasSubstr("lenses.main"));
+              HasSubstr("lenses.main: is no lens of b.jpg"));
 }
 
 TEST_F(LensesTest, SurvivesDamage) {
