@@ -238,7 +238,9 @@ TEST(PatchMatch, LeavesPixelsBeyondTheLensAlone) {
   for (int y = 8; y < map.height() - 8; ++y)
     for (int x = 0; x < map.width(); ++x) {
       const double radius = std::hypot(x - 79.5, y - 59.5);
-      if (radius > 58) EXPECT_EQ(map.depth(y, x), 0) << x << " " << y;
+      if (radius > 58) {
+        EXPECT_EQ(map.depth(y, x), 0) << x << " " << y;
+      }
       if (radius > 50) continue;
       ++inside;
       found_inside += map.depth(y, x) > 0;
