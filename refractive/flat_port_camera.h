@@ -30,6 +30,7 @@ class FlatPortCamera {
         inv_fy_(T(1) / lens.fy),
         port_(port),
         optics_(port),
+        rotation_to_axis_(axis_from_camera(port.normal)),
         projector_(lens, port, width, height,
                    WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
@@ -41,6 +42,7 @@ class FlatPortCamera {
         inv_fy_(T(1) / lens.fy),
         port_(port),
         optics_(port),
+        rotation_to_axis_(axis_from_camera(port.normal)),
         projector_(lens, port, field, image) {}
 
   FlatPortCamera() = default;  // means nothing before each_field() has filled it
@@ -56,13 +58,14 @@ class FlatPortCamera {
     visit(port_.distance), visit(port_.thickness);
     visit(port_.n_air), visit(port_.n_glass), visit(port_.n_water);
     optics_.each_field(visit);
+    for (int k = 0; k < 9; ++k) visit(rotation_to_axis_(k));
     projector_.each_field(visit);
   }
 
   const PinholeLens<T>& lens() const { return lens_; }
   const FlatPort<T>& port() const { return port_; }
   const FlatPortOptics<T>& optics() const { return optics_; }
-  Matrix3<T> rotation_to_axis() const { return axis_from_camera(port_.normal); }
+  const Matrix3<T>& rotation_to_axis() const { return rotation_to_axis_; }
 
   // The ray in water. Its origin is the virtual centre C_v on the axis. A pixel that looks along or
   // away from the port has no ray in water: the result is then a grazing ray, finite, and its
@@ -91,7 +94,7 @@ class FlatPortCamera {
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
   Frame<T> projector_frame() const {
-    return {rotation_to_axis(), Vector3<T>(T(0), T(0), -optics_.outer())};
+    return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 
   // Exact forward projection of X [camera frame]. Not visible: on the lens's side of the outer
@@ -119,6 +122,7 @@ class FlatPortCamera {
   T inv_fx_, inv_fy_;
   FlatPort<T> port_;
   FlatPortOptics<T> optics_;
+  Matrix3<T> rotation_to_axis_;
   FlatPortProjector<T> projector_;
 };
 
@@ -157,10 +161,11 @@ AxialRay<T> FlatPortCamera<T>::ray(const Vector2<T>& pixel, AxialRayJacobian<T>&
 template <class T>
 Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacobian,
                                          Vector3<T>* origin) const {
-  const Frame<T> frame = projector_frame();
-  const FlatPortImage<T> image = projector_.image(frame.rotation * X + frame.translation);
+  Vector3<T> in_port = rotation_to_axis_ * X;
+  in_port.z() -= optics_.outer();
+  const FlatPortImage<T> image = projector_.image(in_port);
   if (jacobian)
-    for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(frame.rotation.col(k));
+    for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(rotation_to_axis_.col(k));
   if (origin) *origin = (image.origin_height + optics_.outer()) * port_.normal;
   return image.projection;
 }

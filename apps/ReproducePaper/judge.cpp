@@ -66,7 +66,7 @@ std::string title_of(evaluate::Place place) {
     case evaluate::Place::plain:
       return "no texture";
     case evaluate::Place::steep:
-      return "steeper than 60 degrees";
+      return fmt::format("steeper than {:g} degrees", evaluate::PlaceOptions{}.steep_degrees);
     default:
       return "all else";
   }

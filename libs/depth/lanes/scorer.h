@@ -26,7 +26,7 @@ enum class CameraKind {
   lens_dome_port
 };
 
-inline constexpr std::size_t kMaxCameraFields = 80;
+inline constexpr std::size_t kMaxCameraFields = 96;
 
 // The numbers of a camera or its projector as its each_field() visits them.
 struct CameraFields {
