@@ -27,13 +27,16 @@ function(add_axial_parsed_headers name)
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
-set(AXIAL_PARSED_HEADERS <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <opencv2/core.hpp> <spdlog/spdlog.h>
-  <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <variant> <vector>)
-set(AXIAL_PARSED_LIBRARIES Eigen3::Eigen fmt::fmt opencv_core spdlog::spdlog)
+set(AXIAL_PARSED_HEADERS <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp>
+  <opencv2/core.hpp> <opencv2/imgproc.hpp> <spdlog/spdlog.h>
+  <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <random> <span> <string> <variant>
+  <vector>)
+set(AXIAL_PARSED_LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json opencv_core opencv_imgproc
+  spdlog::spdlog)
 add_axial_parsed_headers(axial_parsed HEADERS ${AXIAL_PARSED_HEADERS} LINK ${AXIAL_PARSED_LIBRARIES})
 if(AXIAL_TESTS)
   add_axial_parsed_headers(axial_parsed_for_tests
-    HEADERS ${AXIAL_PARSED_HEADERS} <gmock/gmock.h> <gtest/gtest.h> <random>
+    HEADERS ${AXIAL_PARSED_HEADERS} <gmock/gmock.h> <gtest/gtest.h>
     LINK ${AXIAL_PARSED_LIBRARIES} GTest::gmock)
 endif()
 
