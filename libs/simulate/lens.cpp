@@ -80,23 +80,46 @@ Eigen::Vector3d direction_of(const Lens& lens, double u, double v) {
   return {across.x(), across.y(), std::cos(angle)};
 }
 
+namespace {
+
+// Where a lens folds back, and from there on until it folds again, its image is turned over.
+bool is_turned_over(const Lens& lens, const Eigen::Vector2d& p) {
+  constexpr double kStep = 1e-6;
+  const auto at = [&](double x, double y) {
+    return pixel_of(lens, Eigen::Vector3d(p.x() + x, p.y() + y, 1.0));
+  };
+  Eigen::Matrix2d slope;
+  slope << at(kStep, 0) - at(-kStep, 0), at(0, kStep) - at(0, -kStep);
+  return !(slope.determinant() > 0);
+}
+
+// True if the pixel has a direction, without a fold between the axis and it.
+bool reaches(const Lens& lens, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3d direction = direction_of(lens, pixel.x(), pixel.y());
+  if (!((pixel_of(lens, direction) - pixel).norm() < 1e-6)) return false;
+  constexpr int kSteps = 64;
+  for (int i = 1; i <= kSteps; ++i)
+    if (is_turned_over(lens, direction.head<2>() / direction.z() * i / kSteps)) return false;
+  return true;
+}
+
+}  // namespace
+
 void check_lens(const Lens& lens) {
   if (!lens.bend) return;
-  constexpr int kSamples = 64;
-  // From the centre to the corners: a lens that folds back images something closer in again.
-  for (int i = 1; i <= kSamples; ++i)
-    for (const double x : {-0.5, lens.width - 0.5})
-      for (const double y : {-0.5, lens.height - 0.5}) {
-        const double share = double(i) / kSamples;
-        const Eigen::Vector2d pixel(lens.cx + share * (x - lens.cx),
-                                    lens.cy + share * (y - lens.cy));
-        const double off =
-            (pixel_of(lens, direction_of(lens, pixel.x(), pixel.y())) - pixel).norm();
-        if (!(off < 1e-6))
-          fail("a lens with the coefficients {} {} {} {} images nothing at pixel ({}, {})",
-               lens.bend->k[0], lens.bend->k[1], lens.bend->k[2], lens.bend->k[3], pixel.x(),
-               pixel.y());
-      }
+  // The image's outline, corners included.
+  constexpr int kSamples = 32;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double share = double(i) / kSamples;
+    const double u = share * lens.width - 0.5, v = share * lens.height - 0.5;
+    for (const Eigen::Vector2d& pixel :
+         {Eigen::Vector2d(u, -0.5), Eigen::Vector2d(u, lens.height - 0.5), Eigen::Vector2d(-0.5, v),
+          Eigen::Vector2d(lens.width - 0.5, v)})
+      if (!reaches(lens, pixel))
+        fail("a lens with the coefficients {} {} {} {} images nothing at pixel ({}, {})",
+             lens.bend->k[0], lens.bend->k[1], lens.bend->k[2], lens.bend->k[3], pixel.x(),
+             pixel.y());
+  }
 }
 
 }  // namespace axial::simulate

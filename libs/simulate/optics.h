@@ -30,8 +30,8 @@ struct Lens {
 Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction);
 Eigen::Vector3d direction_of(const Lens& lens, double u, double v);
 
-// Error that names the coefficients unless every pixel of the image, corners included, has a
-// direction that pixel_of brings back.
+// Error that names the coefficients unless every pixel of the image's outline has a direction that
+// pixel_of brings back, and the lens folds back nowhere before it.
 void check_lens(const Lens& lens);
 
 // Square pixels, principal point in the image centre. Error unless 1 <= width, height and

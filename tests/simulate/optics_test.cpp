@@ -169,6 +169,17 @@ TEST(Optics, RefusesLensesThatDoNotFillTheImage) {
   EXPECT_THROW(check_lens(lens), Error);
 }
 
+TEST(Optics, RefusesLensesThatFoldBackBeforeTheCorners) {
+  Lens lens = make_lens(640, 480, 80);
+  // r (1 - 0.9 r^2 + 0.3 r^4) rises to r = 0.72, falls to 1.13, and rises again to the corners:
+  // they have a direction, and so has every pixel before them.
+  lens.bend = Bend{false, {-0.9, 0.3, 0, 0}};
+  EXPECT_THROW(check_lens(lens), Error);
+  // Without a fall: 1 - 0.6 r^2 + 0.3 r^4 has no root.
+  lens.bend = Bend{false, {-0.2, 0.06, 0, 0}};
+  EXPECT_NO_THROW(check_lens(lens));
+}
+
 RC_GTEST_PROP(Optics, TheWaterSurfaceStaysInTheWorld, ()) {
   const double level = between(-2, 2);
   const View view = any_view_of_water(level);
