@@ -225,20 +225,32 @@ std::string fingerprint(const Project& project, const Options& options) {
   return print.hex();
 }
 
+void attach_lenses(axial::Scene& scene, const Options& options) {
+  if (axial::io::attach_lenses_beside(scene, options.input))
+    spdlog::info("{}: {} images have distorted lenses, and are matched as they are",
+                 axial::io::lenses_beside(options.input).filename().string(),
+                 std::ranges::count_if(scene.images, [](const axial::SceneImage& image) {
+                   return image.camera.distortion.has_value();
+                 }));
+}
+
+void warn_of_missing_lenses(const Options& options) {
+  const fs::path file = axial::io::lenses_beside(options.input);
+  std::error_code error;
+  if (!fs::exists(file, error))
+    spdlog::warn("{}: not there: the images count as undistorted", file.string());
+}
+
 }  // namespace
 
 Project load_project(const Options& options) {
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
-  if (axial::io::attach_lenses_beside(project.scene, options.input))
-    spdlog::info("{}: {} images have distorted lenses, and are matched as they are",
-                 axial::io::lenses_beside(options.input).filename().string(),
-                 std::ranges::count_if(project.scene.images, [](const axial::SceneImage& image) {
-                   return image.camera.distortion.has_value();
-                 }));
+  attach_lenses(project.scene, options);
   project.lenses = axial::io::lenses_of(project.scene, options.output);
   project.housing = attach_housing(project.scene, options);
+  if (project.housing) warn_of_missing_lenses(options);
   spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
                project.scene.images.size(), project.scene.points.size());
   load_views(project, options);
@@ -249,7 +261,7 @@ Project load_project(const Options& options) {
 }
 
 void write_cameras_beside_output(const Project& project, const Options& options) {
-  axial::io::write_lenses_beside(options.output, project.lenses);
+  axial::io::write_lenses_beside(options.output, project.lenses, project.housing.has_value());
   const fs::path file = axial::io::housing_beside(options.output);
   if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (file == axial::io::housing_beside(options.input)) return;

@@ -81,7 +81,7 @@ int run(int argc, char** argv) {
     spdlog::info("{}: {} of {} images behind a port", housing_file.string(),
                  count_behind_ports(scene), scene.images.size());
   }
-  io::write_lenses_beside(options.scene_file, lenses);
+  io::write_lenses_beside(options.scene_file, lenses, behind_ports);
   if (const std::size_t distorted = count_distorted(scene))
     spdlog::info("{}: {} of {} images keep their distorted lens",
                  io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());

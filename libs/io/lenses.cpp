@@ -158,9 +158,9 @@ bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
       scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
 }
 
-void write_lenses_beside(const fs::path& scene_path, const Lenses& lenses) {
+void write_lenses_beside(const fs::path& scene_path, const Lenses& lenses, bool behind_ports) {
   const fs::path file = lenses_beside(scene_path);
-  if (!lenses.lenses.empty()) return write_lenses(file, lenses);
+  if (behind_ports || !lenses.lenses.empty()) return write_lenses(file, lenses);
   std::error_code error;
   fs::remove(file, error);
 }

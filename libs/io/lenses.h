@@ -37,7 +37,9 @@ bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path)
 // their paths do not tell apart.
 Lenses lenses_of(const Scene& scene, const std::filesystem::path& scene_path);
 
-// Writes the file beside the scene; none is left if all lenses are straight.
-void write_lenses_beside(const std::filesystem::path& scene_path, const Lenses& lenses);
+// Writes the file beside the scene. If all lenses are straight it says so `behind_ports`, where
+// images are seldom undistorted and a lost file would be missed; in air none is left then.
+void write_lenses_beside(const std::filesystem::path& scene_path, const Lenses& lenses,
+                         bool behind_ports);
 
 }  // namespace axial::io

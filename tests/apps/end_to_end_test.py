@@ -7,51 +7,11 @@ import os
 import re
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-from programs import (BIN, ProgramTest, cloud_size, depth_rows, files_below, grey_png, main, read, run,
-                      write)
-
-# One pixel's width at the scene's depth: the median distance (0.7 m) over the focal length (305 px).
-GSD = 0.7 / 305
-# Enough to see differences, small enough to run often.
-QUICK = ("--resolution-level", "1", "--min-resolution", "200")
-
-
-class SceneTest(ProgramTest):
-    """The close-up scene, photographed in air and through what SCENE says."""
-    SCENE = ()
-
-    @classmethod
-    def setUpClass(cls):
-        cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(cls.shared.cleanup)
-        cls.truth = os.path.join(cls.shared.name, "closeup")
-        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 512,
-                   "--height", 384, "--seed", 1, "--samples", 2, *cls.SCENE, "-o", cls.truth)
-        assert made.returncode == 0, made.stderr
-
-    def import_scene(self, medium, folder, housing=True):
-        port = ["--housing", os.path.join(self.truth, "housing.json")]
-        self.succeeds("InterfaceCOLMAP", "-i", self.truth, "--image-folder",
-                      os.path.join(self.truth, medium), "-o", self.path(folder, "scene.mvs"),
-                      *(port if medium == "water" and housing else []))
-
-    def densify(self, folder, *arguments):
-        result = self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(folder),
-                               *arguments)
-        return result.stdout
-
-    def evaluate(self, medium, folder):
-        port = ["--housing", os.path.join(self.truth, "housing.json")] if medium == "water" else []
-        self.succeeds("EvaluateReconstruction", "-i", self.path(folder, "scene_dense.ply"), "-m",
-                      os.path.join(self.truth, "mesh.ply"), "--cameras",
-                      os.path.join(self.truth, "sparse"), *port, "--tolerance", "0.002",
-                      "--json", self.path(folder, "evaluation.json"))
-        return json.loads(read(self.path(folder, "evaluation.json")))
-
+from close_up import GSD, QUICK, SceneTest
+from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, read, write
 
 class EndToEnd(SceneTest):
     def check_cloud(self, result):

@@ -2,77 +2,51 @@
 """Photographs of distorted lenses behind a flat port, matched as they are and undistorted: four views
 of 512 x 384 of the close-up scene, on true poses."""
 
-import json
 import os
-import tempfile
 
-from programs import ProgramTest, files_below, main, read, run, write
-
-# One pixel's width at the scene's depth: the median distance (0.7 m) over the focal length (305 px).
-GSD = 0.7 / 305
-QUICK = ("--resolution-level", "1", "--min-resolution", "200")
+from close_up import GSD, QUICK, SceneTest
+from programs import files_below, main, read, write
 
 
-class LensTest(ProgramTest):
-    LENS = None  # --lens of the simulator
+def under_water(lens):
+    return ("--medium", "water", "--truth", 0, "--lens", lens)
 
-    @classmethod
-    def setUpClass(cls):
-        if cls.LENS is None:
-            return
-        cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(cls.shared.cleanup)
-        cls.truth = os.path.join(cls.shared.name, "closeup")
-        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 512,
-                   "--height", 384, "--seed", 1, "--samples", 2, "--medium", "water", "--truth", 0,
-                   "--lens", cls.LENS, "-o", cls.truth)
-        assert made.returncode == 0, made.stderr
-        cls.housing = os.path.join(cls.truth, "housing.json")
 
-    def import_scene(self, folder, *arguments):
-        return self.succeeds("InterfaceCOLMAP", "-i", self.truth, "--image-folder",
-                             os.path.join(self.truth, "water"), "-o",
-                             self.path(folder, "scene.mvs"), *arguments).stdout
+class LensTest(SceneTest):
+    SCENE = None
 
-    def densify(self, folder, *arguments):
-        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(folder),
-                             *arguments).stdout
-
-    def evaluate(self, folder):
-        self.succeeds("EvaluateReconstruction", "-i", self.path(folder, "scene_dense.ply"), "-m",
-                      os.path.join(self.truth, "mesh.ply"), "--cameras",
-                      os.path.join(self.truth, "sparse"), "--housing", self.housing, "--tolerance",
-                      "0.002", "--json", self.path(folder, "evaluation.json"))
-        result = json.loads(read(self.path(folder, "evaluation.json")))
+    def errors(self, folder):
+        result = self.evaluate("water", folder)
         mean, recall = result["accuracy"]["mean"] / GSD, result["scores"][0]["recall"]
-        print(f"measured: {self.LENS.split(',')[0]} {folder} mean {mean:.4f} GSD, "
-              f"recall {recall:.3f}")
+        print(f"measured: {type(self).__name__} {folder} mean {mean:.4f} GSD, recall {recall:.3f}")
         return mean, recall
 
     def check_raw_is_as_good(self):
-        self.import_scene("raw", "--housing", self.housing)
-        self.import_scene("undistorted", "--housing", self.housing, "--undistort", "1")
+        self.import_scene("water", "raw")
+        self.import_scene("water", "undistorted", "--undistort", "1")
         self.assertNotIn("undistorted/0000.jpg", files_below(self.path("raw")))
-        self.assertNotIn("scene.lenses.json", files_below(self.path("undistorted")))
+        self.assertIn("undistorted/0000.jpg", files_below(self.path("undistorted")))
         for folder in ("raw", "undistorted"):
             self.densify(folder, "--refractive", "--resolution-level", "0")
-        mean, recall = self.evaluate("raw")
-        mean_undistorted, recall_undistorted = self.evaluate("undistorted")
+        mean, recall = self.errors("raw")
+        mean_undistorted, recall_undistorted = self.errors("undistorted")
+        # No tolerance: neither varies from run to run, and to resample costs more than rounding.
+        # The mean was 1 to 2 % better and the recall 7 to 17 %.
         self.assertLessEqual(mean, mean_undistorted)
         self.assertGreaterEqual(recall, recall_undistorted)
         self.assertLess(mean, 0.4)  # as the end-to-end test of straight lenses asks
 
 
 class OpencvLens(LensTest):
-    LENS = "OPENCV,-0.12,0.02,0.001,-0.0005"
+    SCENE = under_water("OPENCV,-0.12,0.02,0.001,-0.0005")
 
     def test_raw_images_give_as_good_a_cloud(self):
         self.check_raw_is_as_good()
 
     def test_lenses_are_kept_and_obeyed(self):
-        self.import_scene("scene", "--housing", self.housing)
+        self.import_scene("water", "scene")
         self.assertIn("4 images have distorted lenses", self.densify("scene", "--refractive", *QUICK))
-        obeyed, _ = self.evaluate("scene")
+        obeyed, _ = self.errors("scene")
         # The dense scene has the lenses, too: its maps are those that are there.
         self.assertEqual(read(self.path("scene", "scene_dense.lenses.json")),
                          read(self.path("scene", "scene.lenses.json")))
@@ -83,25 +57,32 @@ class OpencvLens(LensTest):
         os.remove(self.path("scene", "scene.lenses.json"))
         ignored = self.densify("scene", "--refractive", *QUICK)
         self.assertNotIn("there already", ignored, "maps of another lens were taken over")
-        self.assertNotIn("scene_dense.lenses.json", files_below(self.path("scene")))
-        self.assertGreater(self.evaluate("scene")[0], 3 * obeyed)
+        self.assertIn("scene.lenses.json: not there", ignored)
+        self.assertGreater(self.errors("scene")[0], 3 * obeyed)
 
     def test_the_same_bytes_for_any_number_of_threads(self):
         for threads in ("1", "2"):
-            self.import_scene(threads, "--housing", self.housing)
+            self.import_scene("water", threads)
             self.densify(threads, "--refractive", "--max-threads", threads, *QUICK)
         for name in ("scene_dense.ply", "depth0002.dmap"):
             self.assertEqual(read(self.path("1", name)), read(self.path("2", name)))
 
+    def test_straight_lenses_behind_a_port_are_said_to_be_so(self):
+        self.import_scene("water", "straight", "--undistort", "1")
+        self.assertIn('"default": "none"', read(self.path("straight", "scene.lenses.json")).decode())
+        said = self.densify("straight", "--refractive", *QUICK)
+        self.assertNotIn("not there", said)
+        self.assertIn("scene_dense.lenses.json", files_below(self.path("straight")))
+
     def test_images_in_air_are_undistorted_unless_told_otherwise(self):
-        self.import_scene("air", "--undistort", "0")
+        self.import_scene("water", "air", "--undistort", "0", housing=False)
         self.assertIn("scene.lenses.json", files_below(self.path("air")))
-        self.import_scene("air")
+        self.import_scene("water", "air", housing=False)
         self.assertIn("undistorted/0000.jpg", files_below(self.path("air")))
         self.assertNotIn("scene.lenses.json", files_below(self.path("air")))
 
     def test_what_cannot_be_done_is_said(self):
-        self.import_scene("wrong", "--housing", self.housing)
+        self.import_scene("water", "wrong")
         for option in (("--projection", "line-search"), ("--warp", "homography")):
             self.refuses("--undistort 1", "DensifyPointCloud", "-i", "scene.mvs", "-w",
                          self.path("wrong"), "--refractive", *option, *QUICK)
@@ -116,7 +97,7 @@ class OpencvLens(LensTest):
 
 
 class FisheyeLens(LensTest):
-    LENS = "OPENCV_FISHEYE,0.02,-0.01,0.002,0"
+    SCENE = under_water("OPENCV_FISHEYE,0.02,-0.01,0.002,0")
 
     def test_raw_images_give_as_good_a_cloud(self):
         self.check_raw_is_as_good()

@@ -76,7 +76,7 @@ TEST_F(LensesTest, ReadsBackWhatItWrites) {
   add((folder_ / "images/b.jpg").string(), std::nullopt);
   add((folder_ / "more/images/b.jpg").string(), fisheye());
   add((folder_ / "../elsewhere/b.jpg").string(), barrel());
-  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), false);
   EXPECT_EQ(read_lenses(file_).lenses.size(), 2u);
   EXPECT_EQ(read_again(),
             (std::vector<std::optional<Distortion>>{fisheye(), std::nullopt, fisheye(), barrel()}));
@@ -88,7 +88,7 @@ TEST_F(LensesTest, ReadsBackWhatItWrites) {
 TEST_F(LensesTest, FollowsASceneThatIsMoved) {
   add((folder_ / "images/a.jpg").string(), fisheye());
   add((folder_ / "images/b.jpg").string(), barrel());
-  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), false);
   scene_.images[0].path = "/somewhere/else/images/a.jpg";
   scene_.images[1].path = "images/b.jpg";
   EXPECT_EQ(read_again(), (std::vector<std::optional<Distortion>>{fisheye(), barrel()}));
@@ -106,11 +106,18 @@ TEST_F(LensesTest, RefusesImagesThatTheEndsOfTheirPathsDoNotTellApart) {
 
 TEST_F(LensesTest, StraightLensesHaveNoFileAndLeaveNone) {
   add("a.jpg", barrel());
-  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), false);
   EXPECT_TRUE(fs::exists(file_));
   scene_.images[0].camera.distortion.reset();
-  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_));
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), false);
   EXPECT_FALSE(fs::exists(file_));
+  EXPECT_FALSE(attach_lenses_beside(scene_, scene_file_));
+}
+
+TEST_F(LensesTest, StraightLensesBehindPortsAreSaidToBeSo) {
+  add("a.jpg", std::nullopt);
+  write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), true);
+  EXPECT_TRUE(read_lenses(file_).lenses.empty());
   EXPECT_FALSE(attach_lenses_beside(scene_, scene_file_));
 }
 
