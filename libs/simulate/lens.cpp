@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Distorted lenses, written down apart from refractive/ and solved in another way: the two check
 // each other.
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 

@@ -13,6 +13,7 @@ import unittest
 from close_up import GSD, QUICK, SceneTest
 from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, read, write
 
+
 class EndToEnd(SceneTest):
     def check_cloud(self, result):
         # OpenMVS's mean on such scenes is half a GSD at full resolution; a quarter was measured here.

@@ -171,12 +171,12 @@ TEST(Optics, RefusesLensesThatDoNotFillTheImage) {
 
 TEST(Optics, RefusesLensesThatFoldBackBeforeTheCorners) {
   Lens lens = make_lens(640, 480, 80);
-  // r (1 - 0.9 r^2 + 0.3 r^4) rises to r = 0.72, falls to 1.13, and rises again to the corners:
+  // a (1 - 0.9 a^2 + 0.35 a^4) rises to a = 0.79, falls to 0.96, and rises again to the corners:
   // they have a direction, and so has every pixel before them.
-  lens.bend = Bend{false, {-0.9, 0.3, 0, 0}};
+  lens.bend = Bend{true, {-0.9, 0.35, 0, 0}};
   EXPECT_THROW(check_lens(lens), Error);
-  // Without a fall: 1 - 0.6 r^2 + 0.3 r^4 has no root.
-  lens.bend = Bend{false, {-0.2, 0.06, 0, 0}};
+  // Without a fall: 1 - 2.7 a^2 + 2 a^4 has no root.
+  lens.bend = Bend{true, {-0.9, 0.4, 0, 0}};
   EXPECT_NO_THROW(check_lens(lens));
 }
 
