@@ -66,9 +66,10 @@ struct FlatPortImage {
            Vector2<T>(m * step.x() + outwards * across.x(), m * step.y() + outwards * across.y());
   }
 
-  Vector2<T> across;   // the point's x and y
-  T m, stretch, sink;  // t/rho; (dt/d(rho) - t/rho) / rho^2; -(dt/dz) / rho
-  Matrix2<T> lens;     // d(pixel)/d(in-air direction)
+  Vector2<T> across;  // the point's x and y
+  // t/rho; (dt/d(rho) - t/rho) / rho^2; -(dt/dz) / rho; all over the direction's depth in the lens
+  T m, stretch, sink;
+  Matrix2<T> lens;  // d(pixel)/d(in-air direction), times that depth
 };
 
 template <class T>
@@ -117,11 +118,6 @@ class FlatPortProjector {
     const T rho2 = field_.nearest_rho2(radius2, z_water);
     image.across = {select(in_field, X.x(), T(0)), select(in_field, X.y(), T(0))};
     const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
-
-    image.m = at.m;
-    // In this order every product stays within single precision.
-    image.stretch = (at.slope * at.m) * (at.m * at.spread) * at.m;
-    image.sink = at.m * at.slope * at.inv_qw;
     // In water the ray rises q_w/t for every metre that it leaves the axis.
     image.origin_height = z_water - T(1) / (at.m * at.inv_qw);
 
@@ -135,9 +131,12 @@ class FlatPortProjector {
     const T inv_depth = T(1) / greater(depth, kNearest);
     const T u = along(row_u_) * inv_depth;
     const T v = along(row_v_) * inv_depth;
-    image.lens << (row_u_.x() - u * row_z_.x()) * inv_depth,
-        (row_u_.y() - u * row_z_.y()) * inv_depth,  //
-        (row_v_.x() - v * row_z_.x()) * inv_depth, (row_v_.y() - v * row_z_.y()) * inv_depth;
+    image.m = at.m * inv_depth;
+    // In this order every product stays within single precision.
+    image.stretch = (at.slope * image.m) * (at.m * at.spread) * at.m;
+    image.sink = at.slope * at.inv_qw * image.m;
+    image.lens << row_u_.x() - u * row_z_.x(), row_u_.y() - u * row_z_.y(),  //
+        row_v_.x() - v * row_z_.x(), row_v_.y() - v * row_z_.y();
     image.projection.pixel = {u + cx_, v + cy_};
     image.projection.visible = in_field && in_front && image_.contains(image.projection.pixel);
     return image;

@@ -25,39 +25,41 @@ namespace axial::refractive {
 template <class T>
 struct FlatPortField {
   T offset, slope;
-  T known_offset, known_slope, inv_known;  // the same of an incidence whose root the guess knows
-  T paraxial_offset, paraxial_slope;       // radius / t at the axis, as a function of z_water
+  // radius / t as a function of z_water
+  T known_offset, known_slope, inv_known2;  // at an incidence whose root the guess knows; 1 / t^2
+  T paraxial_offset, paraxial_slope;        // at the axis
   int steps;  // of the solver, for single precision: errors below 1e-4 px of a 1024 px wide image
 
   FlatPortField() = default;
   // The errors are promised up to the in-air incidence `promised`, at most `tangent`; beyond, up to
   // 1.3 times as much, they stay below 0.01 px.
   FlatPortField(const FlatPortOptics<T>& optics, const T& tangent, const T& promised)
-      : inv_known(T(1) / promised),
+      : inv_known2(T(1) / (promised * promised)),
         paraxial_offset(optics.paraxial_secant(T(0))),
         paraxial_slope(optics.water.inv_mu),
         steps(promised < T(1.15) ? 1 : (promised < T(4.5) ? 2 : (promised < T(7) ? 3 : 5))) {
-    const auto disc = [&](const T& t, T& offset_, T& slope_) {
+    const auto secant = [&](const T& t, T& offset_, T& slope_) {
       const T s = t * t;
-      offset_ = t * (optics.distance + optics.thickness / optics.glass.q(s));
-      slope_ = t / optics.water.q(s);
+      offset_ = optics.distance + optics.thickness / optics.glass.q(s);
+      slope_ = T(1) / optics.water.q(s);
     };
-    disc(tangent, offset, slope);
-    disc(promised, known_offset, known_slope);
+    secant(promised, known_offset, known_slope);
+    secant(tangent, offset, slope);
+    offset *= tangent, slope *= tangent;
   }
 
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(offset), visit(slope);
-    visit(known_offset), visit(known_slope), visit(inv_known);
+    visit(known_offset), visit(known_slope), visit(inv_known2);
     visit(paraxial_offset), visit(paraxial_slope);
     visit(steps);
   }
 
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
-  // False for NaN. The bounds on the height keep the squares and cubes of single precision within
-  // its range.
+  // False for NaN. The bounds on the height keep sixth powers of lengths within the range of single
+  // precision.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
@@ -73,60 +75,77 @@ struct FlatPortField {
   }
 
  private:
-  static constexpr float kLowest = 1e-9f, kHighest = 1e9f;  // a nanometre, a million kilometres
+  static constexpr float kLowest = 1e-6f, kHighest = 1e5f;  // a micrometre, a hundred kilometres
+};
+
+// m as a fraction, so that what needs no more than m^2 does not wait for the division.
+template <class T>
+struct InverseSecant {
+  T numerator, denominator;
+
+  T value() const { return numerator / denominator; }
 };
 
 // F and its derivatives. Written for a short chain of operations rather than for few: everything
-// that 1/q needs no root for is ready when the roots are.
+// that needs no root is ready when the roots are.
 template <class T>
 struct FlatPortSlopes {
   T inv_qw;
-  T inv_qw_slope;  // its derivative by m
-  T secant;        // (F + 1) / m, which is radius / t
-  T tangent;       // dF/dm, which is d(radius)/dt
-  T curvature;     // d2F/dm2
-  T spread;        // (secant - tangent) / s
-  T spread_slope;  // d(spread)/dm
+  T inv_qw_slope;       // its derivative by m
+  T secant;             // (F + 1) / m, which is radius / t
+  T tangent;            // dF/dm, which is d(radius)/dt
+  T half_curvature;     // of F by m: half the second derivative
+  T spread;             // (secant - tangent) / s
+  T half_spread_slope;  // half of d(spread)/dm
 
-  FlatPortSlopes(const FlatPortOptics<T>& optics, const T& m, const T& rho2, const T& z_water) {
+  FlatPortSlopes(const FlatPortOptics<T>& optics, const InverseSecant<T>& fraction, const T& rho2,
+                 const T& z_water) {
     using std::sqrt;
-    const T s = m * m * rho2;
-    const T q2_g = optics.glass.q2(s);
-    const T q2_w = optics.water.q2(s);
-    const T g2 = T(1) / q2_g;
-    const T w2 = T(1) / q2_w;
-    const T g = optics.thickness * sqrt(g2);
-    inv_qw = sqrt(w2);
-    const T w = z_water * inv_qw;
+    const T& scale = fraction.denominator;
+    const T scale2 = scale * scale;
+    const T scaled_s = fraction.numerator * fraction.numerator * rho2;
+    const T q2_g = optics.glass.b * scale2 + optics.glass.c * scaled_s;  // times scale2
+    const T q2_w = optics.water.b * scale2 + optics.water.c * scaled_s;
+    const T over_g = scale / q2_g, over_w = scale / q2_w;
+    const T g2 = scale * over_g, w2 = scale * over_w;  // 1/q^2
+    const T root_w = sqrt(q2_w);
+    const T g = sqrt(q2_g) * (optics.thickness * over_g);
+    const T w = root_w * (z_water * over_w);
+    inv_qw = root_w * over_w;
     const T g_b = g2 * optics.glass.b, g_c = g2 * optics.glass.c;
     const T w_b = w2 * optics.water.b, w_c = w2 * optics.water.c;
     secant = optics.distance + g + w;
     tangent = optics.distance + g * g_b + w * w_b;
-    spread = g * g_c + w * w_c;
-    const T twist = T(-3) * m * rho2;
-    curvature = twist * (g * (g_b * g_c) + w * (w_b * w_c));
-    spread_slope = twist * (g * (g_c * g_c) + w * (w_c * w_c));
-    inv_qw_slope = -(m * rho2) * w_c * inv_qw;
+    const T spread_g = g * g_c, spread_w = w * w_c;
+    spread = spread_g + spread_w;
+    const T lever = fraction.value() * rho2;
+    const T twist = T(-1.5) * lever;
+    half_curvature = twist * (spread_g * g_b + spread_w * w_b);
+    half_spread_slope = twist * (spread_g * g_c + spread_w * w_c);
+    inv_qw_slope = -(lever * w_c) * inv_qw;
   }
+
+  FlatPortSlopes(const FlatPortOptics<T>& optics, const T& m, const T& rho2, const T& z_water)
+      : FlatPortSlopes(optics, {m, T(1)}, rho2, z_water) {}
 };
 
 // A guess of m: the inverse of a secant between the paraxial one, exact on the axis, and that of
 // an incidence where the root is known: the secant runs from one to the other like the square of
 // the radius. That saves more than one step against the paraxial guess.
 template <class T>
-T initial_inverse_secant(const FlatPortField<T>& field, const T& rho2, const T& z_water) {
-  const T known_radius = field.known_offset + field.known_slope * z_water;
+InverseSecant<T> initial_inverse_secant(const FlatPortField<T>& field, const T& rho2,
+                                        const T& z_water) {
+  const T known = field.known_offset + field.known_slope * z_water;
   const T paraxial = field.paraxial_offset + field.paraxial_slope * z_water;
-  const T known = known_radius * field.inv_known;
-  const T known2 = known_radius * known_radius;
-  return known2 / (paraxial * known2 + (known - paraxial) * rho2);
+  const T known2 = known * known;
+  return {known2, paraxial * known2 + (known - paraxial) * field.inv_known2 * rho2};
 }
 
 // How far Halley's step goes down from m, where the slopes are `at`.
 template <class T>
 T halley_step(const FlatPortSlopes<T>& at, const T& m) {
   const T f = m * at.secant - T(1);
-  return f * at.tangent / (at.tangent * at.tangent - T(0.5) * f * at.curvature);
+  return f * at.tangent / (at.tangent * at.tangent - f * at.half_curvature);
 }
 
 // The root and what the projection's derivative needs there.
@@ -146,22 +165,28 @@ namespace detail {
 template <class T>
 FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  T m = initial_inverse_secant(field, rho2, z_water);
-  for (int step = 1; step < field.steps; ++step)
-    m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
-  const FlatPortSlopes<T> at(optics, m, rho2, z_water);
+  InverseSecant<T> guess = initial_inverse_secant(field, rho2, z_water);
+  for (int step = 1; step < field.steps; ++step) {
+    const T m = guess.value();
+    guess = {m - halley_step(FlatPortSlopes<T>(optics, guess, rho2, z_water), m), T(1)};
+  }
+  const FlatPortSlopes<T> at(optics, guess, rho2, z_water);
+  const T m = guess.value();
   const T slope = T(1) / at.tangent;
-  const T newton = (m * at.secant - T(1)) * slope;
-  const T bend = at.curvature * slope;  // of the tangent, relative, per step
-  const T down = newton + newton * newton * (T(0.5) * bend);
-  return {m - down, slope + slope * (bend * newton), at.spread - at.spread_slope * down,
-          at.inv_qw - at.inv_qw_slope * down};
+  const T f = m * at.secant - T(1);
+  const T bend = f * at.half_curvature;
+  const T slope2 = slope * slope;
+  const T newton = f * slope;
+  const T beyond = (f * bend * slope) * slope2;
+  const T down = newton + beyond;
+  return {(m - newton) - beyond, slope + slope * (slope2 * (bend + bend)),
+          at.spread - at.half_spread_slope * (down + down), at.inv_qw - at.inv_qw_slope * down};
 }
 
 template <class T>
 FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  T m = initial_inverse_secant(field, rho2, z_water);
+  T m = initial_inverse_secant(field, rho2, z_water).value();
   for (int step = 0; step < 2; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
   // A Newton step of a concave function ends left of the root, the paraxial guess lies left of it

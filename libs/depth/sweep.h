@@ -64,31 +64,23 @@ class Sweep {
 
   // The number of scores computed: of one plane in one view.
   std::uint64_t run() {
-    const int strips = (map_.height + kStripHeight - 1) / kStripHeight;
-    save_strip_edges(strips);
-    std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips));
+    begin();
+    std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips()));
     parallel_for(scores.size(),
                  [&](std::size_t strip) { scores[strip] = run_strip(static_cast<int>(strip)); });
     return std::accumulate(scores.begin(), scores.end(), std::uint64_t{0});
   }
 
- private:
-  void save_strip_edges(int strips) {
+  // The same in steps: begin(), and every strip once, in any order.
+  int strips() const { return (map_.height + kStripHeight - 1) / kStripHeight; }
+
+  void begin() {
     const auto width = static_cast<std::ptrdiff_t>(map_.width);
     edges_.clear();
-    for (int strip = 0; strip + 1 < strips; ++strip) {
+    for (int strip = 0; strip + 1 < strips(); ++strip) {
       const auto begin = map_.pixels.begin() + ((strip + 1) * kStripHeight - 1) * width;
       edges_.insert(edges_.end(), begin, begin + 2 * width);
     }
-  }
-
-  // The pixel next to a strip's own: across the edge, as it was before the sweep.
-  const PlanePixel& neighbour(int strip, int x, int y) const {
-    const int top = strip * kStripHeight;
-    if (y >= top && y < top + kStripHeight) return map_.at(x, y);
-    const int edge = y < top ? strip - 1 : strip;
-    const int row = y < top ? 0 : 1;
-    return edges_[static_cast<std::size_t>((edge * 2 + row) * map_.width + x)];
   }
 
   std::uint64_t run_strip(int number) {
@@ -103,6 +95,16 @@ class Sweep {
         for (int x = map_.width - 1; x >= 0; --x) visit(strip, x, y, +1);
     }
     return strip.scores;
+  }
+
+ private:
+  // The pixel next to a strip's own: across the edge, as it was before the sweep.
+  const PlanePixel& neighbour(int strip, int x, int y) const {
+    const int top = strip * kStripHeight;
+    if (y >= top && y < top + kStripHeight) return map_.at(x, y);
+    const int edge = y < top ? strip - 1 : strip;
+    const int row = y < top ? 0 : 1;
+    return edges_[static_cast<std::size_t>((edge * 2 + row) * map_.width + x)];
   }
 
   // The rays of the tile of pixels that was visited last.

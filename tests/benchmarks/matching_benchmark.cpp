@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sweeps and whole depth maps, pinhole and flat port in turn within every iteration, so that the
-// machine's moods strike both: the ratio is what --refractive costs. One thread.
+// Sweeps and whole depth maps, pinhole and flat port in turn, strip by strip and map by map, so
+// that the machine's moods strike both: the ratio is what --refractive costs. One thread.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "base/parallel.h"
 #include "benchmarks/benchmarks.h"
 #include "benchmarks/cpu_time.h"
+#include "benchmarks/instruction_sets.h"
 #include "benchmarks/survey.h"
 #include "depth/sweep.h"
 
@@ -56,8 +58,8 @@ depth::SweepInput sweep_input(int number) {
 template <class Camera>
 class SweepRun {
  public:
-  SweepRun(bool behind_port, bool geometric, int first)
-      : bench_(survey(behind_port), geometric, depth::lanes::fastest_instruction_set()),
+  SweepRun(bool behind_port, bool geometric, int first, depth::lanes::InstructionSet set)
+      : bench_(survey(behind_port), geometric, set),
         matcher_(bench_.matcher()),
         start_(coarse_start(survey(behind_port))) {
     for (int i = 0; i < first; ++i) depth::Sweep(matcher_, start_, options_, sweep_input(i)).run();
@@ -65,9 +67,16 @@ class SweepRun {
 
   void restart() { map_ = start_; }
 
-  Cost sweep(int number) {
+  // Begins a sweep; how many strips it has.
+  int begin(int number) {
+    sweep_.emplace(matcher_, map_, options_, sweep_input(number));
+    sweep_->begin();
+    return sweep_->strips();
+  }
+
+  Cost strip(int number) {
     const double before = process_cpu_seconds();
-    const std::uint64_t scores = depth::Sweep(matcher_, map_, options_, sweep_input(number)).run();
+    const std::uint64_t scores = sweep_->run_strip(number);
     benchmark::DoNotOptimize(map_.pixels.data());
     return {process_cpu_seconds() - before, static_cast<double>(scores)};
   }
@@ -77,6 +86,7 @@ class SweepRun {
   const Bench<Camera> bench_;
   const depth::LaneMatcher<Camera>& matcher_;
   depth::PlaneMap start_, map_;
+  std::optional<depth::Sweep<depth::LaneMatcher<Camera>>> sweep_;
 };
 
 double pixels() {
@@ -97,16 +107,21 @@ void report_scores(benchmark::State& state, const Cost& pinhole, const Cost& fla
 }
 
 // Nanoseconds per hypothesis and view, all of a sweep's work included.
-void sweep_pair(benchmark::State& state, bool geometric, int first, int last) {
+void sweep_pair(benchmark::State& state, bool geometric, int first, int last,
+                depth::lanes::InstructionSet set) {
   const ThreadLimit one(1);
-  SweepRun<refractive::PinholeCamera<float>> dry(false, geometric, first);
-  SweepRun<refractive::FlatPortCamera<float>> wet(true, geometric, first);
+  SweepRun<refractive::PinholeCamera<float>> dry(false, geometric, first, set);
+  SweepRun<refractive::FlatPortCamera<float>> wet(true, geometric, first, set);
   Cost pinhole, flat_port;
   for (auto _ : state) {
     dry.restart(), wet.restart();
     for (int i = first; i <= last; ++i) {
-      pinhole += dry.sweep(i);
-      flat_port += wet.sweep(i);
+      dry.begin(i);
+      const int strips = wet.begin(i);
+      for (int strip = 0; strip < strips; ++strip) {
+        pinhole += dry.strip(strip);
+        flat_port += wet.strip(strip);
+      }
     }
   }
   report_ratio(state, pinhole, flat_port);
@@ -176,10 +191,14 @@ void depth_map_pair(benchmark::State& state) {
   state.counters["flat_port_complete"] = in_water.complete;
 }
 
-void add_sweep(const char* name, bool geometric, int first, int last) {
-  benchmark::RegisterBenchmark(name, [=](benchmark::State& state) {
-    sweep_pair(state, geometric, first, last);
-  })->Unit(benchmark::kMillisecond);
+void add_sweep(const std::string& name, bool geometric, int first, int last) {
+  using depth::lanes::InstructionSet;
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512})
+    if (available(set))
+      benchmark::RegisterBenchmark(
+          (name + "/" + name_of(set)).c_str(),
+          [=](benchmark::State& state) { sweep_pair(state, geometric, first, last, set); })
+          ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "benchmarks/benchmarks.h"
 #include "benchmarks/cpu_time.h"
+#include "benchmarks/instruction_sets.h"
 #include "benchmarks/machine_limits.h"
 #include "benchmarks/survey.h"
 
@@ -117,20 +118,6 @@ void score(benchmark::State& state, bool behind_port, InstructionSet set, bool g
   state.counters["of_roof"] =
       samples_per_ns /
       std::min(limits.words_per_ns(), limits.float_operations_per_ns / kOperationsPerSample);
-}
-
-const char* name_of(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::scalar:
-      return "scalar";
-    case InstructionSet::baseline:
-      return "baseline";
-    case InstructionSet::avx2:
-      return "avx2";
-    case InstructionSet::avx512:
-      return "avx512";
-  }
-  return "unknown";
 }
 
 template <class Camera>

@@ -42,6 +42,8 @@ struct Pack {
   requires std::is_arithmetic_v<Number> Pack(Number value)  // the same in every lane
       : part(static_cast<float>(value)) {}
 
+  explicit Pack(const Part& lanes) : part(lanes) {}
+
   static Pack load(const float* aligned) {
     Pack pack;
     pack.part.copy_from(aligned, stdx::vector_aligned);
@@ -98,13 +100,33 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
+// The second one if either is NaN, which is what the processors' own instructions give, in one step
+// where comparing and choosing are two.
 template <class Abi>
 Pack<Abi> lesser(const Pack<Abi>& a, const Pack<Abi>& b) {
+  using Part [[maybe_unused]] = typename Pack<Abi>::Part;
+#ifdef __AVX512F__
+  if constexpr (Part::size() == 16)
+    return Pack<Abi>(Part(_mm512_min_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part))));
+#endif
+#ifdef __AVX2__
+  if constexpr (Part::size() == 8)
+    return Pack<Abi>(Part(_mm256_min_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part))));
+#endif
   return select(a < b, a, b);
 }
 
 template <class Abi>
 Pack<Abi> greater(const Pack<Abi>& a, const Pack<Abi>& b) {
+  using Part [[maybe_unused]] = typename Pack<Abi>::Part;
+#ifdef __AVX512F__
+  if constexpr (Part::size() == 16)
+    return Pack<Abi>(Part(_mm512_max_ps(static_cast<__m512>(a.part), static_cast<__m512>(b.part))));
+#endif
+#ifdef __AVX2__
+  if constexpr (Part::size() == 8)
+    return Pack<Abi>(Part(_mm256_max_ps(static_cast<__m256>(a.part), static_cast<__m256>(b.part))));
+#endif
   return select(a > b, a, b);
 }
 
