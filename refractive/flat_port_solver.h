@@ -75,7 +75,7 @@ struct FlatPortField {
   }
 
  private:
-  static constexpr float kLowest = 1e-6f, kHighest = 1e5f;  // a micrometre, a hundred kilometres
+  static constexpr float kLowest = 1e-4f, kHighest = 1e5f;  // a tenth of a millimetre, 100 km
 };
 
 // m as a fraction, so that what needs no more than m^2 does not wait for the division.
