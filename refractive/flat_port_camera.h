@@ -98,7 +98,8 @@ class FlatPortCamera {
   }
 
   // Exact forward projection of X [camera frame]. Not visible: on the lens's side of the outer
-  // plane, outside the widened image, beyond total reflection, or NaN; pixel and Jacobian are then
+  // plane, outside the widened image, beyond total reflection, or NaN, in single precision also
+  // nearer to the outer plane than 0.1 mm or farther than 100 km; pixel and Jacobian are then
   // finite and mean nothing. `origin`: where the ray through X begins, the virtual centre C_v.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const;

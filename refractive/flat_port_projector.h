@@ -57,7 +57,7 @@ struct FlatPortImage {
   Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
   // The pixel's motion [px] with a motion of the point [m], to first order. The in-air direction is
-  // (m x, m y, 1): along the radius it grows by dt/d(rho) instead of m, and height turns it
+  // (t/rho x, t/rho y, 1): along the radius it grows by dt/d(rho) instead, and height turns it
   // inwards.
   Vector2<T> moved(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();

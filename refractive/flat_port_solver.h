@@ -58,8 +58,7 @@ struct FlatPortField {
 
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
-  // False for NaN. The bounds on the height keep sixth powers of lengths within the range of single
-  // precision.
+  // False for NaN.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
@@ -75,7 +74,9 @@ struct FlatPortField {
   }
 
  private:
-  static constexpr float kLowest = 1e-4f, kHighest = 1e5f;  // a tenth of a millimetre, 100 km
+  // In single precision sixth powers of lengths must stay within its range.
+  static constexpr float kLowest = kFixedSteps<T> ? 1e-4f : 1e-9f;
+  static constexpr float kHighest = kFixedSteps<T> ? 1e5f : 1e9f;
 };
 
 // m as a fraction, so that what needs no more than m^2 does not wait for the division.
@@ -131,15 +132,24 @@ struct FlatPortSlopes {
 
 // A guess of m: the inverse of a secant between the paraxial one, exact on the axis, and that of
 // an incidence where the root is known: the secant runs from one to the other like the square of
-// the radius. That saves more than one step against the paraxial guess.
+// the radius. That saves more than one step against the paraxial guess. Far beyond the known
+// incidence the secant would fall to zero and below it, and no step would come back from there: it
+// stops at half the known one.
 template <class T>
-InverseSecant<T> initial_inverse_secant(const FlatPortField<T>& field, const T& rho2,
-                                        const T& z_water) {
-  const T known = field.known_offset + field.known_slope * z_water;
-  const T paraxial = field.paraxial_offset + field.paraxial_slope * z_water;
-  const T known2 = known * known;
-  return {known2, paraxial * known2 + (known - paraxial) * field.inv_known2 * rho2};
-}
+struct FirstGuess {
+  InverseSecant<T> m;
+  Mask<T> beyond;  // the known incidence
+
+  FirstGuess(const FlatPortField<T>& field, const T& rho2, const T& z_water) {
+    const T known = field.known_offset + field.known_slope * z_water;
+    const T paraxial = field.paraxial_offset + field.paraxial_slope * z_water;
+    const T known2 = known * known;
+    const T known3 = known * known2;
+    const T scale = paraxial * known2 + (known - paraxial) * field.inv_known2 * rho2;
+    beyond = scale < known3;
+    m = {known2, greater(scale, T(0.5) * known3)};
+  }
+};
 
 // How far Halley's step goes down from m, where the slopes are `at`.
 template <class T>
@@ -165,13 +175,15 @@ namespace detail {
 template <class T>
 FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  InverseSecant<T> guess = initial_inverse_secant(field, rho2, z_water);
+  const FirstGuess<T> guess(field, rho2, z_water);
+  FlatPortSlopes<T> at(optics, guess.m, rho2, z_water);
+  T m = guess.m.value();
+  // Far outside, where the steps need not be right, they must not lead back into the image.
+  const T lowest = select(guess.beyond, T(0.5) * m, T(0));
   for (int step = 1; step < field.steps; ++step) {
-    const T m = guess.value();
-    guess = {m - halley_step(FlatPortSlopes<T>(optics, guess, rho2, z_water), m), T(1)};
+    m -= halley_step(at, m);
+    at = FlatPortSlopes<T>(optics, m, rho2, z_water);
   }
-  const FlatPortSlopes<T> at(optics, guess, rho2, z_water);
-  const T m = guess.value();
   const T slope = T(1) / at.tangent;
   const T f = m * at.secant - T(1);
   const T bend = f * at.half_curvature;
@@ -179,14 +191,14 @@ FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const Flat
   const T newton = f * slope;
   const T beyond = (f * bend * slope) * slope2;
   const T down = newton + beyond;
-  return {(m - newton) - beyond, slope + slope * (slope2 * (bend + bend)),
+  return {greater((m - newton) - beyond, lowest), slope + slope * (slope2 * (bend + bend)),
           at.spread - at.half_spread_slope * (down + down), at.inv_qw - at.inv_qw_slope * down};
 }
 
 template <class T>
 FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
-  T m = initial_inverse_secant(field, rho2, z_water).value();
+  T m = FirstGuess<T>(field, rho2, z_water).m.value();
   for (int step = 0; step < 2; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
   // A Newton step of a concave function ends left of the root, the paraxial guess lies left of it

@@ -20,7 +20,9 @@
 #include <numeric>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 #include "depth/matcher.h"
@@ -64,17 +66,17 @@ class Sweep {
 
   // The number of scores computed: of one plane in one view.
   std::uint64_t run() {
-    begin();
+    prepare();
     std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips()));
     parallel_for(scores.size(),
                  [&](std::size_t strip) { scores[strip] = run_strip(static_cast<int>(strip)); });
     return std::accumulate(scores.begin(), scores.end(), std::uint64_t{0});
   }
 
-  // The same in steps: begin(), and every strip once, in any order.
+  // run() in steps: first prepare(), then run_strip() for each of strips(), in any order.
   int strips() const { return (map_.height + kStripHeight - 1) / kStripHeight; }
 
-  void begin() {
+  void prepare() {
     const auto width = static_cast<std::ptrdiff_t>(map_.width);
     edges_.clear();
     for (int strip = 0; strip + 1 < strips(); ++strip) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
-
 #include "depth/lanes/scorer.h"
 
 namespace axial::benchmarks {
@@ -20,11 +18,6 @@ inline const char* name_of(depth::lanes::InstructionSet set) {
       return "avx512";
   }
   return "unknown";
-}
-
-inline bool available(depth::lanes::InstructionSet set) {
-  const auto sets = depth::lanes::available_instruction_sets();
-  return std::find(sets.begin(), sets.end(), set) != sets.end();
 }
 
 }  // namespace axial::benchmarks

@@ -4,8 +4,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <atomic>
 #include <optional>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "base/parallel.h"
 #include "benchmarks/benchmarks.h"
@@ -70,7 +72,7 @@ class SweepRun {
   // Begins a sweep; how many strips it has.
   int begin(int number) {
     sweep_.emplace(matcher_, map_, options_, sweep_input(number));
-    sweep_->begin();
+    sweep_->prepare();
     return sweep_->strips();
   }
 
@@ -106,7 +108,7 @@ void report_scores(benchmark::State& state, const Cost& pinhole, const Cost& fla
   state.counters["flat_port_scores_per_pixel"] = flat_port.scores / visits;
 }
 
-// Nanoseconds per hypothesis and view, all of a sweep's work included.
+// Nanoseconds per hypothesis and view, all that a sweep does in its strips included.
 void sweep_pair(benchmark::State& state, bool geometric, int first, int last,
                 depth::lanes::InstructionSet set) {
   const ThreadLimit one(1);
@@ -193,8 +195,8 @@ void depth_map_pair(benchmark::State& state) {
 
 void add_sweep(const std::string& name, bool geometric, int first, int last) {
   using depth::lanes::InstructionSet;
-  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512})
-    if (available(set))
+  for (const InstructionSet set : depth::lanes::available_instruction_sets())
+    if (set >= InstructionSet::avx2 || set == depth::lanes::fastest_instruction_set())
       benchmark::RegisterBenchmark(
           (name + "/" + name_of(set)).c_str(),
           [=](benchmark::State& state) { sweep_pair(state, geometric, first, last, set); })
@@ -204,6 +206,8 @@ void add_sweep(const std::string& name, bool geometric, int first, int last) {
 }  // namespace
 
 void add_matching_benchmarks() {
+  // What programs take here, and whole depth maps with them.
+  benchmark::AddCustomContext("instruction_set", name_of(depth::lanes::fastest_instruction_set()));
   add_sweep("sweep/photometric/first", false, 0, 0);
   add_sweep("sweep/photometric/later", false, 1, 2);
   add_sweep("sweep/geometric", true, 3, 3);

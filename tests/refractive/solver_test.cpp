@@ -3,6 +3,8 @@
 // not hide what the steps leave.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "refractive/flat_port_solver.h"
 
 namespace axial::refractive {
@@ -59,6 +61,58 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{1.149, 0.0, 0.005, 1.77, 1.3}, Case{4.49, 0.05, 0.01, 1.5, 1.3},
                     Case{6.99, 0.02, 0.02, 1.5, 1.3}, Case{0.5, 0.1, 0.0, 1.0, 1.5},
                     Case{1.149, 2.0, 0.0, 1.34, 1.25}, Case{4.49, 50.0, 0.0, 1.34, 1.3}));
+
+// A margin, a tilt or an oblique look through a water surface can widen the field far beyond the
+// image. Out there the steps need not be right, but nothing may land within the image.
+TEST(FixedStepsFarOutside, DoNotComeBack) {
+  for (const double promised : {1.2, 2.0, 5.0, 13.9}) {
+    for (const double distance : {0.0, 0.02, 0.0848, 3.0}) {
+      for (const double thickness : {0.0, 0.01}) {
+        FlatPort<double> port;
+        port.distance = distance;
+        port.thickness = thickness;
+        port.n_glass = thickness > 0 ? 1.5 : 1.0;
+        port.n_water = 1.3207;
+        const FlatPortOptics<double> optics(port);
+        const FlatPortField<double> field(optics, 50, promised);
+        for (const double z_water : {0.01, 0.3, 1.0, 5.0767, 100.0}) {
+          for (double t = promised; t < 50; t *= 1.01) {
+            const double rho = optics.radius(t, z_water);
+            const double found =
+                detail::solve_in_fixed_steps(optics, field, rho * rho, z_water).m * rho;
+            EXPECT_GT(found, 0.999 * promised)
+                << promised << ' ' << distance << ' ' << thickness << ' ' << z_water << ' ' << t;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Nothing but water, at the lowest and the greatest height that single precision sees: its range
+// must hold what the steps multiply. A relative 1e-3 is the rounding of rho, magnified by the
+// thousandfold bending of grazing rays.
+TEST(FixedStepsInSinglePrecision, StayWithinItsRange) {
+  FlatPort<double> port;
+  port.n_water = 2;
+  const FlatPortOptics<double> optics(port);
+  const FlatPortField<double> field(optics, 50, 50);
+  const FlatPortOptics<float> optics_f(port.cast<float>());
+  const FlatPortField<float> field_f(optics_f, 50.0f, 50.0f);
+  for (const float z_water : {1.01e-4f, 0.99e5f}) {
+    ASSERT_TRUE(field_f.contains(0.0f, z_water));
+    for (int k = 0; k < 100; ++k) {
+      const float rho = 0.01f * static_cast<float>(k) * field_f.radius(z_water);
+      const auto found = detail::solve_in_fixed_steps(optics_f, field_f, rho * rho, z_water);
+      const auto exact = detail::solve_to_convergence(optics, field, static_cast<double>(rho) * rho,
+                                                      static_cast<double>(z_water));
+      EXPECT_NEAR(found.m, exact.m, 1e-3 * exact.m);
+      EXPECT_NEAR(found.slope, exact.slope, 1e-2 * exact.slope);
+      EXPECT_NEAR(found.inv_qw, exact.inv_qw, 1e-3 * exact.inv_qw);
+      EXPECT_TRUE(std::isfinite(found.spread));
+    }
+  }
+}
 
 }  // namespace
 }  // namespace axial::refractive
