@@ -13,7 +13,8 @@ std::filesystem::path depth_map_path(const Project& project, const Options& opti
                                      std::size_t image);
 
 // Makes the final depth map of every reference image, in order:
-//   photometric matching, geometric passes, speckle and gap filters (after the last pass), adjust.
+//   photometric matching, geometric passes, speckle and gap filters (after the last pass) and the
+//   adjust filter, as --postprocess-dmaps asks for them.
 // Every stage reads only complete files of the stage before, so that an interrupted run gives the
 // same bytes; a file counts only if its side file carries this run's fingerprint and stage.
 // Several images at a time, as the plan allows.

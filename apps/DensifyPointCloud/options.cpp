@@ -79,8 +79,9 @@ void declare_matching(po::options_description& add, Options& options) {
           "sweeps per resolution level")("geometric-iters",
                                          po::value(&options.geometric_iterations)->default_value(2),
                                          "sweeps with geometric consistency")(
-          "postprocess-dmaps", po::value(&options.postprocess)->default_value(7),
-          "depth map filters: 1 speckles, 2 gaps, 4 adjust");
+          "postprocess-dmaps", po::value(&options.postprocess)->default_value(kSpeckles | kGaps),
+          "depth map filters, added up: 1 speckles, 2 gaps, 4 adjust to the neighbours' maps "
+          "(OpenMVS's default is 7)");
 }
 
 void declare_fusion(po::options_description& add, Raw& raw, Options& options) {

@@ -38,7 +38,7 @@ struct Options {
   axial::depth::PatchMatchOptions matching;
   unsigned number_views = 5;
   int geometric_iterations = 2;
-  unsigned postprocess = kSpeckles | kGaps | kAdjust;
+  unsigned postprocess = kSpeckles | kGaps;
 
   axial::cloud::FuseOptions fusion;
   bool fuse = true;  // --fusion-mode 0

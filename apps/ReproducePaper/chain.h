@@ -84,7 +84,8 @@ std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const std::string& medium, const DenseOptions& options);
 
 struct EvaluationOptions {
-  double tolerance = 0.005;  // [m]
+  double tolerance = 0.005;   // [m]
+  std::size_t min_views = 3;  // cameras under water that must see a place for it to count
   bool icp = false;
   std::size_t samples = 200000;
   int picture_width = 0;     // 0: no picture
@@ -94,17 +95,18 @@ struct EvaluationOptions {
 Json to_json(const EvaluationOptions& options);
 
 // Distance statistics of a cloud within the field of view under water (points in the images of at
-// least two cameras there), whatever medium it is from, and completeness of what these cameras see:
-// "points", "mean", "median", "variance", "recall" and "f_score" at the tolerance, and "picture"
-// (PNG in base64). Lengths in metres. Null: nothing to measure.
+// least `min_views` cameras there), whatever medium it is from, and completeness of what so many of
+// these cameras see: "points", "mean", "median", "variance", "recall" and "f_score" at the
+// tolerance, and "picture" (PNG in base64). Lengths in metres. Null: nothing to measure.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 
-// Errors of all depth maps of a folder, as one: "pixels", "mean" and "median" of |estimate - truth|
-// [m], "within": share of these pixels at the tolerance, "completeness": share of the pixels with a
-// truth. "rings" around the image centre, each with "inner", "outer", "count" and the "median" of
-// the signed error as a fraction of the true distance. "places" (by "place", with "truths",
-// "pixels", "mean", "median") and "phases" ("begin", "end", "count", "shift"): depth_places.h.
+// Errors of all depth maps of a folder, as one: "pixels", "median" of |estimate - truth| [m],
+// "astray": share of the pixels that is_astray() is true of, "mean" of the others, "within": share
+// of these pixels at the tolerance, "completeness": share of the pixels with a truth. "rings"
+// around the image centre, each with "inner", "outer", "count" and the "median" of the signed error
+// as a fraction of the true distance. "places" (by "place", with "truths", "pixels", "astray",
+// "mean", "median") and "phases" ("begin", "end", "count", "shift"): depth_places.h.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);
 

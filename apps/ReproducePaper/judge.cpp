@@ -44,6 +44,7 @@ Words evaluation_arguments(const fs::path& cloud, const SimulatedScene& scene,
   Words words{"-i", cloud.string(), "--framed-only"};
   words += {"-m", scene.mesh().string(), "--cameras", scene.model().string()};
   words += {"--housing", scene.housing().string()};
+  words += {"--min-views", std::to_string(options.min_views)};
   words += {"--tolerance", fmt::format("{}", options.tolerance)};
   words += {"--samples", std::to_string(options.samples)};
   if (options.icp) words += {"--align", "icp"};
@@ -78,6 +79,7 @@ Json places_of(std::span<const evaluate::PlacedMap> maps) {
     places.push_back({{"place", title_of(errors.place)},
                       {"truths", errors.truth_pixels},
                       {"pixels", errors.compared_pixels},
+                      {"astray", errors.astray_pixels},
                       {"mean", errors.mean},
                       {"median", errors.median}});
   return places;
@@ -107,21 +109,25 @@ Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
 
 // All pixels of all maps as one.
 Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance) {
-  std::vector<float> errors;
+  std::vector<float> errors, near;
   std::size_t within = 0, truths = 0;
   for (const evaluate::DepthEvaluation& map : maps) {
     truths += map.truth_pixels;
-    for (const float error : map.error)
-      if (std::isfinite(error)) errors.push_back(std::abs(error));
+    for (auto [error, truth] = std::pair(map.error.begin(), map.truth.begin());
+         error != map.error.end(); ++error, ++truth) {
+      if (!std::isfinite(*error)) continue;
+      errors.push_back(std::abs(*error));
+      if (!evaluate::is_astray(*error, *truth)) near.push_back(errors.back());
+    }
   }
   for (const float error : errors) within += error <= tolerance ? 1 : 0;
-  const evaluate::DistanceStatistics statistics = evaluate::summarise(errors);
   const auto part = [](std::size_t some, std::size_t all) {
     return static_cast<double>(some) / static_cast<double>(std::max<std::size_t>(1, all));
   };
   return {{"pixels", errors.size()},
-          {"mean", statistics.mean},
-          {"median", statistics.median},
+          {"astray", part(errors.size() - near.size(), errors.size())},
+          {"mean", evaluate::summarise(near).mean},
+          {"median", evaluate::summarise(errors).median},
           {"within", part(within, errors.size())},
           {"completeness", part(errors.size(), truths)}};
 }
@@ -130,6 +136,7 @@ Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance
 
 Json to_json(const EvaluationOptions& options) {
   return {{"tolerance", options.tolerance},
+          {"min_views", options.min_views},
           {"samples", options.samples},
           {"picture_width", options.picture_width},
           {"color_max", options.color_max}};

@@ -90,6 +90,18 @@ Json cloud_errors(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
+// By how many cameras under water see a place at least.
+Json completeness(const Chain& chain, const std::filesystem::path& dense,
+                  const SimulatedScene& scene, EvaluationOptions evaluation) {
+  Json result = Json::object();
+  evaluation.picture_width = 0;
+  for (const std::size_t views : kCompletenessViews) {
+    evaluation.min_views = views;
+    result[std::to_string(views)] = evaluated(chain, dense, scene, evaluation).at("recall");
+  }
+  return result;
+}
+
 Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
   const SimulatedScene scene = simulated(chain, study.scene);
   const ColmapPoses poses = colmap_poses(chain, "colmap", scene, "air", true_lens(scene));
@@ -99,7 +111,9 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
     result["photographs"][medium] = photograph(scene, medium, kPhotographWidth);
   for (const Method& method : reconstruction_methods()) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
-    result["clouds"][method.name] = cloud_errors(chain, dense, scene, study.evaluation);
+    Json& cloud = result["clouds"][method.name];
+    cloud = cloud_errors(chain, dense, scene, study.evaluation);
+    if (method.maps_judged) cloud["complete"] = completeness(chain, dense, scene, study.evaluation);
   }
   remove_clouds("colmap", scene);
   return result;
@@ -137,16 +151,16 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   Study one = study(quick);
   for (const int seed : one.seeds) {
     one.scene.seed = seed;
-    const auto inputs = [&](const std::vector<Method>& methods) -> Json {
-      return {{"version", 3},
+    const auto inputs = [&](int version, const std::vector<Method>& methods) -> Json {
+      return {{"version", version},
               {"scene", to_json(one.scene)},
               {"evaluation", to_json(one.evaluation)},
               {"methods", to_json(methods)}};
     };
     const auto& every = reconstruction_methods();
-    all.push_back({colmap_part(seed), inputs({every.begin(), every.end()}),
+    all.push_back({colmap_part(seed), inputs(4, {every.begin(), every.end()}),
                    [=] { return clouds_on_colmap_poses(chain, one); }});
-    all.push_back({true_part(seed), inputs(one.on_true_poses),
+    all.push_back({true_part(seed), inputs(5, one.on_true_poses),
                    [=] { return maps_on_true_poses(chain, one); }});
   }
   return all;

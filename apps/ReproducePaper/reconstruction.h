@@ -14,9 +14,12 @@ struct Method {
   const char* title;
   bool in_water;
   Words options;     // of DensifyPointCloud
-  bool maps_judged;  // its depth maps, on true poses
+  bool maps_judged;  // its depth maps, on true poses, and its completeness by numbers of cameras
 };
 const std::array<Method, 5>& reconstruction_methods();
+
+// Completeness is also asked of what at least so many cameras see.
+inline constexpr std::array<std::size_t, 4> kCompletenessViews{2, 3, 4, 5};
 
 // Names of parts.
 std::string colmap_part(int seed);

@@ -123,6 +123,22 @@ std::string gains_table(const std::vector<Clouds>& kinds, const Seeds& seeds) {
   return experiments::markdown_table(rows);
 }
 
+std::string completeness_table(const Clouds& clouds, const Seeds& seeds) {
+  std::vector<Words> rows{{"seen by at least"}};
+  for (const std::size_t views : kCompletenessViews)
+    rows.push_back({fmt::format("{} cameras", views)});
+  for (const Method& method : reconstruction_methods()) {
+    if (!method.maps_judged) continue;
+    rows[0].push_back(fmt::format("{} [%]", method.title));
+    for (std::size_t k = 0; k < kCompletenessViews.size(); ++k)
+      rows[k + 1].push_back(percent(median_over(seeds, [&](int s) {
+        const Json& complete = clouds.of(s).at(method.name).at("complete");
+        return complete.at(std::to_string(kCompletenessViews[k])).get<double>();
+      })));
+  }
+  return experiments::markdown_table(rows);
+}
+
 // Pictures.
 
 struct Panel {
@@ -215,6 +231,7 @@ Document registered_images(const Json& results, const Seeds& seeds) {
 std::vector<Document> reconstruction_documents(const Json& results, const Seeds& seeds) {
   const Clouds on_colmaps{results, colmap_part}, on_true{results, true_part};
   return {{"reconstruction.md", colmap_poses_table(on_colmaps, seeds)},
+          {"reconstruction_complete.md", completeness_table(on_colmaps, seeds)},
           registered_images(results, seeds),
           {"reconstruction_true.md", experiments::markdown_table(cloud_rows(on_true, seeds))},
           {"reconstruction_gains.md", gains_table({on_colmaps, on_true}, seeds)},

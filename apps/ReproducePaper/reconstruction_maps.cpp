@@ -38,7 +38,7 @@ double number(const Json& place, const char* field) {
 }
 
 double summed_error(const Json& place) {
-  return number(place, "pixels") * number(place, "mean");
+  return (number(place, "pixels") - number(place, "astray")) * number(place, "mean");
 }
 
 const Json& places_of(const Json& results, int seed, const Method& method) {
@@ -62,12 +62,14 @@ Words place_row(const Json& results, const Seeds& seeds, const Method& method, s
             percent(middle([&](const Json& place, const Json& all) {
               return truths(place) / sum_over_places(all, truths);
             }))};
-  if (!(field("pixels") > 0)) return row += {"-", "-", "-", "-"};
+  if (!(field("pixels") > 0)) return row += {"-", "-", "-", "-", "-"};
   return row += {percent(middle([&](const Json& place, const Json&) {
                    return number(place, "pixels") / std::max(1.0, truths(place));
                  })),
-                 millimetres(field("median")), millimetres(field("mean")),
-                 percent(middle([](const Json& place, const Json& all) {
+                 millimetres(field("median")), percent(middle([](const Json& place, const Json&) {
+                   return number(place, "astray") / number(place, "pixels");
+                 })),
+                 millimetres(field("mean")), percent(middle([](const Json& place, const Json& all) {
                    return summed_error(place) / sum_over_places(all, summed_error);
                  }))};
 }
@@ -118,23 +120,25 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 }
 
 std::string maps_table(const Json& results, const Seeds& seeds) {
-  std::vector<Words> rows{{"depth maps", "pixels compared", "mean error [mm]", "median error [mm]",
-                           "within 5 mm [%]", "completeness [%]"}};
+  std::vector<Words> rows{{"depth maps", "pixels compared", "median error [mm]", "within 5 mm [%]",
+                           "astray [%]", "mean of the others [mm]", "completeness [%]"}};
   for (const Method* method : judged_methods()) {
     const auto middle = [&](const char* field) {
       return median_over(
           seeds, [&](int s) { return maps_of(results, s, method->name).at(field).get<double>(); });
     };
     rows.push_back({method->title, fmt::format("{:.0f}", middle("pixels")),
-                    millimetres(middle("mean")), millimetres(middle("median")),
-                    percent(middle("within")), percent(middle("completeness"))});
+                    millimetres(middle("median")), percent(middle("within")),
+                    percent(middle("astray")), millimetres(middle("mean")),
+                    percent(middle("completeness"))});
   }
   return experiments::markdown_table(rows);
 }
 
 std::string places_table(const Json& results, const Seeds& seeds) {
   std::vector<Words> rows{{"depth maps", "pixels with", "of all [%]", "completeness [%]",
-                           "median error [mm]", "mean error [mm]", "of the sum of errors [%]"}};
+                           "median error [mm]", "astray [%]", "mean of the others [mm]",
+                           "of the sum of these [%]"}};
   for (const Method* method : judged_methods())
     for (std::size_t k = 0; k < places_of(results, seeds.front(), *method).size(); ++k)
       rows.push_back(place_row(results, seeds, *method, k));

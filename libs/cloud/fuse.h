@@ -38,8 +38,8 @@ struct FuseOptions {
   // Images that must agree on a point (their own included; capped by the number of views). Below 2:
   // plain merge, every valid pixel is a point with one view.
   std::size_t min_views = 3;
-  double depth_threshold = 0.01;                              // relative, along the neighbour's ray
-  double normal_threshold = 25.0 * std::numbers::pi / 180.0;  // [rad]
+  double depth_threshold = 0.005;                             // relative, along the neighbour's ray
+  double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
   bool normals = true;                                        // fill PointCloud::normals
 
   // What memory allows; the cloud does not depend on it. Maps in memory at a time (20 bytes a

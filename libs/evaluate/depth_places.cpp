@@ -145,25 +145,30 @@ PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::
   return places;
 }
 
+bool is_astray(float error, float truth) {
+  return std::abs(error) > static_cast<float>(PlaceOptions{}.jump - 1) * truth;
+}
+
 std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
   constexpr std::array kPlaces{Place::edge, Place::plain, Place::steep, Place::open};
   std::array<PlaceErrors, 4> result;
   for (std::size_t k = 0; k < kPlaces.size(); ++k) {
     result[k].place = kPlaces[k];
-    std::vector<float> magnitudes;
+    std::vector<float> magnitudes, near;
     for (const PlacedMap& placed : maps)
       for (int v = 0; v < placed.places.height; ++v)
         for (int u = 0; u < placed.places.width; ++u) {
           if (placed.places.at(u, v) != kPlaces[k]) continue;
           ++result[k].truth_pixels;
           const float error = placed.evaluation.error(v, u);
-          if (!std::isnan(error)) magnitudes.push_back(std::abs(error));
+          if (std::isnan(error)) continue;
+          magnitudes.push_back(std::abs(error));
+          if (!is_astray(error, placed.evaluation.truth(v, u))) near.push_back(magnitudes.back());
         }
     result[k].compared_pixels = magnitudes.size();
-    if (magnitudes.empty()) continue;
-    const DistanceStatistics statistics = summarise(magnitudes);
-    result[k].mean = statistics.mean;
-    result[k].median = statistics.median;
+    result[k].astray_pixels = magnitudes.size() - near.size();
+    result[k].median = magnitudes.empty() ? 0 : summarise(magnitudes).median;
+    result[k].mean = near.empty() ? 0 : summarise(near).mean;
   }
   return result;
 }

@@ -52,10 +52,17 @@ struct PlacedMap {
   PlaceMap places;
 };
 
+// Whether an estimate lies on no surface that the pixel sees: off by more of the true distance than
+// the steps that PlaceOptions::jump calls an edge. No mean says anything that has such errors in
+// it.
+bool is_astray(float error, float truth);
+
 struct PlaceErrors {
   Place place;
   std::size_t truth_pixels = 0, compared_pixels = 0;
-  double mean = 0, median = 0;  // of |estimate - truth| [m]; 0 where nothing is compared
+  std::size_t astray_pixels = 0;  // of the compared ones
+  double median = 0;              // of |estimate - truth| [m]; 0 where nothing is compared
+  double mean = 0;                // the same, of those not astray
 };
 
 // All pixels of all maps, from `edge` to `open`.

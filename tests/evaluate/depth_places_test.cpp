@@ -124,6 +124,7 @@ TEST(ErrorsByPlace, AreThoseOfItsPixels) {
   map.depth = truth.clone();
   map.depth += 0.001f;
   map.depth(plain) += 0.004f;
+  map.depth(cv::Rect(50, 70, 3, 1)) += 0.5f;
   map.depth(cv::Rect(0, 0, kWidth, 10)) = 0.0f;
   const std::vector maps{placed(map, truth, grey), placed(map, truth, grey)};
   const auto places = errors_by_place(maps);
@@ -132,9 +133,18 @@ TEST(ErrorsByPlace, AreThoseOfItsPixels) {
   EXPECT_EQ(places[1].place, Place::plain);
   // Windows that the noise does not reach: a band of 4 pixels is lost on every side.
   EXPECT_EQ(places[1].truth_pixels, 2u * 32 * 32);
+  EXPECT_EQ(places[1].astray_pixels, 2u * 3);
   EXPECT_NEAR(places[1].mean, 0.005, 1e-6);
+  EXPECT_EQ(places[3].astray_pixels, 0u);
   EXPECT_NEAR(places[3].median, 0.001, 1e-6);
   EXPECT_LT(places[3].compared_pixels, places[3].truth_pixels);
+}
+
+TEST(ErrorsByPlace, AreAstrayBeyondTheStepOfAnEdge) {
+  for (const float sign : {-1.0f, 1.0f}) {
+    EXPECT_FALSE(is_astray(sign * 0.039f, 2));
+    EXPECT_TRUE(is_astray(sign * 0.041f, 2));
+  }
 }
 
 // Depths that are drawn towards a wave over the source's pixel, as finite differences say they
