@@ -40,7 +40,7 @@ struct Counts {
   std::size_t matched = 0, adjusted = 0, fused = 0;
 };
 
-Counts count(const Project& project) {
+Counts count(const Project& project, const Options& options) {
   Counts counts;
   counts.images = project.scene.images.size();
   counts.references = project.references.size();
@@ -49,7 +49,8 @@ Counts count(const Project& project) {
     counts.fused = std::max(counts.fused, 1 + project.neighbours[image].size());
   }
   counts.fused = std::min(counts.fused, counts.references);
-  counts.adjusted = std::min(counts.fused, 1 + axial::depth::AdjustOptions().max_neighbours);
+  if (options.postprocess & kAdjust)
+    counts.adjusted = std::min(counts.fused, 1 + axial::depth::AdjustOptions().max_neighbours);
   return counts;
 }
 
@@ -64,7 +65,7 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
     file_pixels = std::max(file_pixels, area(view.file_size.width, view.file_size.height));
     masks |= !view.mask.empty();
   }
-  const std::uint64_t sources = counts.matched - 1, neighbours = counts.adjusted - 1;
+  const std::uint64_t sources = counts.matched - 1;
   const std::uint64_t colors = needs_colors(options) ? 3 : 0;
   Sizes sizes{};
   sizes.scene = axial::allocated_memory();
@@ -78,7 +79,7 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.match = (kPlane + kPlane / 4 + 8 + 60) * pixels +
                 sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
   // Rays, the result; what a neighbour sees.
-  sizes.adjust = (24 + 20) * pixels + neighbours * 12 * pixels;
+  if (counts.adjusted > 0) sizes.adjust = (24 + 20 + (counts.adjusted - 1) * 12) * pixels;
   sizes.fused = (20 + colors) * pixels;
   sizes.taken = counts.references * pixels / 8;
   return sizes;
@@ -141,7 +142,7 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
 }  // namespace
 
 MemoryPlan plan_memory(const Project& project, const Options& options) {
-  const Counts counts = count(project);
+  const Counts counts = count(project, options);
   const Sizes sizes = measure(project, options, counts);
   const std::uint64_t cap =
       options.max_memory > 0 ? options.max_memory * kMegabyte : axial::available_memory() / 10 * 7;

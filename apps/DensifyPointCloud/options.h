@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // DensifyPointCloud's options: OpenMVS's, of the same names and defaults but for --iters (2, there
-// 3), and the refractive ones.
+// 3), --postprocess-dmaps (3, there 7) and --tower-mode (0, there 4), and the refractive ones.
 #pragma once
 
 #include <cstdint>

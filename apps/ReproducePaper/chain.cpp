@@ -173,7 +173,8 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
   densify += options.more;
   const Words excuses =
       options.or_nothing ? Words{"no image has neighbours to be matched with"} : Words{};
-  step(folder, {import, densify, contents}, [&] {
+  constexpr int kVersion = 2;  // of what the programs do at their defaults
+  step(folder, {import, densify, contents, kVersion}, [&] {
     run_sibling(chain, "InterfaceCOLMAP", import, folder / "import.log");
     run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log", excuses);
   });

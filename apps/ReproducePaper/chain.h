@@ -102,10 +102,10 @@ Json evaluated(const Chain& chain, const std::filesystem::path& dense, const Sim
                const EvaluationOptions& options);
 
 // Errors of all depth maps of a folder, as one: "pixels", "median" of |estimate - truth| [m],
-// "astray": share of the pixels that is_astray() is true of, "mean" of the others, "within": share
+// "gross": share of the pixels that is_gross() is true of, "mean" of the others, "within": share
 // of these pixels at the tolerance, "completeness": share of the pixels with a truth. "rings"
 // around the image centre, each with "inner", "outer", "count" and the "median" of the signed error
-// as a fraction of the true distance. "places" (by "place", with "truths", "pixels", "astray",
+// as a fraction of the true distance. "places" (by "place", with "truths", "pixels", "gross",
 // "mean", "median") and "phases" ("begin", "end", "count", "shift"): depth_places.h.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);

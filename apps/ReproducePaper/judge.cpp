@@ -79,7 +79,7 @@ Json places_of(std::span<const evaluate::PlacedMap> maps) {
     places.push_back({{"place", title_of(errors.place)},
                       {"truths", errors.truth_pixels},
                       {"pixels", errors.compared_pixels},
-                      {"astray", errors.astray_pixels},
+                      {"gross", errors.gross_pixels},
                       {"mean", errors.mean},
                       {"median", errors.median}});
   return places;
@@ -109,7 +109,7 @@ Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
 
 // All pixels of all maps as one.
 Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance) {
-  std::vector<float> errors, near;
+  std::vector<float> errors, fine;
   std::size_t within = 0, truths = 0;
   for (const evaluate::DepthEvaluation& map : maps) {
     truths += map.truth_pixels;
@@ -117,7 +117,7 @@ Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance
          error != map.error.end(); ++error, ++truth) {
       if (!std::isfinite(*error)) continue;
       errors.push_back(std::abs(*error));
-      if (!evaluate::is_astray(*error, *truth)) near.push_back(errors.back());
+      if (!evaluate::is_gross(*error, *truth)) fine.push_back(errors.back());
     }
   }
   for (const float error : errors) within += error <= tolerance ? 1 : 0;
@@ -125,9 +125,9 @@ Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance
     return static_cast<double>(some) / static_cast<double>(std::max<std::size_t>(1, all));
   };
   return {{"pixels", errors.size()},
-          {"astray", part(errors.size() - near.size(), errors.size())},
-          {"mean", evaluate::summarise(near).mean},
-          {"median", evaluate::summarise(errors).median},
+          {"gross", part(errors.size() - fine.size(), errors.size())},
+          {"mean", evaluate::summarise(fine).mean},
+          {"median", evaluate::median_of(errors)},
           {"within", part(within, errors.size())},
           {"completeness", part(errors.size(), truths)}};
 }

@@ -52,7 +52,7 @@ Study study(bool quick) {
   all.scene.views = quick ? 4 : 10;
   all.scene.coarseness = quick ? 4 : 1;
   for (const Method& method : reconstruction_methods())
-    if (!quick || method.maps_judged) all.on_true_poses.push_back(method);
+    if (!quick || method.judged_closely) all.on_true_poses.push_back(method);
   all.evaluation.samples = quick ? 20000 : 200000;
   all.evaluation.picture_width = quick ? 160 : 480;
   all.evaluation.color_max = quick ? 0.010 : 0.004;
@@ -90,12 +90,14 @@ Json cloud_errors(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
-// By how many cameras under water see a place at least.
+// By how many cameras under water see a place at least, as far as there are so many.
 Json completeness(const Chain& chain, const std::filesystem::path& dense,
-                  const SimulatedScene& scene, EvaluationOptions evaluation) {
+                  const SimulatedScene& scene, const Study& study) {
   Json result = Json::object();
+  EvaluationOptions evaluation = study.evaluation;
   evaluation.picture_width = 0;
   for (const std::size_t views : kCompletenessViews) {
+    if (views > static_cast<std::size_t>(study.scene.views)) continue;
     evaluation.min_views = views;
     result[std::to_string(views)] = evaluated(chain, dense, scene, evaluation).at("recall");
   }
@@ -113,7 +115,7 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
     Json& cloud = result["clouds"][method.name];
     cloud = cloud_errors(chain, dense, scene, study.evaluation);
-    if (method.maps_judged) cloud["complete"] = completeness(chain, dense, scene, study.evaluation);
+    if (method.judged_closely) cloud["complete"] = completeness(chain, dense, scene, study);
   }
   remove_clouds("colmap", scene);
   return result;
@@ -134,7 +136,7 @@ Json maps_on_true_poses(const Chain& chain, const Study& study) {
   for (const Method& method : study.on_true_poses) {
     const auto dense = dense_of(chain, "true", scene, scene.model(), method);
     result["clouds"][method.name] = evaluated(chain, dense, scene, study.evaluation);
-    if (method.maps_judged) judge_maps(chain, study, scene, method, dense, result);
+    if (method.judged_closely) judge_maps(chain, study, scene, method, dense, result);
   }
   remove_clouds("true", scene);
   return result;

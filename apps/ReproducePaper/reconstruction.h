@@ -13,8 +13,8 @@ struct Method {
   const char* name;
   const char* title;
   bool in_water;
-  Words options;     // of DensifyPointCloud
-  bool maps_judged;  // its depth maps, on true poses, and its completeness by numbers of cameras
+  Words options;        // of DensifyPointCloud
+  bool judged_closely;  // its depth maps, on true poses, and its completeness by numbers of cameras
 };
 const std::array<Method, 5>& reconstruction_methods();
 

@@ -22,9 +22,11 @@ const Json& maps_of(const Json& results, int seed, const std::string& method) {
 std::vector<const Method*> judged_methods() {
   std::vector<const Method*> judged;
   for (const Method& method : reconstruction_methods())
-    if (method.maps_judged) judged.push_back(&method);
+    if (method.judged_closely) judged.push_back(&method);
   return judged;
 }
+
+constexpr std::size_t kFewest = 5000;  // pixels of a ring, or of a kind of place, that counts
 
 // A number of one place, or of all places together.
 double sum_over_places(const Json& places, const std::function<double(const Json& place)>& value) {
@@ -38,7 +40,7 @@ double number(const Json& place, const char* field) {
 }
 
 double summed_error(const Json& place) {
-  return (number(place, "pixels") - number(place, "astray")) * number(place, "mean");
+  return (number(place, "pixels") - number(place, "gross")) * number(place, "mean");
 }
 
 const Json& places_of(const Json& results, int seed, const Method& method) {
@@ -57,24 +59,25 @@ Words place_row(const Json& results, const Seeds& seeds, const Method& method, s
     return middle([=](const Json& place, const Json&) { return number(place, name); });
   };
   const auto truths = [](const Json& place) { return number(place, "truths"); };
+  const bool enough = std::all_of(seeds.begin(), seeds.end(), [&](int s) {
+    return number(places_of(results, s, method).at(k), "pixels") >= kFewest;
+  });
   Words row{method.title,
             places_of(results, seeds.front(), method).at(k).at("place").get<std::string>(),
             percent(middle([&](const Json& place, const Json& all) {
               return truths(place) / sum_over_places(all, truths);
             }))};
-  if (!(field("pixels") > 0)) return row += {"-", "-", "-", "-", "-"};
+  if (!enough) return row += {"-", "-", "-", "-", "-"};
   return row += {percent(middle([&](const Json& place, const Json&) {
                    return number(place, "pixels") / std::max(1.0, truths(place));
                  })),
                  millimetres(field("median")), percent(middle([](const Json& place, const Json&) {
-                   return number(place, "astray") / number(place, "pixels");
+                   return number(place, "gross") / number(place, "pixels");
                  })),
                  millimetres(field("mean")), percent(middle([](const Json& place, const Json& all) {
                    return summed_error(place) / sum_over_places(all, summed_error);
                  }))};
 }
-
-constexpr std::size_t kFewest = 5000;  // pixels of a ring that counts
 
 const Json& ring_of(const Json& results, int seed, const std::string& method, std::size_t k) {
   return maps_of(results, seed, method).at("rings").at(k);
@@ -121,7 +124,7 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 
 std::string maps_table(const Json& results, const Seeds& seeds) {
   std::vector<Words> rows{{"depth maps", "pixels compared", "median error [mm]", "within 5 mm [%]",
-                           "astray [%]", "mean of the others [mm]", "completeness [%]"}};
+                           "gross errors [%]", "mean without them [mm]", "completeness [%]"}};
   for (const Method* method : judged_methods()) {
     const auto middle = [&](const char* field) {
       return median_over(
@@ -129,7 +132,7 @@ std::string maps_table(const Json& results, const Seeds& seeds) {
     };
     rows.push_back({method->title, fmt::format("{:.0f}", middle("pixels")),
                     millimetres(middle("median")), percent(middle("within")),
-                    percent(middle("astray")), millimetres(middle("mean")),
+                    percent(middle("gross")), millimetres(middle("mean")),
                     percent(middle("completeness"))});
   }
   return experiments::markdown_table(rows);
@@ -137,8 +140,8 @@ std::string maps_table(const Json& results, const Seeds& seeds) {
 
 std::string places_table(const Json& results, const Seeds& seeds) {
   std::vector<Words> rows{{"depth maps", "pixels with", "of all [%]", "completeness [%]",
-                           "median error [mm]", "astray [%]", "mean of the others [mm]",
-                           "of the sum of these [%]"}};
+                           "median error [mm]", "gross errors [%]", "mean without them [mm]",
+                           "of the sum without them [%]"}};
   for (const Method* method : judged_methods())
     for (std::size_t k = 0; k < places_of(results, seeds.front(), *method).size(); ++k)
       rows.push_back(place_row(results, seeds, *method, k));

@@ -145,7 +145,7 @@ PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::
   return places;
 }
 
-bool is_astray(float error, float truth) {
+bool is_gross(float error, float truth) {
   return std::abs(error) > static_cast<float>(PlaceOptions{}.jump - 1) * truth;
 }
 
@@ -154,7 +154,7 @@ std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
   std::array<PlaceErrors, 4> result;
   for (std::size_t k = 0; k < kPlaces.size(); ++k) {
     result[k].place = kPlaces[k];
-    std::vector<float> magnitudes, near;
+    std::vector<float> magnitudes, fine;
     for (const PlacedMap& placed : maps)
       for (int v = 0; v < placed.places.height; ++v)
         for (int u = 0; u < placed.places.width; ++u) {
@@ -163,12 +163,12 @@ std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
           const float error = placed.evaluation.error(v, u);
           if (std::isnan(error)) continue;
           magnitudes.push_back(std::abs(error));
-          if (!is_astray(error, placed.evaluation.truth(v, u))) near.push_back(magnitudes.back());
+          if (!is_gross(error, placed.evaluation.truth(v, u))) fine.push_back(magnitudes.back());
         }
     result[k].compared_pixels = magnitudes.size();
-    result[k].astray_pixels = magnitudes.size() - near.size();
-    result[k].median = magnitudes.empty() ? 0 : summarise(magnitudes).median;
-    result[k].mean = near.empty() ? 0 : summarise(near).mean;
+    result[k].gross_pixels = magnitudes.size() - fine.size();
+    result[k].median = median_of(magnitudes);
+    result[k].mean = summarise(fine).mean;
   }
   return result;
 }

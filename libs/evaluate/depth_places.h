@@ -52,17 +52,16 @@ struct PlacedMap {
   PlaceMap places;
 };
 
-// Whether an estimate lies on no surface that the pixel sees: off by more of the true distance than
-// the steps that PlaceOptions::jump calls an edge. No mean says anything that has such errors in
-// it.
-bool is_astray(float error, float truth);
+// An error of more than PlaceOptions::jump - 1 of the true distance: mostly another surface, or
+// none. A mean that has such errors in it says nothing of the others.
+bool is_gross(float error, float truth);
 
 struct PlaceErrors {
   Place place;
   std::size_t truth_pixels = 0, compared_pixels = 0;
-  std::size_t astray_pixels = 0;  // of the compared ones
-  double median = 0;              // of |estimate - truth| [m]; 0 where nothing is compared
-  double mean = 0;                // the same, of those not astray
+  std::size_t gross_pixels = 0;  // of the compared ones
+  double median = 0;             // of |estimate - truth| [m]; 0 where nothing is compared
+  double mean = 0;               // the same, of those not gross; 0 where there are none
 };
 
 // All pixels of all maps, from `edge` to `open`.

@@ -133,17 +133,17 @@ TEST(ErrorsByPlace, AreThoseOfItsPixels) {
   EXPECT_EQ(places[1].place, Place::plain);
   // Windows that the noise does not reach: a band of 4 pixels is lost on every side.
   EXPECT_EQ(places[1].truth_pixels, 2u * 32 * 32);
-  EXPECT_EQ(places[1].astray_pixels, 2u * 3);
+  EXPECT_EQ(places[1].gross_pixels, 2u * 3);
   EXPECT_NEAR(places[1].mean, 0.005, 1e-6);
-  EXPECT_EQ(places[3].astray_pixels, 0u);
+  EXPECT_EQ(places[3].gross_pixels, 0u);
   EXPECT_NEAR(places[3].median, 0.001, 1e-6);
   EXPECT_LT(places[3].compared_pixels, places[3].truth_pixels);
 }
 
-TEST(ErrorsByPlace, AreAstrayBeyondTheStepOfAnEdge) {
+TEST(ErrorsByPlace, AreGrossBeyondTheStepOfAnEdge) {
   for (const float sign : {-1.0f, 1.0f}) {
-    EXPECT_FALSE(is_astray(sign * 0.039f, 2));
-    EXPECT_TRUE(is_astray(sign * 0.041f, 2));
+    EXPECT_FALSE(is_gross(sign * 0.039f, 2));
+    EXPECT_TRUE(is_gross(sign * 0.041f, 2));
   }
 }
 
