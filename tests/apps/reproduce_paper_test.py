@@ -95,6 +95,8 @@ class Quick(unittest.TestCase):
         self.assertEqual(len(colmap["clouds"]), 5)
         self.assertLess(colmap["centre_rms"], 0.1)
         self.assertEqual(set(colmap["photographs"]), {"air", "water"})
+        self.assertEqual({name for name, cloud in colmap["clouds"].items() if "complete" in cloud},
+                         {"air", "ours", "papers"})
         for name, cloud in colmap["clouds"].items():
             # The motion is found on the median, among fewer points.
             self.assertLess(cloud["moved"]["mean"], 1.05 * cloud["mean"], name)
