@@ -84,8 +84,10 @@ std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const std::string& medium, const DenseOptions& options);
 
 struct EvaluationOptions {
-  double tolerance = 0.005;   // [m]
-  std::size_t min_views = 3;  // cameras under water that must see a place for it to count
+  double tolerance = 0.005;  // [m]
+  // Cameras under water that must see a place for it to count: as many as fusion asks for
+  // (--number-views-fuse).
+  std::size_t min_views = 3;
   bool icp = false;
   std::size_t samples = 200000;
   int picture_width = 0;     // 0: no picture

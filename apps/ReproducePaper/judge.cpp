@@ -109,27 +109,27 @@ Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
 
 // All pixels of all maps as one.
 Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance) {
-  std::vector<float> errors, fine;
-  std::size_t within = 0, truths = 0;
+  evaluate::Magnitudes errors;
+  std::size_t truths = 0;
   for (const evaluate::DepthEvaluation& map : maps) {
     truths += map.truth_pixels;
     for (auto [error, truth] = std::pair(map.error.begin(), map.truth.begin());
-         error != map.error.end(); ++error, ++truth) {
-      if (!std::isfinite(*error)) continue;
-      errors.push_back(std::abs(*error));
-      if (!evaluate::is_gross(*error, *truth)) fine.push_back(errors.back());
-    }
+         error != map.error.end(); ++error, ++truth)
+      errors.add(*error, *truth);
   }
-  for (const float error : errors) within += error <= tolerance ? 1 : 0;
+  const std::size_t pixels = errors.all.size();
+  const auto within = static_cast<std::size_t>(
+      std::count_if(errors.all.begin(), errors.all.end(),
+                    [&](float magnitude) { return magnitude <= tolerance; }));
   const auto part = [](std::size_t some, std::size_t all) {
     return static_cast<double>(some) / static_cast<double>(std::max<std::size_t>(1, all));
   };
-  return {{"pixels", errors.size()},
-          {"gross", part(errors.size() - fine.size(), errors.size())},
-          {"mean", evaluate::summarise(fine).mean},
-          {"median", evaluate::median_of(errors)},
-          {"within", part(within, errors.size())},
-          {"completeness", part(errors.size(), truths)}};
+  return {{"pixels", pixels},
+          {"gross", part(errors.gross(), pixels)},
+          {"mean", evaluate::summarise(errors.fine).mean},
+          {"median", evaluate::median_of(errors.all)},
+          {"within", part(within, pixels)},
+          {"completeness", part(pixels, truths)}};
 }
 
 }  // namespace

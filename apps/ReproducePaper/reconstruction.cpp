@@ -90,14 +90,16 @@ Json cloud_errors(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
-// By how many cameras under water see a place at least, as far as there are so many.
+// By how many cameras under water see a place at least, as far as there are so many. `cloud`: what
+// is known of it by as many as the study asks for.
 Json completeness(const Chain& chain, const std::filesystem::path& dense,
-                  const SimulatedScene& scene, const Study& study) {
-  Json result = Json::object();
+                  const SimulatedScene& scene, const Study& study, const Json& cloud) {
+  Json result{{std::to_string(study.evaluation.min_views), cloud.at("recall")}};
   EvaluationOptions evaluation = study.evaluation;
   evaluation.picture_width = 0;
   for (const std::size_t views : kCompletenessViews) {
     if (views > static_cast<std::size_t>(study.scene.views)) continue;
+    if (views == study.evaluation.min_views) continue;
     evaluation.min_views = views;
     result[std::to_string(views)] = evaluated(chain, dense, scene, evaluation).at("recall");
   }
@@ -115,7 +117,7 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
     Json& cloud = result["clouds"][method.name];
     cloud = cloud_errors(chain, dense, scene, study.evaluation);
-    if (method.judged_closely) cloud["complete"] = completeness(chain, dense, scene, study);
+    if (method.judged_closely) cloud["complete"] = completeness(chain, dense, scene, study, cloud);
   }
   remove_clouds("colmap", scene);
   return result;

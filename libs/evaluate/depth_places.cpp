@@ -149,26 +149,29 @@ bool is_gross(float error, float truth) {
   return std::abs(error) > static_cast<float>(PlaceOptions{}.jump - 1) * truth;
 }
 
+void Magnitudes::add(float error, float truth) {
+  if (!std::isfinite(error)) return;
+  all.push_back(std::abs(error));
+  if (!is_gross(error, truth)) fine.push_back(all.back());
+}
+
 std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
   constexpr std::array kPlaces{Place::edge, Place::plain, Place::steep, Place::open};
   std::array<PlaceErrors, 4> result;
   for (std::size_t k = 0; k < kPlaces.size(); ++k) {
     result[k].place = kPlaces[k];
-    std::vector<float> magnitudes, fine;
+    Magnitudes magnitudes;
     for (const PlacedMap& placed : maps)
       for (int v = 0; v < placed.places.height; ++v)
         for (int u = 0; u < placed.places.width; ++u) {
           if (placed.places.at(u, v) != kPlaces[k]) continue;
           ++result[k].truth_pixels;
-          const float error = placed.evaluation.error(v, u);
-          if (std::isnan(error)) continue;
-          magnitudes.push_back(std::abs(error));
-          if (!is_gross(error, placed.evaluation.truth(v, u))) fine.push_back(magnitudes.back());
+          magnitudes.add(placed.evaluation.error(v, u), placed.evaluation.truth(v, u));
         }
-    result[k].compared_pixels = magnitudes.size();
-    result[k].gross_pixels = magnitudes.size() - fine.size();
-    result[k].median = median_of(magnitudes);
-    result[k].mean = summarise(fine).mean;
+    result[k].compared_pixels = magnitudes.all.size();
+    result[k].gross_pixels = magnitudes.gross();
+    result[k].median = median_of(magnitudes.all);
+    result[k].mean = summarise(magnitudes.fine).mean;
   }
   return result;
 }

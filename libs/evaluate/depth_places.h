@@ -56,6 +56,15 @@ struct PlacedMap {
 // none. A mean that has such errors in it says nothing of the others.
 bool is_gross(float error, float truth);
 
+// |estimate - truth| [m] of pixels that have both.
+struct Magnitudes {
+  std::vector<float> all, fine;  // fine: those not gross
+
+  // Nothing where `error` is not finite: no estimate, or no truth.
+  void add(float error, float truth);
+  std::size_t gross() const { return all.size() - fine.size(); }
+};
+
 struct PlaceErrors {
   Place place;
   std::size_t truth_pixels = 0, compared_pixels = 0;
