@@ -123,7 +123,7 @@ std::string table(const Json& results, bool quick) {
       {"case", "scene distance [m]", "far / near", "glass / scene distance", "tilt [degrees]",
        "field of view [degrees]", "known port on true poses: mean [mm]", "self-calibrated: images",
        "camera centres, RMS [mm]", "mean [mm]", "mean after a rigid move [mm]",
-       "/ known port (upper bound)", "complete, known port [%]", "complete, self-calibrated [%]"}};
+       "after the move / known port", "complete, known port [%]", "complete, self-calibrated [%]"}};
   for (const Case& one : need_cases(quick))
     rows.push_back(row_of(one, result_of(results, one.name)));
   return experiments::markdown_table(rows);
