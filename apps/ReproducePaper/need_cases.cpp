@@ -109,11 +109,11 @@ std::string title_of(const Case& one) {
     return fmt::format(fmt::runtime(format), one.value);
   };
   if (one.series == "port_distance_mm") return value("lens to glass {:g} mm");
-  if (one.series == "scale")
-    return fmt::format("everything but the port, times {:g}", one.value / usual_scene().scale);
+  const std::string scaled =
+      fmt::format("everything but the port, times {:g}", one.scene.scale / usual_scene().scale);
+  if (one.series == "scale") return scaled;
   if (one.series == "tilt_degrees") return value("tilt {:g}\u00b0");
-  if (one.series == "near_tilt_degrees")
-    return value("everything but the port, times 0.5, and tilt {:g}\u00b0");
+  if (one.series == "near_tilt_degrees") return scaled + value(", and tilt {:g}\u00b0");
   if (one.series == "fov_degrees") return value("field of view {:g}\u00b0");
   if (one.series == "reef_relief") return value("seen from above, heights times {:g}");
   if (one.series == "relief") return value("heights times {:g}");
