@@ -90,16 +90,20 @@ std::string joined(const std::vector<double>& values) {
 
 }  // namespace
 
+Json programs_of_the_chain() {
+  return content_of_programs({"SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud",
+                              "AlignModel", "EvaluateReconstruction"});
+}
+
 Json to_json(const SceneOptions& options) {
   return options_of(options);
 }
 
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
-  const Json inputs = to_json(options);
-  const std::string key = Fingerprint().add(inputs.dump()).hex().substr(0, 8);
+  const std::string key = Fingerprint().add(to_json(options).dump()).hex().substr(0, 8);
   const SimulatedScene scene{chain.work /
                              fmt::format("{}-{}-{}", options.preset, options.seed, key)};
-  step(scene.folder, inputs, [&] {
+  step(scene.folder, {to_json(options), content_of_programs({"SimulateUnderwater"})}, [&] {
     Words arguments = options_of(options);
     arguments += {"-o", scene.folder.string()};
     run_sibling(chain, "SimulateUnderwater", arguments, scene.folder / "simulate.log");
@@ -173,8 +177,8 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
   densify += options.more;
   const Words excuses =
       options.or_nothing ? Words{"no image has neighbours to be matched with"} : Words{};
-  constexpr int kVersion = 2;  // of what the programs do at their defaults
-  step(folder, {import, densify, contents, kVersion}, [&] {
+  const Json programs = content_of_programs({"InterfaceCOLMAP", "DensifyPointCloud"});
+  step(folder, {import, densify, contents, programs}, [&] {
     run_sibling(chain, "InterfaceCOLMAP", import, folder / "import.log");
     run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log", excuses);
   });

@@ -20,6 +20,10 @@ struct Chain {
   unsigned max_threads = 0;    // of each program; 0: all cores
 };
 
+// The bytes of all programs of the chain, in a few digits each. Belongs to the inputs of whatever
+// is measured with it.
+Json programs_of_the_chain();
+
 // SimulateUnderwater's options; the port is the preset's unless given by `port`.
 struct SceneOptions {
   std::string preset = "outcrop";

@@ -82,7 +82,10 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   if (quick) evaluation.samples = 20000;
   std::vector<Part> all;
   for (const Case& one : need_cases(quick)) {
-    Json inputs{{"version", 2}, {"scene", to_json(one.scene)}, {"evaluation", to_json(evaluation)}};
+    Json inputs{{"version", 2},
+                {"programs", programs_of_the_chain()},
+                {"scene", to_json(one.scene)},
+                {"evaluation", to_json(evaluation)}};
     if (one.calibrated_in) inputs["calibrated_in"] = to_json(*one.calibrated_in);
     all.push_back({one.name, inputs, [=] { return measure(chain, one, evaluation); }});
   }

@@ -157,6 +157,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
     one.scene.seed = seed;
     const auto inputs = [&](int version, const std::vector<Method>& methods) -> Json {
       return {{"version", version},
+              {"programs", programs_of_the_chain()},
               {"scene", to_json(one.scene)},
               {"evaluation", to_json(one.evaluation)},
               {"methods", to_json(methods)}};

@@ -128,6 +128,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   for (const auto& [distance, mistake] : rows_of(quick)) {
     const Study one = study(quick, distance);
     const Json inputs{{"version", 1},
+                      {"programs", programs_of_the_chain()},
                       {"scene", to_json(one.scene)},
                       {"evaluation", to_json(one.evaluation)},
                       {"mistake", to_json(mistake)}};

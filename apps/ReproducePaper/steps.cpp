@@ -40,4 +40,11 @@ std::string content_of(const fs::path& file_or_folder) {
   return print.hex();
 }
 
+Json content_of_programs(const Words& programs) {
+  Json contents;
+  for (const std::string& program : programs)
+    contents[program] = content_of(program_folder() / program);
+  return contents;
+}
+
 }  // namespace axial

@@ -30,4 +30,7 @@ std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& 
 // Names and bytes of a file, or of all files of a folder, in a few digits.
 std::string content_of(const std::filesystem::path& file_or_folder);
 
+// The same of some of the project's programs: what they made is made anew by other ones.
+Json content_of_programs(const Words& programs);
+
 }  // namespace axial

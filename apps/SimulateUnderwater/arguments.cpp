@@ -47,6 +47,8 @@ ProgramOptions describe(Arguments& a) {
       "dome-z", po::value(&a.dome_z)->default_value(0), "camera centre to dome centre [m]")(
       "n-glass", po::value(&a.n_glass), "refractive index")("n-water", po::value(&a.n_water),
                                                             "refractive index")(
+      "haze", po::value(&a.haze)->default_value(0),
+      "share of the light that the medium scatters into view: the ground's contrast is the rest")(
       "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
       "jpeg-quality", po::value(&a.jpeg_quality)->default_value(93), "1 to 100")(
       "truth", po::value(&a.truth)->default_value(true),
@@ -62,6 +64,7 @@ void check(const Arguments& a) {
   if (a.output.empty()) fail("no output folder given (-o DIR)");
   if (a.medium != "air" && a.medium != "water" && a.medium != "both")
     fail("--medium is '{}': must be air, water or both", a.medium);
+  if (!(a.haze >= 0 && a.haze <= 1)) fail("--haze is {}: must be between 0 and 1", a.haze);
   if (!(a.noise >= 0 && a.noise <= 255)) fail("--noise is {}: must be between 0 and 255", a.noise);
   if (a.jpeg_quality < 1 || a.jpeg_quality > 100)
     fail("--jpeg-quality is {}: must be between 1 and 100", a.jpeg_quality);

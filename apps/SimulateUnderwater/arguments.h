@@ -12,7 +12,7 @@ struct Arguments {
   simulate::PresetOptions preset;
   std::string output, medium, lens;
   int samples = 0, jpeg_quality = 0;
-  double noise = 0;
+  double haze = 0, noise = 0;
   bool truth = true, truth_only = false;
   double water_level = 0;
   double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;

@@ -25,8 +25,9 @@ void photograph(const Arguments& a, const simulate::Preset& preset, const simula
     if (a.truth)
       write_truth(folder, view_name(i), simulate::render_truth(scene, preset.lens, port, view));
     if (!a.truth_only) {
-      const auto radiance =
+      cv::Mat3f radiance =
           simulate::render_radiance(scene, shader, preset.lens, port, view, a.samples);
+      simulate::add_haze(radiance, a.haze);
       const auto key = simulate::noise_key(a.preset.seed, i, water);
       io::write_jpeg(folder / (view_name(i) + ".jpg"), simulate::develop(radiance, a.noise, key),
                      a.jpeg_quality);

@@ -21,7 +21,7 @@ inline constexpr float radians(float degrees) {
 
 struct PatchMatchOptions {
   Warp warp = Warp::affine;
-  int sub_resolution_levels = 2;  // coarser levels before the working resolution
+  int sub_resolution_levels = 1;  // coarser levels before the working resolution
   int iterations = 2;             // sweeps per level
   int coarsest_side = 64;         // no level gets a shorter side below this
 
@@ -32,7 +32,10 @@ struct PatchMatchOptions {
 
   SmoothnessOptions smoothness;
 
-  float prior_texture = 0.02f;  // texture at which the coarse level's depth has faded to 1/e
+  // Texture at which the coarse level's depth has faded to 1/e: a few times what noise alone makes.
+  // OpenMVS's 0.02 holds ground of low contrast, too, to the coarse level's error
+  // (docs/performance.md, "F-score against CPU time").
+  float prior_texture = 0.002f;
 
   // Pairs of trials on either side of a pixel's best plane. Few are enough where the plane is good
   // already; docs/performance.md counts what they cost, "How much there is to do".

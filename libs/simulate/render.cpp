@@ -59,6 +59,11 @@ cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Len
   return image;
 }
 
+void add_haze(cv::Mat3f& radiance, double haze) {
+  const auto share = static_cast<float>(haze);
+  for (cv::Vec3f& light : radiance) light = (1 - share) * light + cv::Vec3f::all(0.5f * share);
+}
+
 cv::Mat3b develop(const cv::Mat3f& radiance, double noise, std::uint64_t key) {
   cv::Mat3b image(radiance.size());
   const auto sigma = static_cast<float>(noise);

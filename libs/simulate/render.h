@@ -29,6 +29,10 @@ using Shader = std::function<Eigen::Vector3f(const SurfacePoint&)>;
 cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Lens& lens,
                           const Port* port, const View& view, int samples);
 
+// Light scattered into the line of sight replaces the share `haze` (0 to 1) of what comes from the
+// scene: all contrast shrinks to 1 - haze of what it was. The haze is grey (0.5).
+void add_haze(cv::Mat3f& radiance, double haze);
+
 // 8-bit image: 255 x radiance plus noise of standard deviation `noise` [grey levels], keyed by
 // (key, pixel, channel); rounded and clamped.
 cv::Mat3b develop(const cv::Mat3f& radiance, double noise, std::uint64_t key);

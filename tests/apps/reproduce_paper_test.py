@@ -6,12 +6,13 @@ import json
 import math
 import os
 import re
+import shutil
 import tempfile
 import unittest
 import unittest.mock
 import xml.etree.ElementTree
 
-from programs import ProgramTest, files_below, main, read, run, write
+from programs import BIN, ProgramTest, files_below, main, read, run, write
 
 PROGRAM = "ReproducePaper"
 
@@ -226,13 +227,13 @@ class Quick(unittest.TestCase):
 class WithoutPoses(ProgramTest):
     """A mapper that finds no poses is a result; one that breaks is none."""
 
-    def need(self, mapper):
+    def need(self, mapper, program=PROGRAM):
         script = f"#!/bin/sh\nif [ $1 = mapper ]; then {mapper}; fi\n"
         write(self.path("bin", "colmap"), script)
         os.chmod(self.path("bin", "colmap"), 0o755)
         folders = self.path("bin") + os.pathsep + os.environ["PATH"]
         with unittest.mock.patch.dict(os.environ, PATH=folders):
-            return run(PROGRAM, "need", "--quick", "--part", "usual", "-o", self.path("a"))
+            return run(program, "need", "--quick", "--part", "usual", "-o", self.path("a"))
 
     def test_only_what_colmap_did_not_find_is_kept(self):
         said = "echo ERROR: failed to create sparse model"
@@ -248,6 +249,18 @@ class WithoutPoses(ProgramTest):
         today = json.loads(read(os.path.join(folder, part)))["result"]["today"]
         self.assertEqual(today, {"images": 0, "centre_rms": None, "as_it_lies": None,
                                  "moved": None})
+
+    def test_what_other_programs_made_is_made_anew(self):
+        finds_nothing = "echo ERROR: failed to create sparse model; exit 1"
+        shutil.copytree(BIN, self.path("other"))
+        with open(self.path("other", "AlignModel"), "ab") as program:
+            program.write(b"x")
+        kept = []
+        for program in (PROGRAM, PROGRAM, self.path("other", PROGRAM)):
+            self.assertEqual(self.need(finds_nothing, program).returncode, 0)
+            kept.append({name for name in os.listdir(self.path("a", "quick", "parts", "need"))
+                         if name.endswith(".json")})
+        self.assertEqual([len(names) for names in kept], [1, 1, 2])
 
 
 class Figure3(ProgramTest):

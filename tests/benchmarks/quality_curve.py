@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every option of matching buys: the F-score against CPU time, one option changed at a time.
 
-    quality_curve.py [--scene closeup|reef|small] [--medium air|water] [--only OPTION...] -o DIR
+    quality_curve.py [--scene SCENE] [--medium air|water] [--only OPTION...] -o DIR
 
 Writes DIR/table.json, DIR/table.md and DIR/curve.svg; a setting that this very program has run there
-before is not run again. True poses. `small` is the closeup's kind at 480 x 360, six views, to try
-things out.
+before is not run again. True poses. Scenes: `closeup` and `reef`; the same in water so hazy that a
+seventh of the contrast is left, `closeup-hazy` and `reef-hazy`; `small`, the closeup's kind at
+480 x 360, six views, to try things out.
 """
 
 import argparse
@@ -24,18 +25,25 @@ from support import runs  # noqa: E402
 # default of --min-resolution, so their default level is 0.
 OPTIONS = {
     "iters": (2, (1, 3, 4)),
-    "sub-resolution-levels": (2, (0, 1, 3)),
+    "sub-resolution-levels": (1, (0, 2, 3)),
     "geometric-iters": (2, (0, 1, 3)),
     "number-views": (5, (2, 3, 4, 8)),
     "resolution-level": (0, (1,)),
 }
 
 
+SCENES = ("closeup", "reef", "closeup-hazy", "reef-hazy", "small")
+
+
 def scene(name, base):
-    if name != "small":
+    if name == "small":
+        return runs.simulated("small", base, "--preset", "closeup", "--views", 6, "--width", 480,
+                              "--height", 360, "--samples", 2, tolerance=0.004)
+    preset, *hazy = name.split("-")
+    if not hazy:
         return runs.synthetic(name, base)
-    return runs.simulated("small", base, "--preset", "closeup", "--views", 6, "--width", 480,
-                          "--height", 360, "--samples", 2, tolerance=0.004)
+    return runs.simulated(name, base, "--preset", preset, "--haze", 6 / 7, "--truth", 0,
+                          tolerance=0.002 if preset == "closeup" else 0.005)
 
 
 def arguments_of(option, value):
@@ -96,7 +104,7 @@ def figure(curves, default, title):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", choices=("closeup", "reef", "small"), default="closeup")
+    parser.add_argument("--scene", choices=SCENES, default="closeup")
     parser.add_argument("--medium", choices=("air", "water"), default="water")
     parser.add_argument("--only", nargs="+", choices=OPTIONS, default=list(OPTIONS))
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)

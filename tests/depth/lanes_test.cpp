@@ -115,6 +115,7 @@ struct Setup {
   Camera reference = make_camera_of<Camera>(90, 1);
 
   explicit Setup(bool geometric) {
+    options.prior_texture = 1;  // lest these images' texture leave nothing of the coarse depth
     std::mt19937 random(2);
     std::uniform_real_distribution<float> unit(-1, 1);
     for (unsigned i = 0; i < kViews; ++i) {

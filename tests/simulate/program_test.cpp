@@ -111,6 +111,7 @@ TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {
   refuses("width is 0", "-o a --width 0");
   refuses("--samples is 0", "-o a --samples 0");
   refuses("--noise is -1", "-o a --noise -1");
+  refuses("--haze is 1.5", "-o a --haze 1.5");
   refuses("--jpeg-quality is 101", "-o a --jpeg-quality 101");
   refuses("--medium is 'fog'", "-o a --medium fog");
   refuses("--tilt-degrees is 80", "-o a --tilt-degrees 80");

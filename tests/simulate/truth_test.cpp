@@ -157,6 +157,21 @@ TEST(Truth, NoiseHasTheStrengthAskedFor) {
   EXPECT_FALSE(same_bytes(develop(grey, 3.0, 1), develop(grey, 3.0, 2)));
 }
 
+TEST(Truth, HazeTakesContrastAndNothingElse) {
+  cv::Mat3f light(1, 3);
+  light(0, 0) = {0, 0.2f, 0.5f};
+  light(0, 1) = {0.5f, 0.5f, 0.5f};
+  light(0, 2) = {1, 0.9f, 0.7f};
+  cv::Mat3f hazy = light.clone();
+  add_haze(hazy, 0.75);
+  for (int x = 0; x < 3; ++x)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(hazy(0, x)[c] - 0.5f, 0.25f * (light(0, x)[c] - 0.5f), 1e-6f);  // rounding
+  cv::Mat3f clear = light.clone();
+  add_haze(clear, 0);
+  EXPECT_TRUE(same_bytes(clear, light));
+}
+
 TEST(Truth, RefusesAMeshItCannotTrace) {
   EXPECT_THROW(RayScene(TriangleMesh{}), Error);
   EXPECT_THROW(RayScene(TriangleMesh{{{0, 0, 0}}, {{0, 0, 1}}}), Error);
