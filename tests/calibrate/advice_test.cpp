@@ -213,5 +213,34 @@ TEST(PlacedBoards, AreWhereTheyAreSaidToBe) {
   }
 }
 
+// At which share of the image's half width a ray is seen that would be at `share` if the port
+// magnified everywhere as in the middle. By Snell's law, for a scene far away.
+double share_of_a_far_board(double share) {
+  const double half = 512 / 610.0, n_water = 1.334;
+  const double in_water = std::atan(share * half / n_water);
+  return std::tan(std::asin(n_water * std::sin(in_water))) / half;
+}
+
+// Their distances come from the rays in the middle of the image. A port magnifies more towards the
+// edges, most if the board is far away.
+TEST(PlacedBoards, FillTheSharesOfTheImageThatTheirDistancesAreFor) {
+  const Calibration found = calibrated({.views = 5});
+  std::vector<double> shares;
+  for (const PlacedBoard& board : placed_boards(found.bundle, corners_of(kBoard), 0.01)) {
+    if (board.column != 0 || board.row != 0 || board.turned != 0 || board.tipped != 0) continue;
+    Eigen::AlignedBox2d seen;
+    for (const Corner& corner : board.corners) seen.extend(corner.pixel);
+    const Eigen::Array2d image(static_cast<double>(kPinhole.width),
+                               static_cast<double>(kPinhole.height));
+    shares.push_back((seen.sizes().array() / image).maxCoeff());
+  }
+  ASSERT_EQ(shares.size(), 2u);
+  constexpr double kTilted = 0.01;  // what the port's tilt moves
+  for (const auto& [share, wanted] : {std::pair(shares[0], 0.8), std::pair(shares[1], 0.4)}) {
+    EXPECT_GT(share, (1 - kTilted) * wanted);
+    EXPECT_LT(share, (1 + kTilted) * share_of_a_far_board(wanted));
+  }
+}
+
 }  // namespace
 }  // namespace axial::calibrate

@@ -2,6 +2,10 @@
 #include "io/lenses.h"
 
 #include <gmock/gmock.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "wrong_input.h"
@@ -154,6 +158,30 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   // Folds back in the very centre.
   EXPECT_THAT(with("-0.1]", "-0.1], \"tangential\": [999, 999], \"thin_prism\": [99, 0]"),
               HasSubstr("lenses.main: is no lens of b.jpg"));
+}
+
+TEST_F(LensesTest, RefusesNumbersThatAreNotFinite) {
+  EXPECT_THAT(error(R"({ "version": 1, "default": "main", "lenses": { "main":
+                    { "type": "perspective", "radial": [1, 1e999] } } })"),
+              HasSubstr("1e999"));
+}
+
+TEST_F(LensesTest, RefusesAFileThatIsNotThere) {
+  const std::string message = error_of([&] { read_lenses(folder_ / "none.json"); });
+  EXPECT_THAT(message, HasSubstr((folder_ / "none.json").string()));
+  EXPECT_THAT(message, HasSubstr("No such file"));
+}
+
+TEST_F(LensesTest, WarnsOfNamesThatNoImageHas) {
+  test::put(file_, kExample);
+  add("b.jpg", std::nullopt);
+  std::ostringstream said;
+  const auto logger = spdlog::default_logger();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "said", std::make_shared<spdlog::sinks::ostream_sink_mt>(said)));
+  attach_lenses_beside(scene_, scene_file_);
+  spdlog::set_default_logger(logger);
+  EXPECT_THAT(said.str(), HasSubstr(file_.string() + ": no image goes by images.a.jpg"));
 }
 
 TEST_F(LensesTest, SurvivesDamage) {
