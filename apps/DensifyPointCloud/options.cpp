@@ -71,11 +71,13 @@ void declare_io(po::options_description& add, Raw& raw, Options& options) {
 void declare_matching(po::options_description& add, Options& options) {
   add.add_options()  //
       ("sub-resolution-levels",
-       po::value(&options.matching.sub_resolution_levels)->default_value(1),
+       po::value(&options.matching.sub_resolution_levels)
+           ->default_value(options.matching.sub_resolution_levels),
        "coarser levels matched first")("number-views",
                                        po::value(&options.number_views)->default_value(5),
                                        "source views per image (0: all, 1: the best one)")(
-          "iters", po::value(&options.matching.iterations)->default_value(2),
+          "iters",
+          po::value(&options.matching.iterations)->default_value(options.matching.iterations),
           "sweeps per resolution level")("geometric-iters",
                                          po::value(&options.geometric_iterations)->default_value(2),
                                          "sweeps with geometric consistency")(

@@ -204,7 +204,7 @@ std::vector<std::string> content_of_files(const Project& project) {
 // Everything the depth maps depend on; not what only fusion uses, nor the number of threads.
 std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
-  print.add("AxialMVS depth maps 7");  // the number: of the matching method
+  print.add("AxialMVS depth maps 8");  // the number: of the matching method
   add_options(print, options);
   const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {

@@ -21,8 +21,8 @@ fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& c
   std::error_code error;
   for (const fs::path& candidate : candidates)
     if (fs::is_directory(candidate, error)) return candidate;
-  fail("--image-folder {}: no such folder (looked for {} and {})", name, candidates[0].string(),
-       candidates[1].string());
+  const std::string also = candidates[0] == candidates[1] ? "" : " and " + candidates[1].string();
+  fail("--image-folder {}: no such folder (looked for {}{})", name, candidates[0].string(), also);
 }
 
 }  // namespace

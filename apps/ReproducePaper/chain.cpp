@@ -144,14 +144,16 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
     extract_and_match(chain, folder, scene.images(medium), calibration);
     make_folder(folder / "models");
     map(chain, folder, scene.images(medium), calibration.refine);
-    const fs::path model = largest_model(folder / "models");
-    if (model.empty() || io::read_colmap_model(model).images.size() < 3) return;
+  });
+  const fs::path model = largest_model(folder / "models");
+  if (model.empty() || io::read_colmap_model(model).images.size() < 3) return {};
+  // A step of its own: other programs of ours are no reason to ask COLMAP again.
+  step(metric, {content_of(model), content_of_programs({"AlignModel"})}, [&] {
     run_sibling(
         chain, "AlignModel",
         {"-i", model.string(), "--reference", scene.model().string(), "-o", metric.string()},
         folder / "align.log");
   });
-  if (!fs::is_directory(metric)) return {};
   const io::ColmapModel found = io::read_colmap_model(metric);
   const auto truth = io::read_colmap_model(scene.model());
   return {metric, found.images.size(), evaluate::align_centres(found, truth).rms};

@@ -80,10 +80,11 @@ Json measure(const Chain& chain, const Case& one, const EvaluationOptions& evalu
 std::vector<Part> parts(const Chain& chain, bool quick) {
   EvaluationOptions evaluation;
   if (quick) evaluation.samples = 20000;
+  const Json programs = programs_of_the_chain();
   std::vector<Part> all;
   for (const Case& one : need_cases(quick)) {
     Json inputs{{"version", 2},
-                {"programs", programs_of_the_chain()},
+                {"programs", programs},
                 {"scene", to_json(one.scene)},
                 {"evaluation", to_json(evaluation)}};
     if (one.calibrated_in) inputs["calibrated_in"] = to_json(*one.calibrated_in);

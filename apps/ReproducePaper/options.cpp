@@ -7,6 +7,16 @@
 
 namespace axial {
 namespace po = boost::program_options;
+namespace {
+
+struct Chained {
+  const char* name;
+  experiments::Experiment (*make)(const Chain& chain, bool quick);
+};
+constexpr Chained kChained[] = {
+    {"reconstruction", reconstruction}, {"sensitivity", sensitivity}, {"need", need}};
+
+}  // namespace
 
 ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
@@ -41,24 +51,24 @@ std::filesystem::path work_folder(const Arguments& a, const CommonOptions& commo
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
                                                         const CommonOptions& common) {
   if (a.output.empty()) fail("no output folder given (-o DIR)");
-  const auto chain = [&](const char* name) {
-    return Chain{work_folder(a, common, name), common.max_threads};
-  };
-  std::vector<experiments::Experiment> all = experiments::all_experiments(a.quick);
-  all.push_back(reconstruction(chain("reconstruction"), a.quick));
-  all.push_back(sensitivity(chain("sensitivity"), a.quick));
-  all.push_back(need(chain("need"), a.quick));
   if (a.experiment == "all" && !a.part.empty())
     fail("--part {}: is for one experiment, not for all", a.part);
-  if (a.experiment == "all") return all;
+  std::vector<experiments::Experiment> chosen;
   std::string names;
-  for (experiments::Experiment& experiment : all) {
-    if (experiment.name == a.experiment && chosen_parts(experiment, a.part).empty())
-      fail("--part {}: begins the name of no part of {}", a.part, experiment.name);
-    if (experiment.name == a.experiment) return {std::move(experiment)};
-    names += experiment.name + ", ";
-  }
-  fail("'{}' is no experiment: must be {}or all", a.experiment, names);
+  const auto asked_for = [&](const std::string& name) {
+    names += name + ", ";
+    return a.experiment == "all" || a.experiment == name;
+  };
+  for (experiments::Experiment& experiment : experiments::all_experiments(a.quick))
+    if (asked_for(experiment.name)) chosen.push_back(std::move(experiment));
+  // Made only if asked for: they read the chain's programs, which the others do without.
+  for (const auto& [name, make] : kChained)
+    if (asked_for(name))
+      chosen.push_back(make({work_folder(a, common, name), common.max_threads}, a.quick));
+  if (chosen.empty()) fail("'{}' is no experiment: must be {}or all", a.experiment, names);
+  if (chosen_parts(chosen.front(), a.part).empty())
+    fail("--part {}: begins the name of no part of {}", a.part, a.experiment);
+  return chosen;
 }
 
 }  // namespace axial

@@ -151,13 +151,14 @@ Json to_json(const std::vector<Method>& methods) {
 }
 
 std::vector<Part> parts(const Chain& chain, bool quick) {
+  const Json programs = programs_of_the_chain();
   std::vector<Part> all;
   Study one = study(quick);
   for (const int seed : one.seeds) {
     one.scene.seed = seed;
     const auto inputs = [&](int version, const std::vector<Method>& methods) -> Json {
       return {{"version", version},
-              {"programs", programs_of_the_chain()},
+              {"programs", programs},
               {"scene", to_json(one.scene)},
               {"evaluation", to_json(one.evaluation)},
               {"methods", to_json(methods)}};

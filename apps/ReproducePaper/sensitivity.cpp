@@ -124,11 +124,12 @@ std::vector<Row> rows_of(bool quick) {
 }
 
 std::vector<Part> parts(const Chain& chain, bool quick) {
+  const Json programs = programs_of_the_chain();
   std::vector<Part> all;
   for (const auto& [distance, mistake] : rows_of(quick)) {
     const Study one = study(quick, distance);
     const Json inputs{{"version", 1},
-                      {"programs", programs_of_the_chain()},
+                      {"programs", programs},
                       {"scene", to_json(one.scene)},
                       {"evaluation", to_json(one.evaluation)},
                       {"mistake", to_json(mistake)}};

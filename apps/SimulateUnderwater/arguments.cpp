@@ -48,7 +48,7 @@ ProgramOptions describe(Arguments& a) {
       "n-glass", po::value(&a.n_glass), "refractive index")("n-water", po::value(&a.n_water),
                                                             "refractive index")(
       "haze", po::value(&a.haze)->default_value(0),
-      "share of the light that the medium scatters into view: the ground's contrast is the rest")(
+      "share of the light that the medium, water or air, scatters into view, 0 to 1")(
       "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
       "jpeg-quality", po::value(&a.jpeg_quality)->default_value(93), "1 to 100")(
       "truth", po::value(&a.truth)->default_value(true),

@@ -32,9 +32,10 @@ struct PatchMatchOptions {
 
   SmoothnessOptions smoothness;
 
-  // Texture at which the coarse level's depth has faded to 1/e: a few times what noise alone makes.
-  // OpenMVS's 0.02 holds ground of low contrast, too, to the coarse level's error
-  // (docs/performance.md, "F-score against CPU time").
+  // Texture, as for `min_texture`, at which the pull towards the coarser level's depth (in a
+  // geometric pass: towards the depth so far) has fallen to 1/e. 0.002 is a standard deviation of 3
+  // grey levels, two or three times a camera's noise. OpenMVS's 0.02 holds ground of low contrast,
+  // too, to the coarser level's error (docs/performance.md, "Coarser levels").
   float prior_texture = 0.002f;
 
   // Pairs of trials on either side of a pixel's best plane. Few are enough where the plane is good

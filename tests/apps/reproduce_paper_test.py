@@ -233,10 +233,12 @@ class Quick(unittest.TestCase):
 class WithoutPoses(ProgramTest):
     """A mapper that finds no poses is a result; one that breaks is none."""
 
+    def put_script(self, script, *names):
+        write(self.path(*names), f"#!/bin/sh\n{script}\n")
+        os.chmod(self.path(*names), 0o755)
+
     def need(self, mapper, program=PROGRAM):
-        script = f"#!/bin/sh\nif [ $1 = mapper ]; then {mapper}; fi\n"
-        write(self.path("bin", "colmap"), script)
-        os.chmod(self.path("bin", "colmap"), 0o755)
+        self.put_script(f"if [ $1 = mapper ]; then {mapper}; fi", "bin", "colmap")
         folders = self.path("bin") + os.pathsep + os.environ["PATH"]
         with unittest.mock.patch.dict(os.environ, PATH=folders):
             return run(program, "need", "--quick", "--part", "usual", "-o", self.path("a"))
@@ -256,17 +258,48 @@ class WithoutPoses(ProgramTest):
         self.assertEqual(today, {"images": 0, "centre_rms": None, "as_it_lies": None,
                                  "moved": None})
 
-    def test_what_other_programs_made_is_made_anew(self):
+    def other_programs(self, **scripts):
+        """The path of a ReproducePaper beside which these scripts stand for programs."""
+        os.makedirs(self.path("other"))
+        for name in os.listdir(BIN):
+            os.symlink(os.path.join(BIN, name), self.path("other", name))
+        os.remove(self.path("other", PROGRAM))
+        shutil.copy(os.path.join(BIN, PROGRAM), self.path("other"))
+        for name, script in scripts.items():
+            os.remove(self.path("other", name))
+            self.put_script(script, "other", name)
+        return self.path("other", PROGRAM)
+
+    def test_a_part_belongs_to_the_programs_that_made_it(self):
         finds_nothing = "echo ERROR: failed to create sparse model; exit 1"
-        shutil.copytree(BIN, self.path("other"))
-        with open(self.path("other", "AlignModel"), "ab") as program:
-            program.write(b"x")
+        other = self.other_programs(AlignModel="exit 1")
         kept = []
-        for program in (PROGRAM, PROGRAM, self.path("other", PROGRAM)):
+        for program in (PROGRAM, PROGRAM, other):
             self.assertEqual(self.need(finds_nothing, program).returncode, 0)
             kept.append({name for name in os.listdir(self.path("a", "quick", "parts", "need"))
                          if name.endswith(".json")})
         self.assertEqual([len(names) for names in kept], [1, 1, 2])
+
+    def test_another_program_repeats_its_own_step_and_not_colmaps(self):
+        """COLMAP is not reproducible, so that its poses are kept while they can be."""
+        count = "echo >> " + self.path("aligned") + "; exec " + os.path.join(BIN, "AlignModel")
+        import_one = "exec " + os.path.join(BIN, "InterfaceCOLMAP") + ' "$@"'
+        other = self.other_programs(
+            AlignModel=count + ' "$@"',
+            InterfaceCOLMAP='case "$*" in *today-dense*) exit 1;; esac; ' + import_one)
+        finds_the_truth = ("echo >> " + self.path("mapped") + '; while [ "$1" != --output_path ]; '
+                           'do shift; done; cp -r "$2/../../sparse" "$2/0"')
+
+        def runs(exit_code):
+            self.assertEqual(self.need(finds_the_truth, other).returncode, exit_code)
+            return [len(read(self.path(name))) for name in ("mapped", "aligned")]
+
+        self.assertEqual(runs(1), [1, 1])
+        self.assertEqual(runs(1), [1, 1])
+        self.put_script(count + ' "$@" # new', "other", "AlignModel")
+        self.assertEqual(runs(1), [1, 2])
+        self.put_script(import_one, "other", "InterfaceCOLMAP")
+        self.assertEqual(runs(0), [1, 2])
 
 
 class Figure3(ProgramTest):

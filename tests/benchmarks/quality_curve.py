@@ -4,10 +4,10 @@
 
     quality_curve.py [--scene SCENE] [--medium air|water] [--only OPTION...] -o DIR
 
-Writes DIR/table.json, DIR/table.md and DIR/curve.svg; a setting that this very program has run there
-before is not run again. True poses. Scenes: `closeup` and `reef`; the same in water so hazy that a
-seventh of the contrast is left, `closeup-hazy` and `reef-hazy`; `small`, the closeup's kind at
-480 x 360, six views, to try things out.
+Writes DIR/table.json, DIR/table.md and DIR/curve.svg; a setting that these very programs have run
+there before is not run again. True poses. Scenes: `closeup` and `reef`; the same in haze that leaves
+a seventh of the contrast, in air and in water, `closeup-hazy` and `reef-hazy`; `small`, the
+closeup's kind at 480 x 360, six views, to try things out.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def scene(name, base):
     if not hazy:
         return runs.synthetic(name, base)
     return runs.simulated(name, base, "--preset", preset, "--haze", 6 / 7, "--truth", 0,
-                          tolerance=0.002 if preset == "closeup" else 0.005)
+                          tolerance=runs.TOLERANCES[preset])
 
 
 def arguments_of(option, value):
@@ -51,10 +51,18 @@ def arguments_of(option, value):
     return [f"--{option}", value, *allow]
 
 
+def content_of_programs():
+    """Of all that images, clouds and their measures come from, in a few digits."""
+    content = hashlib.sha1()
+    for program in ("SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud",
+                    "EvaluateReconstruction"):
+        content.update((runs.BIN / program).read_bytes())
+    return content.hexdigest()[:12]
+
+
 def measured(work, truth, medium, name, arguments):
     """One setting's cost and quality; kept if there."""
-    program = hashlib.sha1((runs.BIN / "DensifyPointCloud").read_bytes()).hexdigest()[:12]
-    folder = work / program / f"{truth.name}-{medium}-{name}"
+    folder = work / content_of_programs() / f"{truth.name}-{medium}-{name}"
     kept = folder / "result.json"
     if kept.exists():
         return json.loads(kept.read_text())

@@ -104,6 +104,22 @@ TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
   EXPECT_EQ(files, 1u + 3 * 2);  // the mesh; three views, two kinds
 }
 
+TEST_F(SimulateUnderwater, PhotographsThroughHaze) {
+  const auto contrast = [&](const std::string& haze) {
+    const Outcome outcome = run(kSmall + haze + " --noise 0 --medium water -o " + haze.substr(7));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    const cv::Mat3b image = io::read_color_image(folder_ / haze.substr(7) / "water" / "0000.jpg");
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(image, mean, deviation);
+    return deviation[1];
+  };
+  const double clear = contrast("--haze 0");
+  EXPECT_GT(clear, 10);
+  const double hazy = contrast("--haze 0.75");
+  EXPECT_LT(hazy, 0.5 * clear);
+  EXPECT_GT(hazy, 0.05 * clear);
+}
+
 TEST_F(SimulateUnderwater, RefusesWrongOptionsInOneLine) {
   refuses("no output folder", "--preset reef");
   refuses("preset 'lake' is unknown", "-o a --preset lake");

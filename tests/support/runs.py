@@ -53,6 +53,8 @@ def step(name, *arguments):
 
 # Scenes with ground truth.
 
+TOLERANCES = {"closeup": 0.002, "reef": 0.005}  # of F-scores [m]
+
 @dataclasses.dataclass(frozen=True)
 class Truth:
     name: str
@@ -70,8 +72,7 @@ def synthetic(name, base):
     if not data.is_dir():
         raise Skipped(f"no {data}")
     step("make_truth", name, base / "truth" / name)
-    return Truth(name, data, base / "truth" / name / "mesh.ply",
-                 {"closeup": 0.002, "reef": 0.005}[name])
+    return Truth(name, data, base / "truth" / name / "mesh.ply", TOLERANCES[name])
 
 
 def simulated(name, base, *options, tolerance=0.002):
