@@ -3,6 +3,7 @@
 
 import hashlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -341,6 +342,30 @@ def quality(work):
 def quality_third(work):
     return all_no_worse([quality_at_defaults(work, third_scene(), medium)
                          for medium in ("air", "water")])
+
+
+def dome_scene():
+    """The reef behind a dome 5 mm off its place, with the field that the flat port leaves of the
+    reef's 80 degrees."""
+    field = math.degrees(2 * math.asin(math.sin(math.radians(40)) / 1.333))
+    return runs.simulated("reef-dome-as-flat", BASE, "--preset", "reef", "--medium", "water",
+                          "--truth", 0, "--fov-degrees", round(field, 2), *refined.SCENES["reef-dome"],
+                          tolerance=runs.TOLERANCES["reef"])
+
+
+@point("a decentred dome, same field of view, true poses: mean at most 1.1 times the flat port's, F at "
+       "most 0.02 lower")
+def dome_as_flat(work):
+    results, costs = [], []
+    for truth in (truth_of("reef"), dome_scene()):
+        folder = work / f"{truth.name}-defaults-water"
+        costs.append(densified(folder, truth.data / "sparse", truth.data / "water",
+                               truth.housing("water"))["cpu"])
+        results.append(runs.evaluate(folder, truth, "water"))
+    flat, dome = results
+    seen = "; ".join(f"{name} {millimetres(result)}, {cpu:.1f} CPU-s" for name, result, cpu
+                     in zip(("flat port", "dome"), results, costs))
+    return seen, dome["mean"] <= 1.1 * flat["mean"] and dome["f"] >= flat["f"] - 0.02
 
 
 @point("one clear line, exit 1, no crash, no partial output")
