@@ -17,7 +17,6 @@ using namespace axial;
 namespace {
 
 io::ColmapCamera load_lens(const fs::path& path) {
-  if (io::is_calibmar(path)) return io::read_calibmar(path);
   const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
   if (cameras.size() != 1)
     fail("{}: has {} cameras, expected the one that is calibrated", path.string(), cameras.size());
@@ -39,11 +38,6 @@ io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   if (options.housing.empty()) {
     if (!lens.port) fail("--housing is missing: the port as far as it is known");
     return io::housing_with(io::to_housing_port(*lens.port));
-  }
-  if (io::is_calibmar(options.housing)) {
-    const io::ColmapCamera camera = io::read_calibmar(options.housing);
-    if (!camera.port) fail("{}: key 'non_svp_model' is missing", options.housing.string());
-    return io::housing_with(io::to_housing_port(*camera.port));
   }
   const io::Housing housing = io::read_housing(options.housing);
   io::refuse_water_surfaces(housing, options.housing);

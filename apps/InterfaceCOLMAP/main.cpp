@@ -32,7 +32,7 @@ std::size_t count_distorted(const Scene& scene) {
 // whose poses it solved without refraction, too, and the files do not say so: the tracks do.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   if (!options.housing_file.empty()) return io::read_housing(options.housing_file);
-  const io::Housing carried = io::housing_of(model);
+  const io::Housing carried = io::housing_of(model.cameras);
   if (carried.ports.empty()) return carried;
   const pose::PortFit fit = pose::port_fit(model);
   spdlog::info("The model's cameras carry ports: its points are {:.3f} px off behind them",

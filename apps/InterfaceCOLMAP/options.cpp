@@ -40,7 +40,8 @@ Options parse_command_line(int argc, const char* const* argv) {
        "folder of the images, in the working folder or else in DIR (the default: in DIR first); "
        "images must have the size of their cameras")  //
       ("housing", po::value(&housing),
-       "housing file: ports the cameras look through; written as <scene>.housing.json")  //
+       "housing file: ports the cameras look through, or Calibmar's calibration.yaml; written as "
+       "<scene>.housing.json")  //
       ("undistort", po::value(&undistort),
        "1: resample images of distorted lenses into a pinhole's, which all programs can read; 0: "
        "keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind ports, 1 in "

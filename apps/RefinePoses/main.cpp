@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -20,28 +21,45 @@ using namespace axial;
 
 namespace {
 
-pose::ColmapBundle load(const Options& options, const io::ColmapModel& model,
+using Lenses = std::vector<io::ColmapCamera>;
+
+// In air: of the file, or else the model's, where these carry ports.
+Lenses load_lenses(const Options& options, const io::ColmapModel& model) {
+  if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
+    fail("--lens is missing: the lens as calibrated in air");
+  const Lenses lenses =
+      options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
+  if (lenses.empty()) fail("{}: no camera", options.lens.string());
+  return lenses;
+}
+
+pose::ColmapBundle load(const Options& options, const io::ColmapModel& model, const Lenses& lenses,
                         const io::Housing& housing) {
-  const auto lenses = options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
-  const fs::path& from = options.lens.empty() ? options.model : options.lens;
-  if (lenses.empty()) fail("{}: no camera", from.string());
   try {
     return pose::to_bundle(model, lenses, housing);
   } catch (const Error& error) {
-    fail("{}: {}", from.string(), error.what());
+    fail("{}: {}", (options.lens.empty() ? options.model : options.lens).string(), error.what());
   }
 }
 
-// Of the file, or else what the model's cameras carry.
-io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
-  const io::Housing carried = io::housing_of(model);
-  if (options.lens.empty() && carried.ports.empty())
-    fail("--lens is missing: the lens as calibrated in air");
+// What the lenses, or else the model's cameras, carry.
+io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) {
+  // One lens is that of all cameras, whatever their ids.
+  if (lenses.size() == 1 && lenses.front().port)
+    return io::housing_with(io::to_housing_port(*lenses.front().port));
+  const io::Housing carried = io::housing_of(lenses);
+  return carried.ports.empty() ? io::housing_of(model.cameras) : carried;
+}
+
+// Of the file, or else what is carried.
+io::Housing load_housing(const Options& options, const io::ColmapModel& model,
+                         const Lenses& lenses) {
   if (!options.housing.empty()) {
     io::Housing housing = io::read_housing(options.housing);
     io::refuse_water_surfaces(housing, options.housing);
     return housing;
   }
+  const io::Housing carried = carried_housing(model, lenses);
   if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
   return carried;
 }
@@ -70,12 +88,18 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
     spdlog::warn("Not converged after {} iterations", report.last.iterations);
 }
 
-void check_focal(const pose::ColmapBundle& bundle, const pose::AdjustOptions& adjust) {
-  if (!adjust.free[pose::kFocalNumber]) return;
-  for (const io::ColmapCamera& lens : bundle.lenses)
-    if (!io::pinhole_lens(lens))
-      fail("--refine focal: camera {} has a {} lens, whose distortion belongs to its focal length",
-           lens.id, lens.model);
+// Beyond this factor the second-order term of a distorting lens is a tenth of a pixel.
+void warn_of_focal(const pose::ColmapBundle& refined) {
+  constexpr double kFirstOrder = 0.02;
+  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
+    const double factor = std::exp(refined.bundle.cameras[i].change(pose::kFocalNumber));
+    if (std::abs(factor - 1) > kFirstOrder && !io::pinhole_lens(refined.lenses[i]))
+      spdlog::warn(
+          "--refine focal: {:.3f} times the focal length of camera {}, whose distortion is "
+          "followed to "
+          "first order; run again with the lens of the refined model",
+          factor, refined.lenses[i].id);
+  }
 }
 
 // The model last: it is not there without the housing it belongs to.
@@ -99,8 +123,9 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const fs::path folder = io::find_colmap_model(options.model);
   const io::ColmapModel model = io::read_colmap_model(folder);
-  const io::Housing housing = load_housing(options, model);
-  pose::ColmapBundle refined = load(options, model, housing);
+  const Lenses lenses = load_lenses(options, model);
+  const io::Housing housing = load_housing(options, model, lenses);
+  pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
     spdlog::warn("{}: no image goes by {}", options.housing.string(), entry);
   pose::AdjustOptions& adjust = options.refine.adjust;
@@ -112,7 +137,6 @@ int run(int argc, char** argv) {
     fail("no image is behind a port: there is nothing to refine");
   adjust.poses_known = options.poses == "known";
   pose::set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
-  check_focal(refined, adjust);
   check_output(options, folder);
   spdlog::info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
                model.points.size(), refined.bundle.observations.size());
@@ -132,6 +156,7 @@ int run(int argc, char** argv) {
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(report, refined.bundle);
+  warn_of_focal(refined);
   write(options, refined, model, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   spdlog::info("Refined model in {}", options.output.string());

@@ -42,10 +42,11 @@ Options parse_command_line(int argc, const char* const* argv) {
        "COLMAP folder of the raw underwater photographs, with any lens models: the model is in "
        "DIR/sparse, DIR/sparse/0 or DIR")  //
       ("lens", po::value(&lens),
-       "the lens in air: cameras.txt or cameras.bin, or a folder with it; by camera id, or one for "
-       "all; a model of COLMAP-Underwater has it")  //
+       "the lens in air: cameras.txt or cameras.bin, or a folder with it, or Calibmar's "
+       "calibration.yaml; by camera id, or one for all; a model of COLMAP-Underwater has it")  //
       ("housing", po::value(&housing),
-       "housing file: ports the cameras look through; a model of COLMAP-Underwater has them")  //
+       "housing file: ports the cameras look through; a model of COLMAP-Underwater has them, and "
+       "Calibmar's file")  //
       ("output-folder,o", po::value(&output),
        "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")  //
       ("poses", po::value(&options.poses)->default_value("adjust"),

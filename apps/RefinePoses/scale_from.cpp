@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scale_from.h"
 
+#include <spdlog/spdlog.h>
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -28,13 +30,19 @@ T number(const std::string& text, const std::string& where) {
   return *value;
 }
 
-std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
-                        const std::string& where) {
+std::optional<std::size_t> find_image(const pose::Bundle& bundle, const std::string& name) {
   const auto found =
       std::find_if(bundle.images.begin(), bundle.images.end(),
                    [&](const pose::BundleImage& image) { return image.name == name; });
-  if (found == bundle.images.end()) fail("{}: the model has no image '{}'", where, name);
+  if (found == bundle.images.end()) return std::nullopt;
   return static_cast<std::size_t>(found - bundle.images.begin());
+}
+
+std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
+                        const std::string& where) {
+  const std::optional<std::size_t> image = find_image(bundle, name);
+  if (!image) fail("{}: the model has no image '{}'", where, name);
+  return *image;
 }
 
 KnownDistance known_distance(KnownDistance::Between between, const std::string& list, double sigma,
@@ -83,9 +91,12 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
          file.string());
 }
 
+// A survey's list names photographs that COLMAP found no pose for, too: they are said and passed
+// over.
 void read_positions(const std::filesystem::path& file, double sigma, const pose::Bundle& bundle,
                     pose::AdjustOptions& adjust) {
   std::istringstream lines(read_file(file));
+  std::vector<std::string> without_pose;
   int line_number = 0;
   for (std::string line; std::getline(lines, line);) {
     const std::string where = fmt::format("{}:{}", file.string(), ++line_number);
@@ -94,13 +105,17 @@ void read_positions(const std::filesystem::path& file, double sigma, const pose:
     if (!(words >> name)) continue;
     std::string more;
     if (!(words >> x >> y >> z) || words >> more) fail("{}: must be NAME X Y Z", where);
-    adjust.positions.push_back(
-        {image_named(bundle, name, where),
-         {number<double>(x, where), number<double>(y, where), number<double>(z, where)},
-         sigma});
+    const Eigen::Vector3d metres(number<double>(x, where), number<double>(y, where),
+                                 number<double>(z, where));
+    if (const auto image = find_image(bundle, name))
+      adjust.positions.push_back({*image, metres, sigma});
+    else
+      without_pose.push_back(fmt::format("{}: the model has no image '{}'", where, name));
   }
   if (adjust.positions.size() < 3)
-    fail("{}: {} positions, at least 3 are needed", file.string(), adjust.positions.size());
+    fail("{}: {} positions of images of the model, at least 3 are needed", file.string(),
+         adjust.positions.size());
+  for (const std::string& line : without_pose) spdlog::warn("{}", line);
   check_positions(adjust.positions, bundle, file);
 }
 

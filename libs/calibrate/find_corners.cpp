@@ -24,17 +24,20 @@ double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
   return least;
 }
 
-// The older detector, which copes with boards that have hardly any margin.
-bool find_and_refine(const cv::Mat1b& photograph, cv::Size size,
-                     std::vector<cv::Point2f>& corners) {
-  constexpr int kFlags =
-      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  if (!cv::findChessboardCorners(photograph, size, corners, kFlags)) return false;
+// To where the edges around it cross.
+void refine(const cv::Mat1b& photograph, cv::Size size, std::vector<cv::Point2f>& corners) {
   // The window must not reach another corner: a third of the way to the nearest on every side.
   const int half = std::clamp(static_cast<int>(least_spacing(corners, size) / 3), 2, 11);
   cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
-  return true;
+}
+
+// The older detector, which copes with boards that have hardly any margin.
+bool find_at_the_margin(const cv::Mat1b& photograph, cv::Size size,
+                        std::vector<cv::Point2f>& corners) {
+  constexpr int kFlags =
+      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  return cv::findChessboardCorners(photograph, size, corners, kFlags);
 }
 
 }  // namespace
@@ -46,8 +49,9 @@ std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board
       cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY;
   std::vector<cv::Point2f> corners;
   if (!cv::findChessboardCornersSB(photograph, size, corners, kFlags) &&
-      !find_and_refine(photograph, size, corners))
+      !find_at_the_margin(photograph, size, corners))
     return {};
+  refine(photograph, size, corners);
   std::vector<Corner> found;
   for (const cv::Point2f& p : corners) found.push_back({found.size(), {p.x, p.y}});
   return found;

@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "io/calibmar.h"
 #include "io/colmap_parts.h"
 
 namespace axial::io {
@@ -86,6 +87,7 @@ ColmapModel read_colmap_model(const fs::path& folder) {
 }
 
 std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
+  if (is_calibmar(path)) return {read_calibmar(path)};
   std::vector<ColmapCamera> cameras;
   std::error_code error;
   if (fs::is_directory(path, error))

@@ -71,7 +71,7 @@ std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
 // The cameras alone: of a model's folder, or a file cameras.txt or cameras.bin by any name with
-// that extension.
+// that extension, or Calibmar's, with its port (calibmar.h).
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
 // For COLMAP: ports are left out, which its readers cannot read.

@@ -168,6 +168,9 @@ constexpr std::array kLenses = {
     Lens{"EUCM", 2, eucm, false},
 };
 
+// COLMAP-Underwater's own, which COLMAP itself cannot undistort.
+constexpr std::string_view kNotColmaps = "METASHAPE_FISHEYE";
+
 // A camera's parameters taken apart: focal lengths and principal point (pixel centres at
 // integers), and the distortion.
 struct Parts {
@@ -180,8 +183,8 @@ Parts take_apart(const ColmapCamera& camera) {
   const auto lens = std::find_if(kLenses.begin(), kLenses.end(),
                                  [&](const Lens& l) { return l.model == camera.model; });
   if (lens == kLenses.end())
-    fail("camera {}: model {} is not supported; undistort its images with COLMAP first", camera.id,
-         camera.model);
+    fail("camera {}: model {} is not supported; undistort its images with {} first", camera.id,
+         camera.model, camera.model == kNotColmaps ? "the program that calibrated it" : "COLMAP");
   const Parameters p(camera.params);
   if (static_cast<int>(p.size()) != colmap_parameter_count(camera.model))
     fail("camera {}: model {} has {} parameters, not {}", camera.id, camera.model,

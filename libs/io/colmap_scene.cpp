@@ -233,9 +233,9 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   return scene;
 }
 
-Housing housing_of(const ColmapModel& model) {
+Housing housing_of(std::span<const ColmapCamera> cameras) {
   Housing housing;
-  for (const ColmapCamera& camera : model.cameras) {
+  for (const ColmapCamera& camera : cameras) {
     if (!camera.port) continue;
     const std::string name = fmt::format("camera_{}", camera.id);
     housing.ports[name] = to_housing_port(*camera.port);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,9 @@ struct ColmapImport {
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& progress = {});
 
-// The ports that the model's cameras carry, as files of COLMAP-Underwater do: "camera_1" for camera
-// 1, and so on. No port if none does.
-Housing housing_of(const ColmapModel& model);
+// The ports that cameras carry, as files of COLMAP-Underwater do: "camera_1" for camera 1, and so
+// on. No port if none does.
+Housing housing_of(std::span<const ColmapCamera> cameras);
 
 // `housing` with an entry for every image that would not get its port by the default, and none by
 // camera id: what attach_ports and programs that no longer know COLMAP's ids need. `scene` is the

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "io/calibmar.h"
 #include "io/image_names.h"
 #include "io/port_json.h"
 #include "io/text_reader.h"
@@ -76,6 +77,12 @@ struct Check {
   void operator()(const WaterSurface& surface) const { check_water_surface(surface, where); }
   void operator()(const refractive::Port<double>& port) const { check_port(port, where); }
 };
+
+Housing calibmar_housing(const fs::path& path) {
+  const ColmapCamera camera = read_calibmar(path);
+  if (!camera.port) fail("{}: key 'non_svp_model' is missing", path.string());
+  return housing_with(to_housing_port(*camera.port));
+}
 
 // The port `name`; nothing for "none". Error that starts with `where` if it is not defined.
 const HousingPort* find_port(const Housing& housing, const std::string& name,
@@ -152,6 +159,7 @@ void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
 }
 
 Housing read_housing(const fs::path& path) {
+  if (is_calibmar(path)) return calibmar_housing(path);
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": housing"};
   root.require_object({"version", "ports", "default", "cameras", "images"});

@@ -59,7 +59,8 @@ void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& 
 // Error that names file, key and value: unknown keys, wrong types or units (an index below 1,
 // negative thickness, zero or backward normal, distance over 1 m, a dome centre outside the dome,
 // water less dense than air), a port name that is not defined, a version other than 1, an unknown
-// port type. A normal off unit length by more than 1e-6 is normalised with a warning.
+// port type. A normal off unit length by more than 1e-6 is normalised with a warning. Of Calibmar's
+// calibration.yaml (calibmar.h) the port, for every image; Error if it has none.
 Housing read_housing(const std::filesystem::path& path);
 
 void write_housing(const std::filesystem::path& path, const Housing& housing);

@@ -10,13 +10,13 @@
 namespace axial::pose {
 namespace {
 
-double error_of(const CameraVariant<double>& camera, const Pose& pose, const Eigen::Vector3d& point,
-                const Observation& observation) {
+double error_of(const CameraVariant<double>& camera, const HousingChange<double>& change,
+                const Pose& pose, const Eigen::Vector3d& point, const Observation& observation) {
   return std::visit(
       [&](const auto& c) {
         const auto image = c.project(pose.to_camera(point));
         if (!image.visible) return std::numeric_limits<double>::infinity();
-        return (observation.to_photograph * (image.pixel - observation.pixel)).norm();
+        return (observation.to_photograph * (image.pixel - observation.pixel_with(change))).norm();
       },
       camera);
 }
@@ -45,8 +45,8 @@ std::vector<double> reprojection_errors(const Bundle& bundle) {
   errors.reserve(bundle.observations.size());
   for (const Observation& observation : bundle.observations) {
     const BundleImage& image = bundle.images[observation.image];
-    errors.push_back(error_of(cameras[image.camera], image.pose,
-                              bundle.points[observation.point].position, observation));
+    errors.push_back(error_of(cameras[image.camera], bundle.cameras[image.camera].change,
+                              image.pose, bundle.points[observation.point].position, observation));
   }
   return errors;
 }

@@ -39,7 +39,15 @@ struct Observation {
   // From the pinhole's pixels to those of the photograph, where a lens distorts: errors are
   // measured there.
   Eigen::Matrix2d to_photograph = Eigen::Matrix2d::Identity();
+  // Where a lens distorts, another focal length takes the distortion away from another place: the
+  // derivative of `pixel` by the logarithm of the focal lengths' factor.
+  Eigen::Vector2d pixel_by_focal = Eigen::Vector2d::Zero();
   std::size_t source = 0;  // what it was in the model it comes from
+
+  // `pixel` with the camera's lens changed so, to first order.
+  Eigen::Vector2d pixel_with(const HousingChange<double>& change) const {
+    return pixel + pixel_by_focal * change(kFocalNumber);
+  }
 };
 
 struct Bundle {

@@ -89,6 +89,12 @@ bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& 
                        pinhole.fy * imaged->direction.y() + pinhole.cy};
   observation.to_photograph.col(0) = imaged->derivative.col(0) / pinhole.fx;
   observation.to_photograph.col(1) = imaged->derivative.col(1) / pinhole.fy;
+  // The photograph's pixel stays, and the direction d(f) that f times the distortion brings there
+  // changes: d(direction)/d(log f) = -(d(pixel)/d(direction))^-1 (pixel - principal point).
+  const refractive::PinholeLens<double> bare = io::undistorted_lens(lens);
+  const Eigen::Vector2d from_centre(point.x - 0.5 - bare.cx, point.y - 0.5 - bare.cy);
+  const Eigen::Vector2d by_focal = imaged->direction - imaged->derivative.inverse() * from_centre;
+  observation.pixel_by_focal = {pinhole.fx * by_focal.x(), pinhole.fy * by_focal.y()};
   return true;
 }
 
@@ -142,7 +148,7 @@ PortFit port_fit(const io::ColmapModel& model) {
   const auto rms = [&](const io::Housing& housing) {
     return root_mean_square(reprojection_errors(to_bundle(model, model.cameras, housing).bundle));
   };
-  return {rms(io::housing_of(model)), rms({})};
+  return {rms(io::housing_of(model.cameras)), rms({})};
 }
 
 io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model) {

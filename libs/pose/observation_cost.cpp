@@ -80,7 +80,8 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
     set_zero(jacobians);
     return true;
   }
-  residual = observation_.to_photograph * (image.pixel - observation_.pixel);
+  const Eigen::Map<const HousingChange<double>> change(parameters[2]);
+  residual = observation_.to_photograph * (image.pixel - observation_.pixel_with(change));
   if (!jacobians) return true;
   by_point = observation_.to_photograph * by_point;
   if (jacobians[0]) {
@@ -91,10 +92,10 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   }
   if (jacobians[1]) RowMajor<3>{jacobians[1]} = by_point * pose.rotation;
   if (jacobians[2]) {
-    HousingChange<double> change;
-    std::copy_n(parameters[2], kHousingNumbers, change.data());
-    RowMajor<kHousingNumbers>{jacobians[2]} =
+    RowMajor<kHousingNumbers> by_change(jacobians[2]);
+    by_change =
         -by_point * ray_by_change(measured_.measured, change, image.pixel, (X - origin).norm());
+    by_change.col(kFocalNumber) -= observation_.to_photograph * observation_.pixel_by_focal;
   }
   return true;
 }

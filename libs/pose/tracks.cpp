@@ -19,8 +19,9 @@ std::vector<Ray> world_rays(const Bundle& bundle) {
   std::vector<Ray> rays;
   for (const Observation& observation : bundle.observations) {
     const BundleImage& image = bundle.images[observation.image];
-    const Ray ray = std::visit([&](const auto& camera) { return camera.ray(observation.pixel); },
-                               cameras[image.camera]);
+    const Eigen::Vector2d pixel = observation.pixel_with(bundle.cameras[image.camera].change);
+    const Ray ray =
+        std::visit([&](const auto& camera) { return camera.ray(pixel); }, cameras[image.camera]);
     rays.push_back(
         {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction});
   }

@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -406,6 +407,55 @@ for scene in refined.SCENES:
     POINTS[f"refined-cloud-{scene}"] = (
         lambda work, scene=scene: refined.cloud(scene, BASE, work / f"refined-{scene}"),
         refined.WANTED_CLOUD)
+
+
+# From raw photographs to the cloud in one command.
+
+def pipeline(truth, out):
+    """apps/pipeline/reconstruct on the photographs under water; only the camera centres are known."""
+    positions = out.with_name(f"{out.name}-positions.txt")
+    poses = refined.images_of(truth.data / "sparse")
+    positions.parent.mkdir(parents=True, exist_ok=True)
+    positions.write_text("".join(" ".join([name, *map(str, refined.centre(pose))]) + "\n"
+                                 for name, pose in sorted(poses.items())))
+    return [sys.executable, ROOT / "apps/pipeline/reconstruct", "--images", truth.data / "water",
+            "--lens", truth.data / "sparse" / "cameras.txt", "--housing", truth.housing("water"),
+            "--scale-from", f"positions:{positions}", "--truth", truth.mesh, "--programs", BIN,
+            "-o", out]
+
+
+def killed_in_densify(log, out, command):
+    """Kills the script, and it alone, when about half of the reef's ten views have a depth map; the
+    seconds until then."""
+    begin = time.monotonic()
+    with open(log, "w") as said:
+        process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT,
+                                   stdin=subprocess.DEVNULL)
+    while process.poll() is None and len(list(out.glob("depth*.dmap"))) < 5:
+        time.sleep(0.1)
+    process.kill()
+    if process.wait() != -signal.SIGKILL:
+        raise RuntimeError(f"reconstruct ended before it could be killed, see {log}")
+    return time.monotonic() - begin
+
+
+@point("raw photographs to the cloud in one command, killed while it matches and run again: goes on "
+       f"there to exit 0, mean at most {refined.LIKE_TRUE_POSES} times that on true poses")
+def pipeline_reef(work):
+    truth, log = truth_of("reef"), work / "pipeline-reef.log"
+    out, on_truth = work / "pipeline-reef", work / "reef-defaults-water"
+    shutil.rmtree(out, ignore_errors=True)
+    command = pipeline(truth, out)
+    seconds = killed_in_densify(log, out, command) + measured(log, *command)["wall"]
+    kept = log.read_text().count("done before")
+    densified(on_truth, truth.data / "sparse", truth.data / "water", truth.housing("water"))
+    ours, true = (runs.evaluate(folder, truth, "water") for folder in (out, on_truth))
+    own = json.loads((out / "evaluation.json").read_text())["accuracy"]
+    ratio = ours["mean"] / true["mean"]
+    return (f"{seconds / 60:.1f} minutes, {kept} of 7 steps done before the kill; {millimetres(ours)}; "
+            f"moved onto the truth by ICP: mean {own['mean'] * 1e3:.3f} mm, median "
+            f"{own['median'] * 1e3:.3f} mm; true poses: {millimetres(true)}; ratio {ratio:.3f}",
+            kept == 5 and ratio <= refined.LIKE_TRUE_POSES)
 
 
 # Memory: a survey of 0.3 megapixels a view.

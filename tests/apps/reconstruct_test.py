@@ -8,6 +8,8 @@ import io
 import json
 import os
 import pathlib
+import select
+import shlex
 import shutil
 import signal
 import struct
@@ -87,6 +89,95 @@ class WithAnotherColmap(unittest.TestCase):
 
     def test_says_nothing_of_pieces_where_there_is_one(self):
         self.assertNotIn("more", self.largest_of(4)[1])
+
+
+# All programs of the pipeline in one, told apart by their names; to be run in the folder above `out`.
+# Each notes its command and makes what the next one takes. Where there is a pipe named like the
+# program, it holds that open for as long as it lives, and lives on.
+STAND_IN = """#!/bin/sh
+[ "$2" = --help ] && exit
+name=${0##*/}
+echo "$name $*" >> commands
+if [ -p "pipe-$name" ]; then exec > "pipe-$name"; echo begun; exec sleep 60; fi
+case "$name $1" in
+  "colmap feature_extractor") touch out/features.db ;;
+  "colmap mapper") mkdir out/colmap/0; printf '\\1\\0\\0\\0\\0\\0\\0\\0' > out/colmap/0/images.bin ;;
+  RefinePoses*) mkdir out/refined; echo '{"rms_before_px": 1, "rms_after_px": 1, "cameras": [],
+    "observations_after": 1, "points_after": 1, "images": [], "scale_sigma": 0}' \
+    > out/refined/report.json ;;
+  InterfaceCOLMAP*) touch out/scene.mvs ;;
+  DensifyPointCloud*) touch out/scene_dense.ply ;;
+esac
+"""
+
+
+class WithStandIns(unittest.TestCase):
+    """The whole script, with programs that do nothing but end at once or never."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+        for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud"):
+            (self.folder / name).write_text(STAND_IN)
+            (self.folder / name).chmod(0o755)
+        for name in ("lens", "housing"):
+            (self.folder / name).touch()
+        (self.folder / "images").mkdir()
+
+    def start(self):
+        process = subprocess.Popen(
+            [sys.executable, str(SCRIPT), "--images", "images", "--lens", "lens", "--housing",
+             "housing", "-o", "out", "--programs", "."], cwd=self.folder, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def ended(self):
+        process = self.start()
+        said, complaint = process.communicate(timeout=60)
+        return subprocess.CompletedProcess([], process.returncode, said, complaint)
+
+    def held_at(self, program):
+        """A run that stays in the step of this program, and the program's pipe."""
+        os.mkfifo(self.folder / f"pipe-{program}")
+        pipe = os.open(self.folder / f"pipe-{program}", os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, pipe)
+        process = self.start()
+        self.assertEqual(self.next_of(pipe), b"begun\n")
+        return process, pipe
+
+    def next_of(self, pipe):
+        """What the program says next; nothing if it is gone."""
+        self.assertTrue(select.select([pipe], [], [], 30)[0], "neither said anything nor ended")
+        return os.read(pipe, 100)
+
+    def test_takes_its_command_along_when_killed_alone(self):
+        process, pipe = self.held_at("DensifyPointCloud")
+        process.kill()
+        self.assertEqual(self.next_of(pipe), b"")
+        (self.folder / "pipe-DensifyPointCloud").unlink()
+        again = self.ended()
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(again.stdout.count("done before"), 5, again.stdout)
+
+    def test_refuses_a_second_run_in_the_same_folder(self):
+        self.held_at("DensifyPointCloud")
+        second = self.ended()
+        self.assertEqual(second.returncode, 1)
+        self.assertEqual(second.stdout, "")
+        self.assertEqual(second.stderr, f"reconstruct: --output {self.folder / 'out'}: "
+                                        "another run is at work there\n")
+
+    def test_prints_the_commands_that_it_runs(self):
+        said = self.ended().stdout.splitlines()
+        printed = [said[said.index(f"[{number}/6] {step}") + 1].removeprefix(" " * 4)
+                   for number, step in enumerate(STEPS[:6], 1)]
+        run_were = (self.folder / "commands").read_text().splitlines()
+        self.assertEqual([" ".join([pathlib.Path(program).name, *arguments]) for program, *arguments
+                          in map(shlex.split, printed)], run_were)
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")

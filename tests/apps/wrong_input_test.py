@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Wrong input: one clear line, exit code 1, no crash, no partial output."""
 
+import math
 import os
 import random
 import re
@@ -99,6 +100,35 @@ class InterfaceColmap(ProgramTest):
         write(self.path("colmap", "sparse", "cameras.txt"), f"1 {camera}\n")
         write(self.path("colmap", "images", "0001.mask.png"), grey_png([bytes(72)] * 72))
         self.refuses_import("0001.mask.png: is 72x72, but its image is 96x72")
+
+    def test_ports_that_the_poses_were_solved_without(self):
+        """COLMAP-Underwater's files carry ports either way: only the tracks tell."""
+        sparse = self.path("colmap", "sparse")
+        camera = f"PINHOLE {tiny_scene.WIDTH} {tiny_scene.HEIGHT} " \
+                 f"{tiny_scene.FOCAL} {tiny_scene.FOCAL} {tiny_scene.CX} {tiny_scene.CY}"
+        # A port at the lens itself: all it does is to enlarge the sines of angles by the index.
+        write(os.path.join(sparse, "cameras.txt"), f"1 {camera} FLATPORT 0 0 1 0 0 1 1.333 1.333\n")
+        convert = ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
+        warning = "the poses were solved without refraction"
+        said = self.succeeds(*convert).stdout
+        self.assertIn("The points are 0.000 px off in air: " + warning, said)
+
+        def through_the_port(u, v, point):
+            x, y = (u - tiny_scene.CX) / tiny_scene.FOCAL, (v - tiny_scene.CY) / tiny_scene.FOCAL
+            factor = 1.333 / math.sqrt(1 + (1 - 1.333 ** 2) * (x * x + y * y))
+            return (tiny_scene.CX + factor * (u - tiny_scene.CX),
+                    tiny_scene.CY + factor * (v - tiny_scene.CY), int(point))
+
+        path = os.path.join(sparse, "images.txt")
+        lines = read(path).decode().splitlines()
+        for i in range(1, len(lines), 2):
+            numbers = [float(number) for number in lines[i].split()]
+            lines[i] = " ".join(str(number) for k in range(0, len(numbers), 3)
+                                for number in through_the_port(*numbers[k:k + 3]))
+        write(path, "\n".join(lines) + "\n")
+        said = self.succeeds(*convert).stdout
+        self.assertIn("carry ports: its points are 0.000 px off", said)
+        self.assertNotIn(warning, said)
 
     def test_wrong_housings(self):
         housing = self.path("housing.json")

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
+#include "io/housing.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 
@@ -97,6 +98,24 @@ TEST_F(Calibmar, ReadsWhatItWrites) {
     write_calibmar(folder_ / "out.yaml", again, comments);
     EXPECT_EQ(read_file(folder_ / "out.yaml"), first);
   }
+}
+
+TEST_F(Calibmar, IsAFileOfLensesAndAHousing) {
+  const std::filesystem::path file = written(kFlat);
+  const std::vector<ColmapCamera> cameras = read_colmap_cameras(file);
+  ASSERT_EQ(cameras.size(), 1u);
+  EXPECT_EQ(cameras[0].params, read_calibmar(file).params);
+  const Housing housing = read_housing(file);
+  const auto port = std::get<refractive::FlatPort<double>>(
+      housing.carried_port(housing.port_of("any.jpg", 7)).value());
+  EXPECT_EQ(port.distance, 0.0253);
+  EXPECT_EQ(port.n_water, 1.334);
+}
+
+TEST_F(Calibmar, AHousingNeedsAPort) {
+  const std::string air = "model: PINHOLE\nparameters: [1, 1, 1, 1]\nwidth: 4\nheight: 4\n";
+  EXPECT_THAT(test::error_of([&] { read_housing(written(air)); }),
+              ::testing::EndsWith("key 'non_svp_model' is missing"));
 }
 
 TEST_F(Calibmar, WrongFilesAreNamed) {

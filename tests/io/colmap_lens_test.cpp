@@ -191,7 +191,8 @@ RC_GTEST_PROP(ColmapLens, TheMatchersLensesImageTheSame, ()) {
 
 TEST(ColmapLens, TheMatcherHasNoLensForOtherModels) {
   for (const ColmapCamera& camera :
-       {two_focal_camera("DIVISION", {0.1}), two_focal_camera("EUCM", {0.5, 1}),
+       {one_focal_camera("SIMPLE_DIVISION", {0.1}), two_focal_camera("DIVISION", {0.1}),
+        two_focal_camera("EUCM", {0.5, 1}),
         two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE", std::vector<double>(12, 0.001)),
         two_focal_camera("PINHOLE", {}), two_focal_camera("OPENCV", {0, 0, 0, 0}),
         two_focal_camera("FOV", {0})})
@@ -237,6 +238,10 @@ TEST(ColmapLens, WhatCannotBeUndistortedIsNamed) {
   EXPECT_EQ(message({3, "EQUIRECTANGULAR", 640, 320, {640, 320}}),
             "camera 3: model EQUIRECTANGULAR is not supported; undistort its images with COLMAP "
             "first");
+  // COLMAP-Underwater's, which COLMAP does not know.
+  EXPECT_EQ(message({3, "METASHAPE_FISHEYE", 640, 480, {700, 700, 320, 240, 0, 0, 0, 0, 0, 0}}),
+            "camera 3: model METASHAPE_FISHEYE is not supported; undistort its images with the "
+            "program that calibrated it first");
   EXPECT_NE(message({3, "OPENCV_FISHEYE", 640, 480, {700, 700, 900, 240, 0, 0, 0, 0}})
                 .find("camera 3 (OPENCV_FISHEYE) cannot be undistorted"),
             std::string::npos);  // its principal point lies outside the image

@@ -211,7 +211,7 @@ TEST_F(Underwater, RefusesWrongTails) {
 }
 
 TEST(HousingOf, GivesEveryCameraItsOwnPort) {
-  const Housing housing = housing_of(model_with_ports());
+  const Housing housing = housing_of(model_with_ports().cameras);
   EXPECT_EQ(housing.port_of("any.jpg", 1), "camera_1");
   EXPECT_EQ(housing.port_of("any.jpg", 2), "none");
   EXPECT_EQ(housing.port_of("any.jpg", 7), "camera_7");

@@ -217,6 +217,32 @@ TEST_F(HousingTest, GivesEachImageItsPortThroughTheSurface) {
               HasSubstr("/x/sky.jpg: its port 'lake': the camera looks away"));
 }
 
+// A drone over the lake and a diver in it: one scene, one file.
+TEST_F(HousingTest, GivesImagesTheSurfaceOrAPortFromOneFile) {
+  const Housing housing = read(R"({ "version": 1, "default": "lake", "ports": {
+    "lake": { "type": "water-surface", "normal": [0, 0, -1], "point_m": [0, 0, 1.5],
+              "n_water": 1.34 },
+    "diver": { "type": "flat", "distance_m": 0.02, "thickness_m": 0.014, "normal": [0.6, 0, 0.8],
+               "n_glass": 1.52, "n_water": 1.34 } },
+    "images": { "diver/a.jpg": "diver" } })");
+  Scene scene;
+  scene.images = {looking_down("/x/drone/a.jpg", 6.5), looking_down("/x/diver/a.jpg", -2),
+                  looking_down("/x/drone/b.jpg", 9.5)};
+  attach_ports(scene, housing);
+  for (const std::size_t above : {std::size_t{0}, std::size_t{2}}) {
+    EXPECT_EQ(scene.images[above].port_name, "lake");
+    const auto& port = flat(*scene.images[above].camera.port);
+    EXPECT_EQ(port.normal, Eigen::Vector3d::UnitZ());
+    EXPECT_EQ(port.distance, above == 0 ? 5 : 8);  // the height over the surface
+    EXPECT_EQ(port.thickness, 0);
+  }
+  EXPECT_EQ(scene.images[1].port_name, "diver");
+  const auto& port = flat(*scene.images[1].camera.port);
+  EXPECT_LT((port.normal - Eigen::Vector3d(0.6, 0, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(port.distance, 0.02);
+  EXPECT_EQ(port.thickness, 0.014);
+}
+
 TEST_F(HousingTest, NamesKeyAndValue) {
   EXPECT_THAT(error("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(error("\"version\": 1,", ""), HasSubstr("'version' is missing"));

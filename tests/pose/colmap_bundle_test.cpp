@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "pose/adjust.h"
 #include "pose/colmap_survey.h"
 #include "support/error_of.h"
 
@@ -31,6 +34,22 @@ TEST(ColmapBundle, MeasuresErrorsInThePhotograph) {
     for (io::ColmapPoint2D& point : image.points) point.x += 0.1;
   const ColmapBundle bundle = to_bundle(model, {&kLens, 1}, housing());
   for (const double error : reprojection_errors(bundle.bundle)) ASSERT_NEAR(error, 0.1, 2e-4);
+}
+
+// With a focal length 1 % short and the factor that mends it, everything is in place again: a
+// distortion that does not follow the factor misses by up to half a pixel here, one that follows
+// to first order by the square of that hundredth (0.01^2 of 600 px, times the distortion).
+TEST(ColmapBundle, DistortionFollowsTheFocalLength) {
+  const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
+  io::ColmapCamera lens = kLens;
+  lens.params[0] /= 1.01;
+  lens.params[1] /= 1.01;
+  ColmapBundle bundle = to_bundle(model, {&lens, 1}, housing());
+  bundle.bundle.cameras[0].change(kFocalNumber) = std::log(1.01);
+  for (const double error : reprojection_errors(bundle.bundle)) ASSERT_LT(error, 0.02);
+  for (Observation& observation : bundle.bundle.observations) observation.pixel_by_focal.setZero();
+  const std::vector<double> unmoved = reprojection_errors(bundle.bundle);
+  EXPECT_GT(*std::max_element(unmoved.begin(), unmoved.end()), 0.3);
 }
 
 TEST(ColmapBundle, BecomesTheModelAgain) {
@@ -111,6 +130,33 @@ TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
   others[1].id = 2;
   EXPECT_EQ(test::error_of([&] { to_bundle(model, others, housing()); }),
             "camera 4 has no in-air lens");
+}
+
+// A model as COLMAP-Underwater writes it, the port in its camera whether the poses were solved with
+// it or, as far as a focal length helps, in air.
+io::ColmapModel solved_with(const io::Housing& housing) {
+  const io::ColmapModel tracks =
+      model_of(survey(camera_behind(flat_port(2)), {.points = 100, .noise = 0.2}));
+  ColmapBundle bundle = to_bundle(tracks, {&kLens, 1}, housing);
+  AdjustOptions options;
+  options.free[kFocalNumber] = housing.ports.empty();
+  adjust(bundle.bundle, options);
+  io::ColmapModel model = to_model(bundle, tracks);
+  model.cameras[0].port = flat_port(2);
+  return model;
+}
+
+TEST(PortFit, TellsPosesSolvedWithThePortFromPosesSolvedInAir) {
+  const PortFit refractive = port_fit(solved_with(housing()));
+  EXPECT_LT(refractive.behind_ports, 0.2 * std::sqrt(2));  // no more than the noise of both axes
+  EXPECT_GT(refractive.in_air, 10 * refractive.behind_ports);
+  io::ColmapModel absorbed = solved_with({});
+  const PortFit in_air = port_fit(absorbed);
+  EXPECT_GT(in_air.behind_ports, 10 * in_air.in_air);
+  absorbed.points.clear();
+  const PortFit nothing = port_fit(absorbed);
+  EXPECT_EQ(nothing.behind_ports, 0);
+  EXPECT_EQ(nothing.in_air, 0);
 }
 
 }  // namespace

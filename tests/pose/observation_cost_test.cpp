@@ -36,6 +36,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
   Observation observation(std::size_t index) const {
     Observation observation = bundle_.observations[index];
     observation.to_photograph << 0.9, 0.05, -0.03, 1.1;
+    observation.pixel_by_focal << 70, -40;
     return observation;
   }
 
@@ -117,7 +118,8 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfJets) {
                          *model.port)
                    : refractive::PinholeCamera<Jet>(lens).project(X).pixel;
     const refractive::Vector2<Jet> expected =
-        seen.to_photograph.cast<Jet>() * (pixel - seen.pixel.cast<Jet>());
+        seen.to_photograph.cast<Jet>() *
+        (pixel - seen.pixel.cast<Jet>() - seen.pixel_by_focal.cast<Jet>() * change(kFocalNumber));
     for (int row = 0; row < 2; ++row) {
       EXPECT_NEAR(value(row), expected(row).a, 1e-9);
       EXPECT_LT((jacobian.row(row).transpose() - expected(row).v).norm(),

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "io/calibmar.h"
 #include "pose/adjust.h"
 #include "pose/colmap_survey.h"
 #include "pose/refine.h"
@@ -86,14 +87,35 @@ TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
   EXPECT_NEAR(free[2]["value"].get<double>(), 20, 3 * free[2]["sigma"].get<double>());
 }
 
+// From poses that absorbed refraction and a port measured badly to the port as it is.
+TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
+  io::Housing wrong = testing::housing();
+  wrong.ports["main"] = flat_port(3, 0.025);
+  io::write_housing(folder_ / "housing.json", wrong);
+  const Outcome outcome =
+      run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto& free = report["cameras"][0]["free"];
+  const std::array<double, 3> truth{2, 0, 20};    // degrees, degrees, mm
+  const std::array<double, 3> wrong_by{1, 1, 5};  // what a standard deviation must not hide
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double value = free.at(i)["value"].get<double>(), sigma = free[i]["sigma"].get<double>();
+    EXPECT_NEAR(value, truth[i], 3 * sigma) << free[i]["name"];
+    EXPECT_LT(sigma, wrong_by[i] / 5) << free[i]["name"];
+  }
+}
+
 TEST_F(RefinePoses, TakesTheScaleFromPositions) {
-  std::string lines = "# name x y z\n";
+  std::string lines = "# name x y z\nwithout_a_pose.jpg 0 0 0\n";
   for (const BundleImage& image : truth_.images)
     lines += fmt::format("{} {} {} {}\n", image.name, image.pose.centre.x() + 1,
                          image.pose.centre.y(), image.pose.centre.z());
   write_atomically(folder_ / "positions.txt", lines);
   const Outcome outcome = run(kInput + "-o out --scale-from positions:positions.txt");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output,
+              ::testing::HasSubstr("positions.txt:2: the model has no image 'without_a_pose.jpg'"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   for (std::size_t i = 0; i < truth_.images.size(); ++i)
     EXPECT_LT(
@@ -125,6 +147,41 @@ TEST_F(RefinePoses, RefusesAWaterSurface) {
   io::write_housing(folder_ / "lake.json", lake);
   expect_refusal("RefinePoses", "-i . --lens lens/cameras.txt --housing lake.json -o out",
                  "lake.json: housing.ports.lake is a water surface");
+}
+
+TEST_F(RefinePoses, TakesLensAndPortFromCalibmar) {
+  io::ColmapCamera camera = testing::kLens;
+  camera.port = flat_port(2);
+  io::write_calibmar(folder_ / "calibration.yaml", camera);
+  ASSERT_EQ(run(kInput + "-o expected").exit_code, 0);
+  const auto expect_the_same = [&](const std::string& from, const std::string& output) {
+    const Outcome outcome = run("-i . " + from + " -o " + output);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    for (const char* name : {"sparse/cameras.txt", "sparse/images.txt", "housing.json"})
+      EXPECT_EQ(read_file(folder_ / output / name), read_file(folder_ / "expected" / name))
+          << from << ": " << name;
+  };
+  expect_the_same("--lens calibration.yaml", "one");
+  expect_the_same("--lens lens/cameras.txt --housing calibration.yaml", "two");
+}
+
+// The lens file says 0.7 % too short, with the distortion of the true one. Close range and a given
+// length tell the focal length.
+TEST_F(RefinePoses, FindsTheFocalLengthOfADistortingLens) {
+  io::ColmapModel lens;
+  lens.cameras = {testing::kLens};
+  lens.cameras[0].params[0] /= 1.007;
+  lens.cameras[0].params[1] /= 1.007;
+  write("lens", lens);
+  const Outcome outcome = run(kInput + "-o out --refine focal --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto& factor = report["cameras"][0]["free"].at(0);
+  EXPECT_NEAR(factor["value"].get<double>(), 1.007, 3 * factor["sigma"].get<double>());
+  EXPECT_LT(factor["sigma"].get<double>(), 0.001);
+  EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  EXPECT_NEAR(refined.cameras[0].params[0], testing::kLens.params[0], 1);
 }
 
 TEST_F(RefinePoses, GivesTheSameBytesEachTime) {
@@ -172,7 +229,6 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --scale-from points:1000,7,1", "point 7 is not in the model");
   refuses(kInput + "-o out --scale-from positions:lost.txt", "lost.txt");
   refuses(kInput + "-o out --refine centre", "there is a flat port");
-  refuses(kInput + "-o out --refine focal", "OPENCV lens");
   refuses(kInput + "-o out --refine distance",
           "needs --distance-sigma, --scale-from or --poses known");
   refuses(kInput + "-o out --normal-sigma 1", "--refine does not name normal");
@@ -182,6 +238,9 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --scale-sigma nan", "--scale-sigma");
   write_atomically(folder_ / "two.txt", "image0.jpg 1 2 3\nimage1.jpg 1 2\n");
   refuses(kInput + "-o out --scale-from positions:two.txt", "two.txt:2: must be NAME X Y Z");
+  write_atomically(folder_ / "few.txt", "image0.jpg 1 0 0\nlost.jpg 2 0 1\nimage2.jpg 3 0 0\n");
+  refuses(kInput + "-o out --scale-from positions:few.txt",
+          "few.txt: 2 positions of images of the model");
   write_atomically(folder_ / "line.txt", "image0.jpg 1 0 0\nimage1.jpg 2 0 0\nimage2.jpg 3 0 0\n");
   refuses(kInput + "-o out --scale-from positions:line.txt", "lie on one line");
   write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");

@@ -61,6 +61,28 @@ TEST_P(RefineBehind, FindsPosesFromAbsorbedOnes) {
   EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
 }
 
+// With true tracks what is left is the noise, less what the unknowns take away: six numbers of each
+// image but the first (its place is the frame's), and three of each point; the length that is given
+// stands for the scale. A tenth is what is asked; the noise of so many residuals scatters by 1 %.
+TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
+  constexpr double kNoise = 0.5;
+  const Bundle truth = survey(camera_behind(GetParam().port),
+                              {.distance = GetParam().distance, .points = 400, .noise = kNoise});
+  Bundle bundle = absorbed(truth);
+  RefineOptions options;
+  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
+  options.adjust.distances.push_back(
+      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  bring_to_metres(bundle, options.adjust);
+  const RefineReport report = refine(bundle, options);
+  const double residuals = 2.0 * static_cast<double>(bundle.observations.size());
+  const double unknowns = 6.0 * static_cast<double>(bundle.images.size() - 1) +
+                          3.0 * static_cast<double>(bundle.points.size());
+  const double expected = kNoise * std::sqrt(2.0) * std::sqrt(1 - unknowns / residuals);
+  EXPECT_NEAR(report.rms_after, expected, 0.1 * expected);
+  EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
+}
+
 // The scale comes out within what its standard deviation says, from refraction alone.
 TEST_P(RefineBehind, SaysHowWellItKnowsTheScale) {
   const Bundle truth = survey(camera_behind(GetParam().port),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "refractive/affine_warp.h"
+#include "refractive/dome_views.h"
 #include "refractive/lens_camera.h"
 #include "refractive/line_search.h"
 #include "refractive/views.h"
@@ -13,34 +14,34 @@ namespace {
 struct Dry {
   using Camera = PinholeCamera<double>;
   static constexpr double kPixels = 1e-9;
-  static Camera make(const View& view) { return Camera(view.lens); }
+  static Camera make(const View& view, Random&) { return Camera(view.lens); }
 };
 struct DryFloat {
   using Camera = PinholeCamera<float>;
   static constexpr double kPixels = 2e-3;
-  static Camera make(const View& view) { return Camera(view.lens.cast<float>()); }
+  static Camera make(const View& view, Random&) { return Camera(view.lens.cast<float>()); }
 };
 struct Port {
   using Camera = FlatPortCamera<double>;
   static constexpr double kPixels = 1e-9;
-  static Camera make(const View& view) { return view.camera<double>(); }
+  static Camera make(const View& view, Random&) { return view.camera<double>(); }
 };
 struct PortFloat {
   using Camera = FlatPortCamera<float>;
   static constexpr double kPixels = 2e-3;
-  static Camera make(const View& view) { return view.camera<float>(); }
+  static Camera make(const View& view, Random&) { return view.camera<float>(); }
 };
 struct Search {
   using Camera = LineSearchCamera<double>;
   static constexpr double kPixels = 1.1;
-  static Camera make(const View& view) {
+  static Camera make(const View& view, Random&) {
     return Camera(view.lens, view.port, view.width, view.height);
   }
 };
 struct SearchFloat {
   using Camera = LineSearchCamera<float>;
   static constexpr double kPixels = 1.1;
-  static Camera make(const View& view) {
+  static Camera make(const View& view, Random&) {
     return Camera(view.lens.cast<float>(), view.port.cast<float>(), view.width, view.height);
   }
 };
@@ -57,18 +58,47 @@ DistortedLens<T> distorted(const View& view) {
 struct Lens {
   using Camera = LensFlatPortCamera<double>;
   static constexpr double kPixels = 1e-9;
-  static Camera make(const View& view) { return {distorted<double>(view), view.port}; }
+  static Camera make(const View& view, Random&) { return {distorted<double>(view), view.port}; }
 };
 struct LensFloat {
   using Camera = LensFlatPortCamera<float>;
   static constexpr double kPixels = 2e-3;
-  static Camera make(const View& view) { return {distorted<float>(view), view.port.cast<float>()}; }
+  static Camera make(const View& view, Random&) {
+    return {distorted<float>(view), view.port.cast<float>()};
+  }
+};
+// A thick dome in the place of the flat port, up to 0.8 of its radius away from the lens.
+DomePort<double> thick_dome(Random& random) {
+  DomePort<double> port = random_dome_view(random, 0.8).port;
+  port.thickness = random.uniform(0.01, 0.02);
+  return port;
+}
+struct Dome {
+  using Camera = DomePortCamera<double>;
+  static constexpr double kPixels = 1e-9;
+  static Camera make(const View& view, Random& random) {
+    return {view.lens, thick_dome(random), view.width, view.height};
+  }
+};
+struct DomeFloat {
+  using Camera = DomePortCamera<float>;
+  static constexpr double kPixels = 2e-3;
+  static Camera make(const View& view, Random& random) {
+    return {view.lens.cast<float>(), thick_dome(random).cast<float>(), view.width, view.height};
+  }
+};
+struct LensDome {
+  using Camera = LensDomePortCamera<double>;
+  static constexpr double kPixels = 1e-9;
+  static Camera make(const View& view, Random& random) {
+    return {distorted<double>(view), thick_dome(random)};
+  }
 };
 
 template <class Kind>
 class Cameras : public ::testing::Test {};
-using Kinds =
-    ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFloat, Lens, LensFloat>;
+using Kinds = ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFloat, Lens, LensFloat,
+                               Dome, DomeFloat, LensDome>;
 TYPED_TEST_SUITE(Cameras, Kinds);
 
 // Calls check(camera, pixel, X): points 0.7 to 10 m away, well inside the water and the image.
@@ -79,7 +109,7 @@ void for_random_points(unsigned seed, Check check) {
   for (int k = 0; k < 10; ++k) {
     View view = random_view(random, 160, 120);
     view.port.distance = std::min(view.port.distance, 0.03);
-    const typename Kind::Camera camera = Kind::make(view);
+    const typename Kind::Camera camera = Kind::make(view, random);
     for (int i = 0; i < 100; ++i) {
       const Vector2<T> pixel(static_cast<T>(random.uniform(2, 157)),
                              static_cast<T>(random.uniform(2, 117)));

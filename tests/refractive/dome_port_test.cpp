@@ -187,6 +187,27 @@ TEST(DomePort, BendsNothingWhereItIsCentred) {
   }
 }
 
+// Wherever the spheres are, nothing is left of them. 1e-12 as in the limits of flat ports.
+TEST(DomePort, IsThePinholeCameraWhereAllIndicesAreEqual) {
+  Random random(10);
+  for (int k = 0; k < 1000; ++k) {
+    DomeView view = random_dome_view(random, 0.8);
+    view.port.n_glass = view.port.n_water = view.port.n_air;
+    const auto camera = view.camera<double>();
+    const PinholeCamera<double> dry(view.lens);
+    const Vector2<double> pixel = random_pixel(random, view);
+    const AxialRay<double> ray = camera.ray(pixel);
+    EXPECT_LT((ray.direction - dry.ray(pixel).direction).norm(), 1e-12);
+    EXPECT_LT(ray.origin.norm(), 1e-12);
+    const Vector3d X = random_point(random, camera, pixel);
+    Matrix23<double> jacobian, expected;
+    const Projection<double> image = camera.project(X, &jacobian);
+    EXPECT_TRUE(image.visible);
+    EXPECT_LT((image.pixel - dry.project(X, &expected).pixel).norm(), 1e-12 * view.width);
+    EXPECT_LT((jacobian - expected).norm(), 1e-11 * expected.norm());
+  }
+}
+
 // A sphere of a kilometre is a plane: what is left is the sag of the glass within the port.
 TEST(DomePort, BecomesAFlatPortWhenItGrows) {
   Random random(8);
