@@ -81,6 +81,13 @@ void map(const Chain& chain, const fs::path& folder, const fs::path& images, boo
       folder / "mapper.log", {"failed to create sparse model"});
 }
 
+Words densify_words(const fs::path& folder, const DenseOptions& options) {
+  Words words{"-i", "scene.mvs", "-w", folder.string()};
+  if (!options.housing.empty()) words += {"--refractive"};
+  words += options.more;
+  return words;
+}
+
 std::string joined(const std::vector<double>& values) {
   std::string text;
   for (const double value : values)
@@ -168,15 +175,13 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
                scene.images(medium).string(),
                "-o",
                (folder / "scene.mvs").string()};
-  Words densify{"-i", "scene.mvs", "-w", folder.string()};
+  const Words densify = densify_words(folder, options);
   // Files of the same name may hold other poses or another port.
   Words contents{content_of(model)};
   if (!options.housing.empty()) {
     import += {"--housing", options.housing.string()};
-    densify += {"--refractive"};
     contents += {content_of(options.housing)};
   }
-  densify += options.more;
   const Words excuses =
       options.or_nothing ? Words{"no image has neighbours to be matched with"} : Words{};
   const Json programs = content_of_programs({"InterfaceCOLMAP", "DensifyPointCloud"});
@@ -185,6 +190,17 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
     run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log", excuses);
   });
   return fs::is_regular_file(folder / "scene_dense.ply") ? folder : fs::path();
+}
+
+fs::path fused_again(const Chain& chain, const fs::path& dense, const std::string& name,
+                     const DenseOptions& options, const Words& fusion) {
+  const fs::path folder = dense / name;
+  Words densify = densify_words(dense, options);
+  densify += fusion;
+  densify += {"-o", (folder / "scene_dense.mvs").string()};
+  step(folder, {densify, content_of_programs({"DensifyPointCloud"})},
+       [&] { run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log"); });
+  return folder;
 }
 
 }  // namespace axial

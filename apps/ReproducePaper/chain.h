@@ -87,6 +87,12 @@ std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const SimulatedScene& scene, const std::filesystem::path& model,
                                 const std::string& medium, const DenseOptions& options);
 
+// Depth maps that densified() made with the same `options`, fused again with other options of
+// DensifyPointCloud, none of which may concern matching; the cloud's folder, within theirs.
+std::filesystem::path fused_again(const Chain& chain, const std::filesystem::path& dense,
+                                  const std::string& name, const DenseOptions& options,
+                                  const Words& fusion);
+
 struct EvaluationOptions {
   double tolerance = 0.005;  // [m]
   // Cameras under water that must see a place for it to count: as many as fusion asks for

@@ -70,14 +70,18 @@ void remove_clouds(const std::string& poses, const SimulatedScene& scene) {
     std::filesystem::remove_all(scene.folder / dense_name(poses, method));
 }
 
-std::filesystem::path dense_of(const Chain& chain, const std::string& poses,
-                               const SimulatedScene& scene, const std::filesystem::path& model,
-                               const Method& method) {
+DenseOptions options_of(const SimulatedScene& scene, const Method& method) {
   DenseOptions options;
   if (method.in_water) options.housing = scene.housing();
   options.more = method.options;
+  return options;
+}
+
+std::filesystem::path dense_of(const Chain& chain, const std::string& poses,
+                               const SimulatedScene& scene, const std::filesystem::path& model,
+                               const Method& method) {
   return densified(chain, dense_name(poses, method), scene, model,
-                   method.in_water ? "water" : "air", options);
+                   method.in_water ? "water" : "air", options_of(scene, method));
 }
 
 // As it lies, and after the rigid motion that fits it best: the paper registered its clouds.
@@ -106,6 +110,17 @@ Json completeness(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
+// What comes out where two depth maps suffice, judged where two cameras under water see.
+Json fused_for_two(const Chain& chain, const std::filesystem::path& dense,
+                   const SimulatedScene& scene, const Study& study, const Method& method) {
+  EvaluationOptions evaluation = study.evaluation;
+  evaluation.picture_width = 0;
+  evaluation.min_views = 2;
+  const auto fused =
+      fused_again(chain, dense, "two", options_of(scene, method), {"--number-views-fuse", "2"});
+  return evaluated(chain, fused, scene, evaluation);
+}
+
 Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
   const SimulatedScene scene = simulated(chain, study.scene);
   const ColmapPoses poses = colmap_poses(chain, "colmap", scene, "air", true_lens(scene));
@@ -117,7 +132,9 @@ Json clouds_on_colmap_poses(const Chain& chain, const Study& study) {
     const auto dense = dense_of(chain, "colmap", scene, poses.model, method);
     Json& cloud = result["clouds"][method.name];
     cloud = cloud_errors(chain, dense, scene, study.evaluation);
-    if (method.judged_closely) cloud["complete"] = completeness(chain, dense, scene, study, cloud);
+    if (!method.judged_closely) continue;
+    cloud["complete"] = completeness(chain, dense, scene, study, cloud);
+    cloud["two"] = fused_for_two(chain, dense, scene, study, method);
   }
   remove_clouds("colmap", scene);
   return result;
@@ -164,7 +181,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
               {"methods", to_json(methods)}};
     };
     const auto& every = reconstruction_methods();
-    all.push_back({colmap_part(seed), inputs(4, {every.begin(), every.end()}),
+    all.push_back({colmap_part(seed), inputs(5, {every.begin(), every.end()}),
                    [=] { return clouds_on_colmap_poses(chain, one); }});
     all.push_back({true_part(seed), inputs(5, one.on_true_poses),
                    [=] { return maps_on_true_poses(chain, one); }});

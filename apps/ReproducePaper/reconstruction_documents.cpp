@@ -26,6 +26,10 @@ struct Clouds {
     const Json& cloud = of(seed).at(method);
     return (field == "moved" ? cloud.at("moved").at("mean") : cloud.at(field)).get<double>();
   }
+  // Fused where two depth maps agree.
+  double of_two(int seed, const std::string& method, const std::string& field) const {
+    return of(seed).at(method).at("two").at(field).get<double>();
+  }
   double beside(int seed, const std::string& method, const std::string& other,
                 const std::string& field = "mean") const {
     return value(seed, method, field) / value(seed, other, field);
@@ -152,6 +156,26 @@ std::string completeness_table(const Clouds& clouds, const Seeds& seeds) {
   return experiments::markdown_table(rows);
 }
 
+// Where two depth maps suffice.
+std::string two_table(const Clouds& clouds, const Seeds& seeds) {
+  std::vector<Words> rows{{"cloud", "points", "mean [mm]", "mean / in air", "of each seed",
+                           "completeness [%]", "of each seed"}};
+  for (const Method& method : reconstruction_methods()) {
+    if (!method.judged_closely) continue;
+    const auto value = [&](const char* field) {
+      return [&, field](int s) { return clouds.of_two(s, method.name, field); };
+    };
+    const auto ratio = [&](int s) { return value("mean")(s) / clouds.of_two(s, "air", "mean"); };
+    rows.push_back({method.title, fmt::format("{:.0f}", median_over(seeds, value("points"))),
+                    millimetres(median_over(seeds, value("mean"))),
+                    fmt::format("{:.3f}", median_over(seeds, ratio)),
+                    joined(seeds, [&](int s) { return fmt::format("{:.3f}", ratio(s)); }),
+                    percent(median_over(seeds, value("recall"))),
+                    joined(seeds, [&](int s) { return percent(value("recall")(s)); })});
+  }
+  return experiments::markdown_table(rows);
+}
+
 // Pictures.
 
 struct Panel {
@@ -225,6 +249,9 @@ std::string verdicts(const Json& results, const Clouds& clouds, const Seeds& see
     });
   };
   const double of_two = more_complete("2"), of_three = more_complete("3");
+  const double fused_for_two = median_over(seeds, [&](int s) {
+    return clouds.of_two(s, "ours", "recall") - clouds.of_two(s, "air", "recall");
+  });
   const double trend = largest_ring_difference(results, seeds);
   return experiments::verdict_table(
       {{"our method, COLMAP's poses: mean / in air at most 0.95", fmt::format("{:.3f}", ratio),
@@ -233,6 +260,9 @@ std::string verdicts(const Json& results, const Clouds& clouds, const Seeds& see
         fmt::format("{:+.1f} percentage points", 100 * of_two), of_two >= 0},
        {"the same, of what three cameras see",
         fmt::format("{:+.1f} percentage points", 100 * of_three), of_three >= 0},
+       {"the same, of what two cameras see, where both clouds want two views "
+        "(--number-views-fuse 2)",
+        fmt::format("{:+.1f} percentage points", 100 * fused_for_two), fused_for_two >= 0},
        {"our method, true poses: every ring within 1e-4 of in air",
         fmt::format("{:.2f}e-4", 1e4 * trend), trend <= 1e-4}});
 }
@@ -253,6 +283,7 @@ std::vector<Document> reconstruction_documents(const Json& results, const Seeds&
   const Clouds on_colmaps{results, colmap_part}, on_true{results, true_part};
   return {{"reconstruction.md", colmap_poses_table(on_colmaps, seeds)},
           {"reconstruction_complete.md", completeness_table(on_colmaps, seeds)},
+          {"reconstruction_two.md", two_table(on_colmaps, seeds)},
           registered_images(results, seeds),
           {"reconstruction_true.md", experiments::markdown_table(cloud_rows(on_true, seeds))},
           {"reconstruction_gains.md", gains_table({on_colmaps, on_true}, seeds)},
