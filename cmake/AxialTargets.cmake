@@ -36,12 +36,16 @@ set(AXIAL_PARSED_LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json o
 add_axial_parsed_headers(axial_parsed
   HEADERS ${AXIAL_PARSED_HEADERS} LINK axial_flags ${AXIAL_PARSED_LIBRARIES})
 
+include(CheckLinkerFlag)
 # Tests are compiled and linked far more often than run: less optimising takes a third off the time to
 # compile one, and gold half off the time to link it.
 add_library(axial_test_flags INTERFACE)
 target_link_libraries(axial_test_flags INTERFACE axial_flags)
 target_compile_options(axial_test_flags INTERFACE -O1)
-target_link_options(axial_test_flags INTERFACE -fuse-ld=gold)
+check_linker_flag(CXX -fuse-ld=gold AXIAL_HAS_GOLD)
+if(AXIAL_HAS_GOLD)
+  target_link_options(axial_test_flags INTERFACE -fuse-ld=gold)
+endif()
 if(AXIAL_TESTS)
   add_axial_parsed_headers(axial_parsed_for_tests
     HEADERS ${AXIAL_PARSED_HEADERS} <gmock/gmock.h> <gtest/gtest.h>

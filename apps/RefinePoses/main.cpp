@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -47,8 +46,11 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
   // One lens is that of all cameras, whatever their ids.
   if (lenses.size() == 1 && lenses.front().port)
     return io::housing_with(io::to_housing_port(*lenses.front().port));
-  const io::Housing carried = io::housing_of(lenses);
-  return carried.ports.empty() ? io::housing_of(model.cameras) : carried;
+  io::Housing carried = io::housing_of(model.cameras);
+  for (const auto& [name, port] : io::housing_of(lenses).ports)
+    carried.ports.insert_or_assign(name, port);
+  for (const auto& [id, name] : io::housing_of(lenses).cameras) carried.cameras[id] = name;
+  return carried;
 }
 
 // Of the file, or else what is carried.
@@ -88,20 +90,6 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
     spdlog::warn("Not converged after {} iterations", report.last.iterations);
 }
 
-// Beyond this factor the second-order term of a distorting lens is a tenth of a pixel.
-void warn_of_focal(const pose::ColmapBundle& refined) {
-  constexpr double kFirstOrder = 0.02;
-  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
-    const double factor = std::exp(refined.bundle.cameras[i].change(pose::kFocalNumber));
-    if (std::abs(factor - 1) > kFirstOrder && !io::pinhole_lens(refined.lenses[i]))
-      spdlog::warn(
-          "--refine focal: {:.3f} times the focal length of camera {}, whose distortion is "
-          "followed to "
-          "first order; run again with the lens of the refined model",
-          factor, refined.lenses[i].id);
-  }
-}
-
 // The model last: it is not there without the housing it belongs to.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
            const io::Housing& housing, const std::string& report) {
@@ -127,7 +115,8 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
-    spdlog::warn("{}: no image goes by {}", options.housing.string(), entry);
+    spdlog::warn("{}: no image goes by {}",
+                 (options.housing.empty() ? options.lens : options.housing).string(), entry);
   pose::AdjustOptions& adjust = options.refine.adjust;
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
             refined.bundle, adjust);
@@ -147,6 +136,8 @@ int run(int argc, char** argv) {
   spdlog::info("Begins with points {:.3g} m away, in the middle",
                pose::median_distance(refined.bundle));
   const pose::Bundle before = refined.bundle;
+  if (adjust.free[pose::kFocalNumber])
+    options.refine.between_rounds = [&] { place_again(refined, model); };
   const pose::RefineReport report = pose::refine(
       refined.bundle, options.refine, [](const std::string& line) { spdlog::info("{}", line); });
   const auto images = errors_by_image(before, refined.bundle);
@@ -156,7 +147,6 @@ int run(int argc, char** argv) {
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(report, refined.bundle);
-  warn_of_focal(refined);
   write(options, refined, model, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   spdlog::info("Refined model in {}", options.output.string());

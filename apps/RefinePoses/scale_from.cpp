@@ -113,8 +113,8 @@ void read_positions(const std::filesystem::path& file, double sigma, const pose:
       without_pose.push_back(fmt::format("{}: the model has no image '{}'", where, name));
   }
   if (adjust.positions.size() < 3)
-    fail("{}: {} positions of images of the model, at least 3 are needed", file.string(),
-         adjust.positions.size());
+    fail("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),
+         adjust.positions.size(), without_pose.empty() ? "" : "; " + without_pose.front());
   for (const std::string& line : without_pose) spdlog::warn("{}", line);
   check_positions(adjust.positions, bundle, file);
 }

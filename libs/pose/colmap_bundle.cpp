@@ -110,6 +110,13 @@ void scale_focal_lengths(io::ColmapCamera& lens, double factor) {
   for (std::size_t k = 0; k < focal_lengths; ++k) lens.params[k] *= factor;
 }
 
+// The lens with the focal length that the camera has now.
+io::ColmapCamera lens_now(const ColmapBundle& bundle, std::size_t camera) {
+  io::ColmapCamera lens = bundle.lenses[camera];
+  scale_focal_lengths(lens, std::exp(bundle.bundle.cameras[camera].change(kFocalNumber)));
+  return lens;
+}
+
 }  // namespace
 
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
@@ -144,6 +151,19 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
   return result;
 }
 
+void place_again(ColmapBundle& refined, const io::ColmapModel& model) {
+  Bundle& bundle = refined.bundle;
+  std::vector<io::ColmapCamera> lenses;
+  for (std::size_t i = 0; i < refined.lenses.size(); ++i) lenses.push_back(lens_now(refined, i));
+  for (Observation& observation : bundle.observations) {
+    const std::size_t camera = bundle.images[observation.image].camera;
+    const BundleCamera& now = bundle.cameras[camera];
+    const io::ColmapPoint2D& seen = model.images[observation.image].points[observation.source];
+    if (place(lenses[camera], now.now().lens, seen, observation))
+      observation.pixel -= observation.pixel_by_focal * now.change(kFocalNumber);
+  }
+}
+
 PortFit port_fit(const io::ColmapModel& model) {
   const auto rms = [&](const io::Housing& housing) {
     return root_mean_square(reprojection_errors(to_bundle(model, model.cameras, housing).bundle));
@@ -154,9 +174,8 @@ PortFit port_fit(const io::ColmapModel& model) {
 io::ColmapModel to_model(const ColmapBundle& refined, const io::ColmapModel& model) {
   const Bundle& bundle = refined.bundle;
   io::ColmapModel result;
-  result.cameras = refined.lenses;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
-    scale_focal_lengths(result.cameras[i], std::exp(bundle.cameras[i].change(kFocalNumber)));
+  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
+    result.cameras.push_back(lens_now(refined, i));
     result.cameras[i].port = bundle.cameras[i].now().port;
   }
   result.images = model.images;

@@ -26,6 +26,10 @@ struct ColmapBundle {
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
+// Moves the observations to where the lenses take the distortion away at the focal lengths that the
+// cameras have now. Until then focal lengths move them to first order, from where they were placed.
+void place_again(ColmapBundle& bundle, const io::ColmapModel& model);
+
 // Which cameras the poses of a model that carries ports were solved with: the RMS [px] of its own
 // tracks with the cameras behind their ports, and in air. 0 where a model has no tracks.
 struct PortFit {

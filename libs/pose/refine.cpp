@@ -153,6 +153,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
                            root_mean_square(reprojection_errors(bundle)), dropped));
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
+    if (options.between_rounds) options.between_rounds();
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   report.last = adjust(bundle, adjusting);

@@ -13,7 +13,8 @@ namespace axial::pose {
 struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
-  int rounds = 3;  // of adjusting and dropping what does not fit
+  int rounds = 3;                        // of adjusting and dropping what does not fit
+  std::function<void()> between_rounds;  // may move the bundle's observations, as place_again()
 };
 
 struct RefineReport {
