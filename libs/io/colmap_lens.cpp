@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <string_view>
 
 #include "base/error.h"
+#include "io/lens_fit.h"
 
 namespace axial::io {
 
@@ -145,7 +147,8 @@ struct Lens {
   int focal_lengths;  // 1: f cx cy ..., 2: fx fy cx cy ...
   Vector2d (*distort)(Parameters, const Vector2d&);
   bool flat;                   // the pinhole where all distortion parameters are zero
-  Bent (*bent)(Parameters){};  // null: the matcher has no such lens
+  Bent (*bent)(Parameters){};  // null: the matcher has no such lens,
+  bool radial = false;         // but one that can be fitted to it
 };
 
 constexpr std::array kLenses = {
@@ -163,9 +166,9 @@ constexpr std::array kLenses = {
     Lens{"THIN_PRISM_FISHEYE", 2, thin_prism_fisheye, false, bent_as_thin_prism_fisheye},
     Lens{"RAD_TAN_THIN_PRISM_FISHEYE", 2, rad_tan_thin_prism_fisheye, false},
     Lens{"FOV", 2, field_of_view, true, bent_by_field_of_view},
-    Lens{"SIMPLE_DIVISION", 1, division, true},
-    Lens{"DIVISION", 2, division, true},
-    Lens{"EUCM", 2, eucm, false},
+    Lens{"SIMPLE_DIVISION", 1, division, true, nullptr, true},
+    Lens{"DIVISION", 2, division, true, nullptr, true},
+    Lens{"EUCM", 2, eucm, false, nullptr, true},
 };
 
 // COLMAP-Underwater's own, which COLMAP itself cannot undistort.
@@ -288,10 +291,40 @@ Vector2d image_direction(const ColmapCamera& camera, double u, double v) {
   return image_point(take_apart(camera), {u, v});
 }
 
+namespace {
+
+// [rad] off the axis, of the image's corners; as far as the matcher follows a lens where one shows
+// nothing.
+double widest_angle(const ColmapCamera& camera) {
+  constexpr double kWidest = 85 * std::numbers::pi / 180;
+  const double right = static_cast<double>(camera.width) - 1;
+  const double bottom = static_cast<double>(camera.height) - 1;
+  double widest = 0;
+  for (const Vector2d& corner :
+       {Vector2d(0, 0), Vector2d(right, 0), Vector2d(0, bottom), Vector2d(right, bottom)}) {
+    const auto imaged = direction_at(camera, corner);
+    widest = std::max(widest, imaged ? std::atan(imaged->direction.norm()) : kWidest);
+  }
+  return std::min(widest, kWidest);
+}
+
+// A tenth of what single precision leaves of a pixel in the matcher.
+std::optional<Bent> fitted(const ColmapCamera& camera, const Parts& parts) {
+  constexpr double kPixels = 1e-4;
+  const auto radius = [&](double theta) {
+    return parts.lens->distort(parts.distortion, {std::tan(theta), 0}).x();
+  };
+  return fitted_fisheye(radius, widest_angle(camera),
+                        kPixels / std::max(parts.pinhole.fx, parts.pinhole.fy));
+}
+
+}  // namespace
+
 std::optional<refractive::LensDistortion<double>> lens_distortion(const ColmapCamera& camera) {
   const Parts parts = take_apart(camera);
-  if (!parts.lens->bent || pinhole_lens(camera)) return std::nullopt;
-  return parts.lens->bent(parts.distortion);
+  if (pinhole_lens(camera)) return std::nullopt;
+  if (parts.lens->bent) return parts.lens->bent(parts.distortion);
+  return parts.lens->radial ? fitted(camera, parts) : std::nullopt;
 }
 
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const ColmapCamera& camera) {

@@ -34,8 +34,9 @@ std::optional<ImagedDirection> direction_at(const ColmapCamera& camera,
 refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera);
 
 // How the lens bends the picture of undistorted_lens(), for models that the matcher follows: the
-// polynomials, perspective and fisheye, and FOV. Nothing for the others
-// (RAD_TAN_THIN_PRISM_FISHEYE, the division models, EUCM), and for pinholes.
+// polynomials, perspective and fisheye, and FOV; and, by a fit that is right to 1e-4 px as far as
+// the image's corners, the division models and EUCM. Nothing for RAD_TAN_THIN_PRISM_FISHEYE,
+// pinholes, and lenses that no fit is right for.
 std::optional<refractive::LensDistortion<double>> lens_distortion(const ColmapCamera& camera);
 
 // The lens if `camera` is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a lens model whose distortion is
