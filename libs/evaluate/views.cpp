@@ -18,7 +18,7 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
   model.height = static_cast<int>(camera.height);
   model.distortion = io::lens_distortion(camera);
   if (!lens && !model.distortion)
-    fail("camera {} is {}: expected a pinhole, a polynomial lens or FOV", camera.id, camera.model);
+    fail("camera {} is {}: expected a lens that is matched as it is", camera.id, camera.model);
   model.lens = lens ? *lens : io::undistorted_lens(camera);
   if (model.distortion && !(distorted_lens<double>(model).field > 0))
     fail("camera {}: the distortion of its {} lens turns the image over", camera.id, camera.model);

@@ -171,7 +171,10 @@ TEST(ViewsOfModel, FindsPortsByTheEndOfTheName) {
 }
 
 TEST(ViewsOfModel, RefusesLensesThatAreNotMatchedAsTheyAreAndEmptyModels) {
-  EXPECT_THROW(views_of_model(small_model("DIVISION", {500, 500, 320, 240, 0.1}), nullptr), Error);
+  std::vector<double> parameters{500, 500, 320, 240};
+  parameters.resize(16, 1e-3);
+  EXPECT_THROW(views_of_model(small_model("RAD_TAN_THIN_PRISM_FISHEYE", parameters), nullptr),
+               Error);
   EXPECT_THROW(views_of_model(io::ColmapModel{}, nullptr), Error);
 }
 

@@ -112,7 +112,9 @@ TEST_F(ColmapScene, UndistortsImagesThatAreNoPinholes) {
 
 TEST_F(ColmapScene, KeepsImagesAndLensesAsTheyAre) {
   import_.undistort = false;
-  model_.cameras.push_back({11, "DIVISION", kWidth, kHeight, {150, 150, 80, 60, -0.1}});
+  ColmapCamera other{11, "RAD_TAN_THIN_PRISM_FISHEYE", kWidth, kHeight, {150, 150, 80, 60}};
+  other.params.resize(16, 1e-3);
+  model_.cameras.push_back(other);
   add_image(8, 11, "d.png");
   const Scene scene = import_colmap_scene(model_, import_);
   EXPECT_FALSE(scene.images[0].camera.distortion);
