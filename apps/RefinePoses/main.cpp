@@ -46,10 +46,10 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
   // One lens is that of all cameras, whatever their ids.
   if (lenses.size() == 1 && lenses.front().port)
     return io::housing_with(io::to_housing_port(*lenses.front().port));
-  io::Housing carried = io::housing_of(model.cameras);
-  for (const auto& [name, port] : io::housing_of(lenses).ports)
-    carried.ports.insert_or_assign(name, port);
-  for (const auto& [id, name] : io::housing_of(lenses).cameras) carried.cameras[id] = name;
+  io::Housing carried = io::housing_of(lenses);
+  io::Housing of_model = io::housing_of(model.cameras);
+  carried.ports.merge(of_model.ports);
+  carried.cameras.merge(of_model.cameras);
   return carried;
 }
 

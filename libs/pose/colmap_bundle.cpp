@@ -154,13 +154,16 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
 void place_again(ColmapBundle& refined, const io::ColmapModel& model) {
   Bundle& bundle = refined.bundle;
   std::vector<io::ColmapCamera> lenses;
-  for (std::size_t i = 0; i < refined.lenses.size(); ++i) lenses.push_back(lens_now(refined, i));
+  std::vector<refractive::PinholeLens<double>> pinholes;
+  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
+    lenses.push_back(lens_now(refined, i));
+    pinholes.push_back(bundle.cameras[i].now().lens);
+  }
   for (Observation& observation : bundle.observations) {
     const std::size_t camera = bundle.images[observation.image].camera;
-    const BundleCamera& now = bundle.cameras[camera];
     const io::ColmapPoint2D& seen = model.images[observation.image].points[observation.source];
-    if (place(lenses[camera], now.now().lens, seen, observation))
-      observation.pixel -= observation.pixel_by_focal * now.change(kFocalNumber);
+    if (place(lenses[camera], pinholes[camera], seen, observation))
+      observation.pixel -= observation.pixel_by_focal * bundle.cameras[camera].change(kFocalNumber);
   }
 }
 

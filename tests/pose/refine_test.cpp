@@ -40,16 +40,22 @@ Bundle absorbed(const Bundle& truth) {
   return bundle;
 }
 
+// The length between the survey's ends is given, which tells the scale.
+RefineOptions with_known_length(const Bundle& truth) {
+  RefineOptions options;
+  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
+  options.adjust.distances.push_back(
+      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  return options;
+}
+
 class RefineBehind : public ::testing::TestWithParam<Case> {};
 
 TEST_P(RefineBehind, FindsPosesFromAbsorbedOnes) {
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = 0.2});
   Bundle bundle = absorbed(truth);
-  RefineOptions options;
-  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
-  options.adjust.distances.push_back(
-      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  const RefineOptions options = with_known_length(truth);
   bring_to_metres(bundle, options.adjust);
   const RefineReport report = refine(bundle, options);
   EXPECT_LT(report.rms_after, 0.2 * std::sqrt(2.0) * 1.02);
@@ -69,10 +75,7 @@ TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = kNoise});
   Bundle bundle = absorbed(truth);
-  RefineOptions options;
-  const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
-  options.adjust.distances.push_back(
-      {KnownDistance::Between::images, 0, 11, length, 1e-4 * length});
+  const RefineOptions options = with_known_length(truth);
   bring_to_metres(bundle, options.adjust);
   const RefineReport report = refine(bundle, options);
   const double residuals = 2.0 * static_cast<double>(bundle.observations.size());
