@@ -145,6 +145,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   adjusting.loss_sigmas *= 4;
   for (int round = 0; round < options.rounds; ++round) {
     report.last = adjust(bundle, adjusting);
+    // Before errors are judged: what was placed for another lens is no outlier.
+    if (options.between_rounds) options.between_rounds();
     const std::size_t dropped = filter(bundle, limits);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
     if (progress)
@@ -153,7 +155,6 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
                            root_mean_square(reprojection_errors(bundle)), dropped));
     limits = options.tracks;
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
-    if (options.between_rounds) options.between_rounds();
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   report.last = adjust(bundle, adjusting);

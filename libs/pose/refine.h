@@ -13,8 +13,9 @@ namespace axial::pose {
 struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
-  int rounds = 3;                        // of adjusting and dropping what does not fit
-  std::function<void()> between_rounds;  // may move the bundle's observations, as place_again()
+  int rounds = 3;  // of adjusting and dropping what does not fit
+  // After each round's adjustment: may move the bundle's observations, as place_again() does.
+  std::function<void()> between_rounds;
 };
 
 struct RefineReport {

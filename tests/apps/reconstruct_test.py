@@ -272,6 +272,19 @@ class Reconstruct(unittest.TestCase):
             self.assertEqual(ended.stderr, f"reconstruct: {message}\n")
             self.assertFalse(out.exists())
 
+    def test_names_positions_of_no_photograph(self):
+        out = pathlib.Path(self.folder.name) / "positions"
+        lines = camera_centres(self.scene / "sparse" / "images.txt")
+        misspelt = pathlib.Path(self.folder.name) / "misspelt.txt"
+        misspelt.write_text("# survey\n" + "".join(["other" + line for line in lines[:-2]]
+                                                   + lines[-2:]))
+        ended = self.ended(out, "--scale-from", f"positions:{misspelt}")
+        self.assertEqual(ended.returncode, 1)
+        self.assertEqual(ended.stderr, f"reconstruct: {misspelt}: 2 of its names are "
+                                       f"photographs in {(self.scene / 'water').resolve()}, at "
+                                       "least 3 are needed\n")
+        self.assertFalse(out.exists())
+
 
 if __name__ == "__main__":
     main()

@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
 #include "base/error.h"
+#include "io/lens_fit.h"
 #include "refractive/distorted_lens.h"
 
 namespace axial::io {
@@ -221,8 +223,18 @@ TEST(ColmapLens, TheMatcherHasNoLensForOtherModels) {
   for (const ColmapCamera& camera :
        {two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE", std::vector<double>(12, 0.001)),
         two_focal_camera("PINHOLE", {}), two_focal_camera("OPENCV", {0, 0, 0, 0}),
-        two_focal_camera("FOV", {0})})
+        two_focal_camera("FOV", {0}),
+        // Images nothing beyond half a focal length, where the image's corners are.
+        two_focal_camera("DIVISION", {4})})
     EXPECT_FALSE(lens_distortion(camera)) << camera.model;
+}
+
+TEST(ColmapLens, AFitThatMissesIsNoLens) {
+  const double widest = 1, tolerance = 1e-4;
+  const auto smooth = [](double theta) { return std::sin(theta); };
+  const auto with_a_kink = [](double theta) { return std::min(theta, 0.5 + 0.3 * (theta - 0.5)); };
+  EXPECT_TRUE(fitted_fisheye(smooth, widest, tolerance));
+  EXPECT_FALSE(fitted_fisheye(with_a_kink, widest, tolerance));
 }
 
 // At the edge of a fisheye's view the plane of directions is far out.
