@@ -274,7 +274,7 @@ class Reconstruct(unittest.TestCase):
 
     def test_names_positions_of_no_photograph(self):
         out = pathlib.Path(self.folder.name) / "positions"
-        lines = camera_centres(self.scene / "sparse" / "images.txt")
+        lines = list(camera_centres(self.scene / "sparse" / "images.txt"))
         misspelt = pathlib.Path(self.folder.name) / "misspelt.txt"
         misspelt.write_text("# survey\n" + "".join(["other" + line for line in lines[:-2]]
                                                    + lines[-2:]))
