@@ -70,6 +70,36 @@ class WithAnotherColmap(unittest.TestCase):
                          ["--FeatureExtraction.use_gpu", 0])
         self.assertEqual(self.options_where_colmap_says("--other arg"), [])
 
+    def start_of(self, text, model):
+        lens = self.folder / "lens"
+        lens.write_bytes(text)
+        return self.module.start_of_lens(lens, model)
+
+    def test_starts_from_the_lens_in_air_times_the_waters_index(self):
+        one = b"# a comment\n\n1 SIMPLE_RADIAL 640 480 1000 320 240 -0.1\n"
+        two = b"1 OPENCV 640 480 1000 2000 320 240 1 2 3 4\n"
+        calibmar = b"model: OPENCV\nwidth: 640\nparameters: [1000, 2000, 320,\n  240, 1, 2, 3, 4]\n"
+        for text, model, expected in [(one, "OPENCV", "1333,1333,320,240,0,0,0,0"),
+                                      (one, "RADIAL", "1333,320,240,0,0"),
+                                      (two, "PINHOLE", "1333,2666,320,240"),
+                                      (two, "SIMPLE_RADIAL", "1999.5,320,240,0"),
+                                      (calibmar, "OPENCV", "1333,2666,320,240,0,0,0,0")]:
+            self.assertEqual(self.start_of(text, model),
+                             ["--ImageReader.camera_params", expected])
+        for text, model in [(one, "UNKNOWN"), (b"\x01\xff\0", "OPENCV"), (b"", "OPENCV"),
+                            (b"1 OPENCV 640 480 a\n", "OPENCV")]:
+            self.assertEqual(self.start_of(text, model), [])
+
+    def test_says_which_positions_are_of_no_photograph(self):
+        for name in ("a.jpg", "b.jpg", "c.jpg"):
+            (self.folder / name).touch()
+        file, said = self.folder / "positions.txt", io.StringIO()
+        file.write_text("a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
+        with contextlib.redirect_stdout(said):
+            self.module.check_positions(file, self.folder)
+        self.assertIn("1 of 4 names are no photographs", said.getvalue())
+        self.assertIn("C.jpg first", said.getvalue())
+
     def largest_of(self, *sizes):
         for number, size in enumerate(sizes):
             model = self.folder / "models" / str(number)
