@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "refractive/flat_port_camera.h"
 
@@ -49,13 +50,16 @@ Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>
   return a;
 }
 
-// Eigenvalues of the companion matrix of a monic polynomial.
-template <class T, std::size_t N>
-auto roots(const Polynomial<T, N>& monic) {
-  constexpr int degree = static_cast<int>(N) - 1;
-  using Companion = Eigen::Matrix<T, degree, degree>;
-  Companion companion = Companion::Zero();
-  for (int k = 0; k < degree; ++k) {
+// Eigenvalues of the companion matrix of a monic polynomial, of degree 12 at most. One type of
+// matrix for every degree: a solver of fixed size is no faster, and takes twice as long to compile.
+template <class T>
+auto roots(std::span<const T> monic) {
+  constexpr int kMostRoots = 12;
+  using Companion =
+      Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRoots, kMostRoots>;
+  const Eigen::Index degree = static_cast<Eigen::Index>(monic.size()) - 1;
+  Companion companion = Companion::Zero(degree, degree);
+  for (Eigen::Index k = 0; k < degree; ++k) {
     if (k > 0) companion(k, k - 1) = T(1);
     companion(k, degree - 1) = -monic[static_cast<std::size_t>(k)];
   }
@@ -105,11 +109,13 @@ std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T&
   const Polynomial<T, 3> Q{e_w, T(0), T(1)};
   const Polynomial<T, 3> A2{a * a, T(-2) * a, T(1)};
   if (g == T(0)) {
-    consider(roots(plus<2>(product(A2, Q), T(-w * w), Polynomial<T, 1>{T(1)})));
+    const auto monic = plus<2>(product(A2, Q), T(-w * w), Polynomial<T, 1>{T(1)});
+    consider(roots<T>(monic));
   } else {
     const Polynomial<T, 5> PQ = product(P, Q);
     const Polynomial<T, 7> inner = plus<2>(plus<2>(product(A2, PQ), T(-g * g), Q), T(-w * w), P);
-    consider(roots(plus<4>(product(inner, inner), T(T(-4) * g * g * w * w), PQ)));
+    const auto monic = plus<4>(product(inner, inner), T(T(-4) * g * g * w * w), PQ);
+    consider(roots<T>(monic));
   }
   // Spurious roots solve the equation with another sign of one of the terms.
   if (best && least > T(1e-3)) return std::nullopt;

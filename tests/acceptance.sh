@@ -11,5 +11,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/pipeline/steps.sh
 bash apps/pipeline/install-deps.sh
 build_programs
+cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target held_out_check matching_benchmark RefinePoses
 exec python3 tests/acceptance/acceptance.py "$@"

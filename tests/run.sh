@@ -1,18 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, builds, and runs every test under CTest: all of them in the release
-# build, and the unit and reader tests once more under AddressSanitizer and
-# UndefinedBehaviorSanitizer ("sanitized/..."). One CTest run over both builds, so its summary,
-# printed last, counts everything. Arguments go to ctest: tests/run.sh -R io/
+# Installs what is missing, builds, and runs every test under CTest. Each unit test is built once:
+# those of files, scenes and clouds under AddressSanitizer and UndefinedBehaviorSanitizer
+# ("sanitized/..."), those that compute in the release build, beside the programs.
+#
+#   bash tests/run.sh [--all] [CTEST-OPTION...]
+#
+# --all: every unit test in both builds, which takes twice as long. Other arguments go to ctest:
+# tests/run.sh -R io/. One CTest run covers both builds, so its summary, printed last, counts
+# everything.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CTEST_OUTPUT_ON_FAILURE=1
+
+every=OFF
+if [[ ${1:-} == --all ]]; then
+  every=ON
+  shift
+fi
 
 bash apps/pipeline/install-deps.sh
 
 for preset in release sanitize; do
   echo "=== Building ($preset)"
-  cmake --preset "$preset" -DAXIAL_TESTS=ON --log-level=WARNING
+  cmake --preset "$preset" -DAXIAL_TESTS=ON -DAXIAL_EVERY_TEST=$every --log-level=WARNING
 done
 cmake --build --preset release
 cmake --build --preset sanitize --target axial_tests

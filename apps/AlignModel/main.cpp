@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Brings a COLMAP model to the scale and place of another one whose camera centres are known.
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <numbers>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/program.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 using namespace axial;
 
 namespace {
@@ -29,11 +28,10 @@ Options parse_command_line(int argc, const char* const* argv) {
       "brings a COLMAP model to metric scale by a similarity to known camera centres",
       {},
       {}};
-  program.visible.add_options()  //
-      ("input-file,i", po::value(&input), "COLMAP model folder to align")(
-          "reference", po::value(&reference),
-          "COLMAP model folder with the known camera centres; images are matched by name")(
-          "output-folder,o", po::value(&output), "folder for the aligned model (COLMAP text)");
+  program.visible.add("input-file,i", &input, "COLMAP model folder to align")
+      .add("reference", &reference,
+           "COLMAP model folder with the known camera centres; images are matched by name")
+      .add("output-folder,o", &output, "folder for the aligned model (COLMAP text)");
   Options options;
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
@@ -63,14 +61,14 @@ int run(int argc, char** argv) {
   evaluate::apply(alignment.similarity, model);
   make_folder(options.output);
   io::write_colmap_text(options.output, model);
-  spdlog::info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
-               model.images.size(), alignment.similarity.scale);
-  spdlog::info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,
-               *std::max_element(alignment.residuals.begin(), alignment.residuals.end()) * 1e3);
-  spdlog::info(
+  log_info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
+           model.images.size(), alignment.similarity.scale);
+  log_info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,
+           *std::max_element(alignment.residuals.begin(), alignment.residuals.end()) * 1e3);
+  log_info(
       "Rotation residuals: largest {:.4f} degrees",
       *std::max_element(alignment.turns.begin(), alignment.turns.end()) * 180 / std::numbers::pi);
-  spdlog::info("Aligned model in {}", options.output.string());
+  log_info("Aligned model in {}", options.output.string());
   return 0;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "calibrate/coverage.h"
 #include "io/calibmar.h"
@@ -76,11 +75,11 @@ void check_outputs(const Options& options) {
 
 void warn(const calibrate::Calibration& calibration) {
   for (const std::string& image : calibration.left_out)
-    spdlog::warn(
+    log_warning(
         "{}: too few corners found, or too few that fit a board in one place; it is left out",
         image);
   for (const std::string& gap : calibrate::gaps(calibration))
-    spdlog::warn("No photograph shows {}", gap);
+    log_warning("No photograph shows {}", gap);
 }
 
 std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
@@ -128,10 +127,10 @@ int run(int argc, char** argv) {
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);
-  for (const std::string& line : lines) spdlog::info("{}", line);
+  for (const std::string& line : lines) log_info("{}", line);
   warn(calibration);
   write(options, calibration, housing, port_name, lines);
-  spdlog::info("Housing in {}", options.output.string());
+  log_info("Housing in {}", options.output.string());
   return 0;
 }
 

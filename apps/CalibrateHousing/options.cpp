@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 
-namespace po = boost::program_options;
 using axial::fail;
 
 namespace {
@@ -19,50 +18,49 @@ struct Texts {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-void declare(po::options_description& visible, Options& options, Texts& texts,
+void declare(axial::OptionList& visible, Options& options, Texts& texts,
              double& max_normal_degrees) {
-  visible.add_options()  //
-      ("input-file,i", po::value(&texts.input)->composing(),
-       "photographs of the board under water: a folder, or a file; may be given several times")  //
-      ("lens", po::value(&texts.lens),
-       "the lens as calibrated in air: cameras.txt or cameras.bin of COLMAP, with one camera, or "
-       "Calibmar's calibration.yaml")  //
-      ("housing", po::value(&texts.housing),
-       "the port as far as it is known: a housing file or a calibration.yaml; default: that in "
-       "the lens's file")  //
-      ("port", po::value(&options.port),
-       "the port to calibrate, by its name in the housing file; default: the camera's own there, "
-       "else the default one")  //
-      ("board", po::value(&texts.board),
-       "columns, rows and metres: checkerboard:9x6:0.03 (inner corners, square), "
-       "charuco:8x6:0.03:0.02 (squares, square, marker) or apriltags:5x4:0.03:0.01 (tags, tag, "
-       "gap); the last two may end in :DICTIONARY")                                           //
-      ("output-file,o", po::value(&texts.output), "housing file to write (.json)")            //
-      ("calibmar", po::value(&texts.calibmar), "also write a calibration.yaml for Calibmar")  //
-      ("report", po::value(&texts.report), "write all numbers there (.json)")                 //
-      ("coverage", po::value(&texts.coverage), "draw where corners were seen (.svg)")         //
-      ("refine", po::value(&options.refine_list),
-       "what is unknown: any of normal, distance (flat ports), centre (domes), thickness (of the "
-       "glass), index (of the water); default: normal,distance or centre");
+  visible
+      .add("input-file,i", &texts.input,
+           "photographs of the board under water: a folder, or a file; may be given several times")
+      .add("lens", &texts.lens,
+           "the lens as calibrated in air: cameras.txt or cameras.bin of COLMAP, with one camera, "
+           "or Calibmar's calibration.yaml")
+      .add("housing", &texts.housing,
+           "the port as far as it is known: a housing file or a calibration.yaml; default: that in "
+           "the lens's file")
+      .add("port", &options.port,
+           "the port to calibrate, by its name in the housing file; default: the camera's own "
+           "there, else the default one")
+      .add("board", &texts.board,
+           "columns, rows and metres: checkerboard:9x6:0.03 (inner corners, square), "
+           "charuco:8x6:0.03:0.02 (squares, square, marker) or apriltags:5x4:0.03:0.01 (tags, tag, "
+           "gap); the last two may end in :DICTIONARY")
+      .add("output-file,o", &texts.output, "housing file to write (.json)")
+      .add("calibmar", &texts.calibmar, "also write a calibration.yaml for Calibmar")
+      .add("report", &texts.report, "write all numbers there (.json)")
+      .add("coverage", &texts.coverage, "draw where corners were seen (.svg)")
+      .add("refine", &options.refine_list,
+           "what is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
+           "the glass), index (of the water); default: normal,distance or centre");
   axial::pose::Sigmas& sigmas = options.sigmas;
-  visible.add_options()  //
-      ("normal-sigma", po::value(&sigmas.normal_degrees)->default_value(0),
-       "how well the normal was measured [degrees]; 0: not at all")                          //
-      ("distance-sigma", po::value(&sigmas.distance)->default_value(0), "the distance [m]")  //
-      ("centre-sigma", po::value(&sigmas.centre)->default_value(0), "a dome's centre [m]")   //
-      ("thickness-sigma", po::value(&sigmas.thickness)->default_value(0),
-       "the thickness of the glass [m]")                                                //
-      ("index-sigma", po::value(&sigmas.index)->default_value(0), "the water's index")  //
-      ("max-error", po::value(&options.calibrate.max_error)->default_value(4),
-       "corners with larger errors are dropped [px]")  //
-      ("max-distance-sigma", po::value(&options.limits.place)->default_value(0.001),
-       "refuse if the distance, or a dome's centre, is known worse than this [m]")  //
-      ("max-normal-sigma", po::value(&max_normal_degrees)->default_value(0.1, "0.1"),
-       "refuse if the normal is known worse than this [degrees]")  //
-      ("max-index-sigma", po::value(&options.limits.index)->default_value(0.005, "0.005"),
-       "refuse if the water's index is known worse than this")  //
-      ("max-thickness-sigma", po::value(&options.limits.thickness)->default_value(0.002),
-       "refuse if the thickness is known worse than this [m]");
+  visible
+      .add_with_default("normal-sigma", &sigmas.normal_degrees,
+                        "how well the normal was measured [degrees]; 0: not at all")
+      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
+      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
+      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
+      .add_with_default("index-sigma", &sigmas.index, "the water's index")
+      .add_with_default("max-error", &options.calibrate.max_error,
+                        "corners with larger errors are dropped [px]")
+      .add_with_default("max-distance-sigma", &options.limits.place,
+                        "refuse if the distance, or a dome's centre, is known worse than this [m]")
+      .add_with_default("max-normal-sigma", &max_normal_degrees,
+                        "refuse if the normal is known worse than this [degrees]")
+      .add_with_default("max-index-sigma", &options.limits.index,
+                        "refuse if the water's index is known worse than this")
+      .add_with_default("max-thickness-sigma", &options.limits.thickness,
+                        "refuse if the thickness is known worse than this [m]");
 }
 
 void require_positive(const char* option, double value) {
@@ -84,7 +82,7 @@ void check(const Options& options, double max_normal_degrees) {
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Texts texts;
-  double max_normal_degrees = 0;
+  double max_normal_degrees = 0.1;
   axial::ProgramOptions program{
       "CalibrateHousing",
       "finds the port of a housing in photographs of a board taken under water",

@@ -2,13 +2,13 @@
 #include "depth_stage.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <functional>
 #include <memory>
 #include <mutex>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -61,7 +61,7 @@ class DepthMapRun {
     refuse_foreign_maps();
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size())
-      spdlog::info("All {} depth maps are there already", project_.references.size());
+      axial::log_info("All {} depth maps are there already", project_.references.size());
     for (std::size_t s = first; s < stages_.size(); ++s) {
       // Matching frees and takes large blocks all the time and holds few; afterwards it is the
       // other way round.
@@ -132,7 +132,7 @@ class DepthMapRun {
       if (there) ++reused;
       progress(++done, references.size());
     });
-    if (reused > 0) spdlog::info("{}: {} maps were there already", stages_[stage].title, reused);
+    if (reused > 0) axial::log_info("{}: {} maps were there already", stages_[stage].title, reused);
     previous_.reset();
     axial::return_freed_memory();
   }

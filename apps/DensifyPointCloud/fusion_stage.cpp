@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fusion_stage.h"
 
-#include <spdlog/spdlog.h>
-
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "cloud/colors.h"
@@ -37,7 +36,7 @@ class CloudRun {
   std::size_t run() {
     const bool whole = options_.estimate_colors == 1 || options_.estimate_normals == 1;
     const std::size_t points = whole ? run_in_memory() : run_in_a_stream();
-    if (removed_ > 0) spdlog::info("Region of interest: {} points outside removed", removed_);
+    if (removed_ > 0) axial::log_info("Region of interest: {} points outside removed", removed_);
     return points;
   }
 

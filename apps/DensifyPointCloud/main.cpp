@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
-
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "depth_stage.h"
@@ -65,9 +64,9 @@ int run(int argc, char** argv) {
                                  : write_sparse_cloud(project.scene, ply);
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
-  spdlog::info("{}: {} points", ply.string(), points);
+  axial::log_info("{}: {} points", ply.string(), points);
   if (options.fuse && points == 0)
-    spdlog::warn(
+    axial::log_warning(
         "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
         "masks and the region of interest leave nothing",
         options.fusion.min_views);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "memory_plan.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
 #include "base/error.h"
 #include "base/huge_pages.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "depth/filters.h"
@@ -152,9 +151,10 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
     axial::fail("--max-memory {}: {} MB are too little, this scene needs {}", options.max_memory,
                 cap / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
-  spdlog::trace("Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
-                cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
-                plan.cached_maps, plan.fused_maps);
+  axial::log_details(
+      "Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
+      cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images, plan.cached_maps,
+      plan.fused_maps);
   return plan;
 }
 

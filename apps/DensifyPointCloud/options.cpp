@@ -7,129 +7,118 @@
 #include "base/error.h"
 
 namespace densify {
-namespace po = boost::program_options;
 using axial::fail;
 
 namespace {
 
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
-  std::string input, output, housing, mask_path, camera_model, projection, warp;
+  std::string input, output, housing, mask_path;
+  std::string camera_model = "auto", projection = "exact", warp = "affine";
   int fusion_mode = 0, estimate_roi = 2;
 };
 
 // An OpenMVS option that scripts pass and that is not built: accepted at these values only.
 struct NotBuilt {
   const char* name;
-  const char* initial;
+  std::string value;
   std::vector<std::string> accepted;
 };
 
-const std::vector<NotBuilt>& not_built() {
-  static const std::vector<NotBuilt> options = {{"pointcloud-file,p", "", {""}},
-                                                {"view-neighbors-file", "", {""}},
-                                                {"output-view-neighbors-file", "", {""}},
-                                                {"estimate-scale", "0", {"0", "0.0"}},
-                                                {"sub-scene-area", "0", {"0", "0.0"}},
-                                                {"sample-mesh", "0", {"0", "0.0"}},
-                                                {"filter-point-cloud", "0", {"0"}},
-                                                {"export-number-views", "0", {"0"}},
-                                                {"tower-mode", "0", {"0"}},
-                                                {"cuda-device", "-1", {"-1", "-2"}}};
-  return options;
+std::vector<NotBuilt> not_built() {
+  return {{"pointcloud-file,p", "", {""}},
+          {"view-neighbors-file", "", {""}},
+          {"output-view-neighbors-file", "", {""}},
+          {"estimate-scale", "0", {"0", "0.0"}},
+          {"sub-scene-area", "0", {"0", "0.0"}},
+          {"sample-mesh", "0", {"0", "0.0"}},
+          {"filter-point-cloud", "0", {"0"}},
+          {"export-number-views", "0", {"0"}},
+          {"tower-mode", "0", {"0"}},
+          {"cuda-device", "-1", {"-1", "-2"}}};
 }
 
-const std::vector<NotBuilt>& not_built_hidden() {
-  static const std::vector<NotBuilt> options = {{"mesh-file", "", {""}},
-                                                {"export-roi-file", "", {""}},
-                                                {"import-roi-file", "", {""}},
-                                                {"dense-config-file", "", {""}},
-                                                {"export-depth-maps-name", "", {""}}};
-  return options;
+std::vector<NotBuilt> not_built_hidden() {
+  return {{"mesh-file", "", {""}},
+          {"export-roi-file", "", {""}},
+          {"import-roi-file", "", {""}},
+          {"dense-config-file", "", {""}},
+          {"export-depth-maps-name", "", {""}}};
 }
 
-void declare_io(po::options_description& add, Raw& raw, Options& options) {
-  add.add_options()  //
-      ("input-file,i", po::value(&raw.input), "scene with cameras and images")(
-          "output-file,o", po::value(&raw.output), "scene and cloud to write (<input>_dense.mvs)")(
-          "resolution-level", po::value(&options.resolution.level)->default_value(1),
-          "halvings of the images before matching")(
-          "max-resolution", po::value(&options.resolution.max)->default_value(2560),
-          "cap on the longest side [px]")("min-resolution",
-                                          po::value(&options.resolution.min)->default_value(640),
-                                          "the longest side is not halved below this [px]")(
-          "mask-path", po::value(&raw.mask_path), "folder with <image>.mask.png for every image")(
-          "ignore-mask-label", po::value(&options.ignore_mask_label)->default_value(-1),
-          "mask value to leave out; below 0: no masks")(
-          "remove-dmaps", po::value(&options.remove_dmaps)->default_value(false),
-          "remove the depth maps after fusion")(
-          "max-memory", po::value(&options.max_memory)->default_value(0),
-          "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 and "
-          "--estimate-normals 1 keep the whole cloud on top of it");
+void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
+  list.add("input-file,i", &raw.input, "scene with cameras and images")
+      .add("output-file,o", &raw.output, "scene and cloud to write (<input>_dense.mvs)")
+      .add_with_default("resolution-level", &options.resolution.level,
+                        "halvings of the images before matching")
+      .add_with_default("max-resolution", &options.resolution.max, "cap on the longest side [px]")
+      .add_with_default("min-resolution", &options.resolution.min,
+                        "the longest side is not halved below this [px]")
+      .add("mask-path", &raw.mask_path, "folder with <image>.mask.png for every image")
+      .add_with_default("ignore-mask-label", &options.ignore_mask_label,
+                        "mask value to leave out; below 0: no masks")
+      .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
+      .add_with_default("max-memory", &options.max_memory,
+                        "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
+                        "and --estimate-normals 1 keep the whole cloud on top of it");
 }
 
-void declare_matching(po::options_description& add, Options& options) {
-  add.add_options()  //
-      ("sub-resolution-levels",
-       po::value(&options.matching.sub_resolution_levels)
-           ->default_value(options.matching.sub_resolution_levels),
-       "coarser levels matched first")("number-views",
-                                       po::value(&options.number_views)->default_value(5),
-                                       "source views per image (0: all, 1: the best one)")(
-          "iters",
-          po::value(&options.matching.iterations)->default_value(options.matching.iterations),
-          "sweeps per resolution level")("geometric-iters",
-                                         po::value(&options.geometric_iterations)->default_value(2),
-                                         "sweeps with geometric consistency")(
-          "postprocess-dmaps", po::value(&options.postprocess)->default_value(kSpeckles | kGaps),
-          "depth map filters, added up: 1 speckles, 2 gaps, 4 adjust to the neighbours' maps "
-          "(OpenMVS's default is 7)");
+void declare_matching(axial::OptionList& list, Options& options) {
+  list.add_with_default("sub-resolution-levels", &options.matching.sub_resolution_levels,
+                        "coarser levels matched first")
+      .add_with_default("number-views", &options.number_views,
+                        "source views per image (0: all, 1: the best one)")
+      .add_with_default("iters", &options.matching.iterations, "sweeps per resolution level")
+      .add_with_default("geometric-iters", &options.geometric_iterations,
+                        "sweeps with geometric consistency")
+      .add_with_default("postprocess-dmaps", &options.postprocess,
+                        "depth map filters, added up: 1 speckles, 2 gaps, 4 adjust to the "
+                        "neighbours' maps (OpenMVS's default is 7)");
 }
 
-void declare_fusion(po::options_description& add, Raw& raw, Options& options) {
-  add.add_options()  //
-      ("fusion-mode", po::value(&raw.fusion_mode)->default_value(0),
-       "0 depth maps and fusion, 1 depth maps only")(
-          "number-views-fuse", po::value(&options.fusion.min_views)->default_value(3),
-          "views that must agree on a point (below 2: merge without agreement)")(
-          "estimate-colors", po::value(&options.estimate_colors)->default_value(2),
-          "0 no, 1 from the nearest view, 2 from all views of a point")(
-          "estimate-normals", po::value(&options.estimate_normals)->default_value(2),
-          "0 no, 1 from the cloud, 2 from the depth maps")(
-          "estimate-roi", po::value(&raw.estimate_roi)->default_value(2),
-          "region of interest from cameras and points: 0 off, 1 on, 2 adaptive")(
-          "roi-border", po::value(&options.roi_border)->default_value(0),
-          "above 0 multiplies the region's size, below 0 adds to it [scene units]")(
-          "crop-to-roi", po::value(&options.crop_to_roi)->default_value(true),
-          "crop the cloud to the region of interest");
+void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
+  list.add_with_default("fusion-mode", &raw.fusion_mode,
+                        "0 depth maps and fusion, 1 depth maps only")
+      .add_with_default("number-views-fuse", &options.fusion.min_views,
+                        "views that must agree on a point (below 2: merge without agreement)")
+      .add_with_default("estimate-colors", &options.estimate_colors,
+                        "0 no, 1 from the nearest view, 2 from all views of a point")
+      .add_with_default("estimate-normals", &options.estimate_normals,
+                        "0 no, 1 from the cloud, 2 from the depth maps")
+      .add_with_default("estimate-roi", &raw.estimate_roi,
+                        "region of interest from cameras and points: 0 off, 1 on, 2 adaptive")
+      .add_with_default("roi-border", &options.roi_border,
+                        "above 0 multiplies the region's size, below 0 adds to it [scene units]")
+      .add_with_default("crop-to-roi", &options.crop_to_roi,
+                        "crop the cloud to the region of interest");
 }
 
-void declare_camera(po::options_description& add, Raw& raw, Options& options) {
-  add.add_options()  //
-      ("refractive", po::value(&options.refractive)->default_value(false)->implicit_value(true),
-       "cameras look through ports: demand a housing file")("housing", po::value(&raw.housing),
-                                                            "housing file (<scene>.housing.json)")(
-          "camera-model", po::value(&raw.camera_model)->default_value("auto"),
-          "auto: what the housing says, pinhole: ignore it, flatport: every image has a flat port")(
-          "projection", po::value(&raw.projection)->default_value("exact"),
-          "in matching: exact, or the published line-search")(
-          "warp", po::value(&raw.warp)->default_value("affine"),
+void declare_camera(axial::OptionList& list, Raw& raw, Options& options) {
+  list.add_switch("refractive", &options.refractive,
+                  "cameras look through ports: demand a housing file")
+      .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
+      .add_with_default(
+          "camera-model", &raw.camera_model,
+          "auto: what the housing says, pinhole: ignore it, flatport: every image has a flat port")
+      .add_with_default("projection", &raw.projection,
+                        "in matching: exact, or the published line-search")
+      .add_with_default(
+          "warp", &raw.warp,
           "in matching: affine (exact to first order), or the published virtual homography");
 }
 
-void declare_not_built(po::options_description& add, const std::vector<NotBuilt>& options) {
-  for (const NotBuilt& option : options)
-    add.add_options()(option.name, po::value<std::string>()->default_value(option.initial),
-                      "not built yet: only the default");
+void declare_not_built(axial::OptionList& list, std::vector<NotBuilt>& options) {
+  for (NotBuilt& option : options)
+    list.add_with_default(option.name, &option.value, "not built yet: only the default");
 }
 
-void refuse_not_built(const po::variables_map& values, const std::vector<NotBuilt>& options) {
+void refuse_not_built(const std::vector<NotBuilt>& options) {
   for (const NotBuilt& option : options) {
     const std::string full = option.name;
     const std::string name = full.substr(0, full.find(','));
-    const std::string value = values[name].as<std::string>();
-    if (std::find(option.accepted.begin(), option.accepted.end(), value) == option.accepted.end())
-      fail("--{} {}: not built yet", name, value);
+    if (std::find(option.accepted.begin(), option.accepted.end(), option.value) ==
+        option.accepted.end())
+      fail("--{} {}: not built yet", name, option.value);
   }
 }
 
@@ -175,20 +164,21 @@ Options parse_command_line(int argc, const char* const* argv) {
   Raw raw;
   axial::ProgramOptions program{
       "DensifyPointCloud", "a dense point cloud from calibrated images, in air and under water",
-      po::options_description("Densify options"), po::options_description("Hidden options"),
+      axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
       ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
   declare_io(program.visible, raw, options);
   declare_camera(program.visible, raw, options);
   declare_matching(program.visible, options);
   declare_fusion(program.visible, raw, options);
-  declare_not_built(program.visible, not_built());
-  declare_not_built(program.hidden, not_built_hidden());
+  std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
+  declare_not_built(program.visible, visible);
+  declare_not_built(program.hidden, hidden);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
 
   const axial::CommonOptions& common = options.parsed.common;
-  refuse_not_built(options.parsed.values, not_built());
-  refuse_not_built(options.parsed.values, not_built_hidden());
+  refuse_not_built(visible);
+  refuse_not_built(hidden);
   check_values(options, raw);
   options.input = axial::in_working_folder(common, raw.input);
   options.output = axial::in_working_folder(common, raw.output);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "project.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/housing.h"
@@ -58,7 +57,8 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
   if (flat < images && options.camera == CameraChoice::flat_port)
     fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
          flat, images);
-  spdlog::info("Housing {}: {} of {} images behind a port", file.filename().string(), wet, images);
+  axial::log_info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
+                  images);
   if (wet == 0) return {};
   return housing;
 }
@@ -91,7 +91,7 @@ fs::path find_mask(const axial::SceneImage& image, const Options& options) {
   if (options.ignore_mask_label < 0) return {};
   std::error_code error;
   if (fs::exists(path, error)) return path;
-  spdlog::warn("{}: no mask", image.path);
+  axial::log_warning("{}: no mask", image.path);
   return {};
 }
 
@@ -130,14 +130,14 @@ void select_views(Project& project, const Options& options) {
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     if (!scene.images[i].calibrated) continue;
     if (!project.preparations[i].usable()) {
-      spdlog::warn("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
+      axial::log_warning("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
       continue;
     }
     project.neighbours[i] = axial::filter_neighbours(scene.images[i].neighbours, options.selection);
     project.sources[i] =
         axial::choose_source_views(project.neighbours[i], options.number_views, options.selection);
     if (project.sources[i].empty())
-      spdlog::warn("{}: left out: no good images in view", scene.images[i].path);
+      axial::log_warning("{}: left out: no good images in view", scene.images[i].path);
     else
       project.references.push_back(i);
   }
@@ -227,18 +227,18 @@ std::string fingerprint(const Project& project, const Options& options) {
 
 void attach_lenses(axial::Scene& scene, const Options& options) {
   if (axial::io::attach_lenses_beside(scene, options.input))
-    spdlog::info("{}: {} images have distorted lenses, and are matched as they are",
-                 axial::io::lenses_beside(options.input).filename().string(),
-                 std::ranges::count_if(scene.images, [](const axial::SceneImage& image) {
-                   return image.camera.distortion.has_value();
-                 }));
+    axial::log_info("{}: {} images have distorted lenses, and are matched as they are",
+                    axial::io::lenses_beside(options.input).filename().string(),
+                    std::ranges::count_if(scene.images, [](const axial::SceneImage& image) {
+                      return image.camera.distortion.has_value();
+                    }));
 }
 
 void warn_of_missing_lenses(const Options& options) {
   const fs::path file = axial::io::lenses_beside(options.input);
   std::error_code error;
   if (!fs::exists(file, error))
-    spdlog::warn("{}: not there: the images count as undistorted", file.string());
+    axial::log_warning("{}: not there: the images count as undistorted", file.string());
 }
 
 }  // namespace
@@ -251,8 +251,8 @@ Project load_project(const Options& options) {
   project.lenses = axial::io::lenses_of(project.scene, options.output);
   project.housing = attach_housing(project.scene, options);
   if (project.housing) warn_of_missing_lenses(options);
-  spdlog::info("Scene {}: {} images, {} points", options.input.filename().string(),
-               project.scene.images.size(), project.scene.points.size());
+  axial::log_info("Scene {}: {} images, {} points", options.input.filename().string(),
+                  project.scene.images.size(), project.scene.points.size());
   load_views(project, options);
   check_ids(project);
   select_views(project, options);
@@ -266,7 +266,7 @@ void write_cameras_beside_output(const Project& project, const Options& options)
   if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (file == axial::io::housing_beside(options.input)) return;
   std::error_code error;
-  if (fs::remove(file, error)) spdlog::info("{} removed: the scene has no ports", file.string());
+  if (fs::remove(file, error)) axial::log_info("{} removed: the scene has no ports", file.string());
 }
 
 }  // namespace densify

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/icp.h"
@@ -67,7 +67,7 @@ std::vector<evaluate::View> read_views(const Options& options) {
   if (!options.housing.empty()) {
     housing = io::read_housing(options.housing);
     for (const std::string& entry : io::unused_entries(*housing, model))
-      spdlog::warn("{}: no image goes by {}", options.housing.string(), entry);
+      log_warning("{}: no image goes by {}", options.housing.string(), entry);
   }
   return naming(folder,
                 [&] { return evaluate::views_of_model(model, housing ? &*housing : nullptr); });
@@ -78,8 +78,8 @@ Similarity align_by_centres(const Options& options, nlohmann::ordered_json& repo
   const auto reference = io::read_colmap_model(io::find_colmap_model(options.cameras));
   const auto result =
       naming(options.estimated, [&] { return evaluate::align_centres(estimated, reference); });
-  spdlog::info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
-               result.names.size(), result.similarity.scale, result.rms * 1e3);
+  log_info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
+           result.names.size(), result.similarity.scale, result.rms * 1e3);
   report["centres"] = result.names.size();
   report["rms_residual"] = result.rms;
   return result.similarity;
@@ -94,9 +94,9 @@ Similarity align_by_icp(const Options& options, const Input& input,
     return evaluate::refine_rigid(
         evaluate::sample_surface(*input.mesh, settings.samples, settings.seed), surface, settings);
   });
-  spdlog::info("Aligned by ICP in {} steps{}: median distance {:.3f} mm before, {:.3f} mm after",
-               result.iterations, result.converged ? "" : " (not converged)",
-               result.median_before * 1e3, result.median_after * 1e3);
+  log_info("Aligned by ICP in {} steps{}: median distance {:.3f} mm before, {:.3f} mm after",
+           result.iterations, result.converged ? "" : " (not converged)",
+           result.median_before * 1e3, result.median_after * 1e3);
   report["iterations"] = result.iterations;
   report["converged"] = result.converged;
   return result.transform;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
@@ -31,8 +32,8 @@ nlohmann::ordered_json run_depth_map(const Options& options) {
   const DepthMap map = io::read_dmap(options.input).map;
   const cv::Mat1f truth = io::read_float_tiff(options.truth);
   if (truth.size() != map.depth.size())
-    spdlog::info("The truth is {} x {}, read off at the map's {} x {} pixel centres", truth.cols,
-                 truth.rows, map.width(), map.height());
+    log_info("The truth is {} x {}, read off at the map's {} x {} pixel centres", truth.cols,
+             truth.rows, map.width(), map.height());
   evaluate::DepthOptions settings;
   settings.tolerances = options.tolerances;
   const evaluate::DepthEvaluation result = [&] {

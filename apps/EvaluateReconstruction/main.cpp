@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+
 #include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "io/json.h"
 #include "options.h"
 #include "runs.h"
 
@@ -16,7 +19,7 @@ int run(int argc, char** argv) {
   nlohmann::ordered_json report{{"input", options.input.string()},
                                 {"truth", options.truth.string()}};
   report.update(is_depth_map ? run_depth_map(options) : run_cloud(options));
-  if (!options.json.empty()) write_atomically(options.json, report.dump(1) + "\n");
+  if (!options.json.empty()) write_atomically(options.json, io::to_text(report, 1) + "\n");
   return 0;
 }
 

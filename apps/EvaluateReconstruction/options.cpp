@@ -8,14 +8,13 @@
 #include "base/error.h"
 #include "base/parse_number.h"
 
-namespace po = boost::program_options;
 using axial::fail, axial::parse_finite;
 
 namespace {
 
 // The options as text, before they are checked.
 struct Texts {
-  std::string input, truth, tolerance, cameras, housing, estimated;
+  std::string input, truth, tolerance = "0.005", cameras, housing, estimated;
   std::string json, error_cloud, picture, aligned, transform;
 };
 
@@ -31,45 +30,44 @@ std::vector<double> parse_tolerances(const std::string& text) {
   return values;
 }
 
-void declare(po::options_description& visible, Options& options, Texts& texts) {
-  visible.add_options()  //
-      ("input-file,i", po::value(&texts.input),
-       "what to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")  //
-      ("truth-file,m", po::value(&texts.truth),
-       "the truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff)")  //
-      ("tolerance", po::value(&texts.tolerance)->default_value("0.005"),
-       "distances that count as right [m], separated by commas; the first one scales histograms "
-       "(to 4 times) and colours (to 2 times)")  //
-      ("align", po::value(&options.align)->default_value("none"),
-       "none; centres: similarity from the camera centres of --estimated to those of --cameras; "
-       "icp: rigid refinement on the true mesh")  //
-      ("cameras", po::value(&texts.cameras),
-       "COLMAP model with the true poses: only what its views see counts as missing")     //
-      ("housing", po::value(&texts.housing), "ports that those cameras look through")     //
-      ("estimated", po::value(&texts.estimated), "COLMAP model the input was made with")  //
-      ("samples", po::value(&options.samples)->default_value(200000),
-       "points of the truth that count for completeness, about (and points of an input mesh)")  //
-      ("seed", po::value(&options.seed)->default_value(1), "of the samples")                    //
-      ("min-views", po::value(&options.least_views)->default_value(2),
-       "views that must see a sample for it to count")  //
-      ("framed-only", po::value(&options.framed_only)->default_value(false)->implicit_value(true),
-       "count only points of a cloud that lie in the images of --min-views of --cameras, whatever "
-       "stands in between")                                        //
-      ("json", po::value(&texts.json), "write all numbers there")  //
-      ("error-cloud", po::value(&texts.error_cloud),
-       "write the points coloured by error (.ply)")  //
-      ("picture", po::value(&texts.picture),
-       "draw the errors (.png): the cloud as a camera sees it, or depth, truth and error of a "
-       "map")  //
-      ("picture-camera", po::value(&options.picture_camera),
-       "image name in --cameras to draw from (default: the first)")  //
-      ("picture-width", po::value(&options.picture_width)->default_value(1024),
-       "width of a cloud's picture [pixels]")  //
-      ("color-max", po::value(&options.color_max)->default_value(0),
-       "error of the last colour [m] (0: twice the first tolerance)")                   //
-      ("aligned", po::value(&texts.aligned), "write the input after alignment (.ply)")  //
-      ("transform-out", po::value(&texts.transform),
-       "write the alignment as 4 x 4 numbers, row by row");
+void declare(axial::OptionList& visible, Options& options, Texts& texts) {
+  visible
+      .add("input-file,i", &texts.input,
+           "what to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")
+      .add("truth-file,m", &texts.truth,
+           "the truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff)")
+      .add_with_default("tolerance", &texts.tolerance,
+                        "distances that count as right [m], separated by commas; the first one "
+                        "scales histograms (to 4 times) and colours (to 2 times)")
+      .add_with_default("align", &options.align,
+                        "none; centres: similarity from the camera centres of --estimated to those "
+                        "of --cameras; icp: rigid refinement on the true mesh")
+      .add("cameras", &texts.cameras,
+           "COLMAP model with the true poses: only what its views see counts as missing")
+      .add("housing", &texts.housing, "ports that those cameras look through")
+      .add("estimated", &texts.estimated, "COLMAP model the input was made with")
+      .add_with_default(
+          "samples", &options.samples,
+          "points of the truth that count for completeness, about (and points of an input mesh)")
+      .add_with_default("seed", &options.seed, "of the samples")
+      .add_with_default("min-views", &options.least_views,
+                        "views that must see a sample for it to count")
+      .add_switch("framed-only", &options.framed_only,
+                  "count only points of a cloud that lie in the images of --min-views of "
+                  "--cameras, whatever stands in between")
+      .add("json", &texts.json, "write all numbers there")
+      .add("error-cloud", &texts.error_cloud, "write the points coloured by error (.ply)")
+      .add("picture", &texts.picture,
+           "draw the errors (.png): the cloud as a camera sees it, or depth, truth and error of a "
+           "map")
+      .add("picture-camera", &options.picture_camera,
+           "image name in --cameras to draw from (default: the first)")
+      .add_with_default("picture-width", &options.picture_width,
+                        "width of a cloud's picture [pixels]")
+      .add_with_default("color-max", &options.color_max,
+                        "error of the last colour [m] (0: twice the first tolerance)")
+      .add("aligned", &texts.aligned, "write the input after alignment (.ply)")
+      .add("transform-out", &texts.transform, "write the alignment as 4 x 4 numbers, row by row");
 }
 
 void check(const Options& options) {

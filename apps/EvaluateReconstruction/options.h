@@ -12,16 +12,16 @@ struct Options {
   axial::ParsedOptions parsed;
   std::filesystem::path input, truth;
   std::vector<double> tolerances;   // [m], at least one
-  std::string align;                // none, centres, icp
+  std::string align = "none";       // none, centres, icp
   std::filesystem::path cameras;    // true COLMAP model; empty: none
   std::filesystem::path housing;    // ports of `cameras`; empty: dry
   std::filesystem::path estimated;  // estimated COLMAP model; empty: none
-  std::size_t samples = 0;
-  std::uint64_t seed = 0;
-  std::uint32_t least_views = 0;
+  std::size_t samples = 200000;
+  std::uint64_t seed = 1;
+  std::uint32_t least_views = 2;
   bool framed_only = false;
   double color_max = 0;  // [m]
-  int picture_width = 0;
+  int picture_width = 1024;
   std::string picture_camera;  // image name; empty: the first
   // Outputs; empty: not written.
   std::filesystem::path json, error_cloud, picture, aligned, transform;

@@ -3,7 +3,7 @@
 // return what goes into the JSON file.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "options.h"
 

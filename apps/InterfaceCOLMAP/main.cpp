@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
-
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "io/colmap.h"
 #include "io/colmap_scene.h"
@@ -35,10 +34,10 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   const io::Housing carried = io::housing_of(model.cameras);
   if (carried.ports.empty()) return carried;
   const pose::PortFit fit = pose::port_fit(model);
-  spdlog::info("The model's cameras carry ports: its points are {:.3f} px off behind them",
-               fit.behind_ports);
+  log_info("The model's cameras carry ports: its points are {:.3f} px off behind them",
+           fit.behind_ports);
   if (fit.behind_ports > fit.in_air)
-    spdlog::warn(
+    log_warning(
         "The points are {:.3f} px off in air: the poses were solved without refraction. "
         "RefinePoses makes refractive ones of them",
         fit.in_air);
@@ -52,10 +51,10 @@ int run(int argc, char** argv) {
 
   const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
   const io::ColmapModel model = io::read_colmap_model(model_folder);
-  spdlog::info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
-               model.cameras.size(), model.points.size());
+  log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
+           model.cameras.size(), model.points.size());
   const io::Housing housing = load_housing(options, model);
-  spdlog::info("Images in {}", options.image_folder.string());
+  log_info("Images in {}", options.image_folder.string());
 
   const fs::path folder = options.scene_file.parent_path();
   make_folder(folder);
@@ -71,23 +70,23 @@ int run(int argc, char** argv) {
   // The housing goes first: a scene without the one it was made with would count as dry.
   if (options.housing_file.empty() && housing.ports.empty()) {
     if (behind_ports)
-      spdlog::warn("{}: is left as it is, and goes with this scene", housing_file.string());
+      log_warning("{}: is left as it is, and goes with this scene", housing_file.string());
   } else {
     const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
     for (const std::string& entry : io::unused_entries(housing, model))
-      spdlog::warn("{}: no image goes by {}", options.housing_file.string(), entry);
+      log_warning("{}: no image goes by {}", options.housing_file.string(), entry);
     io::attach_ports(scene, by_image);
     io::write_housing(housing_file, by_image);
-    spdlog::info("{}: {} of {} images behind a port", housing_file.string(),
-                 count_behind_ports(scene), scene.images.size());
+    log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
+             scene.images.size());
   }
   io::write_lenses_beside(options.scene_file, lenses, behind_ports);
   if (const std::size_t distorted = count_distorted(scene))
-    spdlog::info("{}: {} of {} images keep their distorted lens",
-                 io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
+    log_info("{}: {} of {} images keep their distorted lens",
+             io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
   io::write_mvs(options.scene_file, scene, folder);
-  spdlog::info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
-               scene.points.size());
+  log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
+           scene.points.size());
   return 0;
 }
 

@@ -6,7 +6,6 @@
 #include "base/error.h"
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 using axial::fail;
 
 namespace {
@@ -17,7 +16,7 @@ fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& c
                            const std::string& name) {
   fs::path candidates[] = {axial::in_working_folder(parsed.common, name),
                            (colmap_folder / name).lexically_normal()};
-  if (!axial::given(parsed.values, "image-folder")) std::swap(candidates[0], candidates[1]);
+  if (!axial::given(parsed, "image-folder")) std::swap(candidates[0], candidates[1]);
   std::error_code error;
   for (const fs::path& candidate : candidates)
     if (fs::is_directory(candidate, error)) return candidate;
@@ -28,29 +27,28 @@ fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& c
 }  // namespace
 
 Options parse_command_line(int argc, const char* const* argv) {
-  std::string input, output, image_folder, housing, point_cloud;
+  std::string input, output, image_folder = "images/", housing, point_cloud;
   bool normalize = false, force_points = false, undistort = false;
   axial::ProgramOptions program{
       "InterfaceCOLMAP", "turns a COLMAP model and its images into a scene (.mvs)", {}, {}};
-  program.visible.add_options()  //
-      ("input-file,i", po::value(&input),
-       "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR")                //
-      ("output-file,o", po::value(&output), "scene to write (default: DIR/scene.mvs)")  //
-      ("image-folder", po::value(&image_folder)->default_value("images/"),
-       "folder of the images, in the working folder or else in DIR (the default: in DIR first); "
-       "images must have the size of their cameras")  //
-      ("housing", po::value(&housing),
-       "housing file: ports the cameras look through, or Calibmar's calibration.yaml; written as "
-       "<scene>.housing.json")  //
-      ("undistort", po::value(&undistort),
-       "1: resample images of distorted lenses into a pinhole's, which all programs can read; 0: "
-       "keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind ports, 1 in "
-       "air)")                                                                                 //
-      ("pointcloud-file,p", po::value(&point_cloud), "only to export a scene: not built yet")  //
-      ("normalize,f", po::value(&normalize)->default_value(false),
-       "only 0: intrinsics are always written in pixels")  //
-      ("force-points,e", po::value(&force_points)->default_value(false),
-       "accepted and without effect: sparse points are always written");
+  program.visible
+      .add("input-file,i", &input, "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR")
+      .add("output-file,o", &output, "scene to write (default: DIR/scene.mvs)")
+      .add_with_default("image-folder", &image_folder,
+                        "folder of the images, in the working folder or else in DIR (the default: "
+                        "in DIR first); images must have the size of their cameras")
+      .add("housing", &housing,
+           "housing file: ports the cameras look through, or Calibmar's calibration.yaml; written "
+           "as <scene>.housing.json")
+      .add("undistort", &undistort,
+           "1: resample images of distorted lenses into a pinhole's, which all programs can read; "
+           "0: keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind "
+           "ports, 1 in air)")
+      .add("pointcloud-file,p", &point_cloud, "only to export a scene: not built yet")
+      .add_with_default("normalize,f", &normalize,
+                        "only 0: intrinsics are always written in pixels")
+      .add_with_default("force-points,e", &force_points,
+                        "accepted and without effect: sparse points are always written");
 
   Options options;
   options.parsed = axial::parse_options(argc, argv, program);
@@ -68,7 +66,7 @@ Options parse_command_line(int argc, const char* const* argv) {
     fail("{}: is not a folder", options.colmap_folder.string());
   options.scene_file = output.empty() ? options.colmap_folder / "scene.mvs"
                                       : axial::in_working_folder(common, output);
-  if (axial::given(options.parsed.values, "undistort")) options.undistort = undistort;
+  if (axial::given(options.parsed, "undistort")) options.undistort = undistort;
   options.housing_file = axial::in_working_folder(common, housing);
   options.image_folder = find_image_folder(options.parsed, options.colmap_folder, image_folder);
   return options;

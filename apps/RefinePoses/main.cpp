@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "io/colmap.h"
 #include "io/colmap_lens.h"
@@ -81,13 +80,12 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
-      spdlog::warn("{}: too few observations fit; it is left out", bundle.images[i].name);
+      log_warning("{}: too few observations fit; it is left out", bundle.images[i].name);
   if (4 * report.observations_after < 3 * report.observations_before)
-    spdlog::warn("{} of {} observations do not fit: is this the housing, and the lens in air?",
-                 report.observations_before - report.observations_after,
-                 report.observations_before);
+    log_warning("{} of {} observations do not fit: is this the housing, and the lens in air?",
+                report.observations_before - report.observations_after, report.observations_before);
   if (!report.last.converged)
-    spdlog::warn("Not converged after {} iterations", report.last.iterations);
+    log_warning("Not converged after {} iterations", report.last.iterations);
 }
 
 // The model last: it is not there without the housing it belongs to.
@@ -115,8 +113,8 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
-    spdlog::warn("{}: no image goes by {}",
-                 (options.housing.empty() ? options.lens : options.housing).string(), entry);
+    log_warning("{}: no image goes by {}",
+                (options.housing.empty() ? options.lens : options.housing).string(), entry);
   pose::AdjustOptions& adjust = options.refine.adjust;
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
             refined.bundle, adjust);
@@ -127,29 +125,29 @@ int run(int argc, char** argv) {
   adjust.poses_known = options.poses == "known";
   pose::set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
   check_output(options, folder);
-  spdlog::info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
-               model.points.size(), refined.bundle.observations.size());
+  log_info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
+           model.points.size(), refined.bundle.observations.size());
   if (refined.unseen > 0)
-    spdlog::warn("{} observations lie where the lens in air images nothing", refined.unseen);
+    log_warning("{} observations lie where the lens in air images nothing", refined.unseen);
 
   pose::bring_to_metres(refined.bundle, adjust);
-  spdlog::info("Begins with points {:.3g} m away, in the middle",
-               pose::median_distance(refined.bundle));
+  log_info("Begins with points {:.3g} m away, in the middle",
+           pose::median_distance(refined.bundle));
   const pose::Bundle before = refined.bundle;
   if (adjust.free[pose::kFocalNumber])
     options.refine.between_rounds = [&] { place_again(refined, model); };
   const pose::RefineReport report = pose::refine(
-      refined.bundle, options.refine, [](const std::string& line) { spdlog::info("{}", line); });
+      refined.bundle, options.refine, [](const std::string& line) { log_info("{}", line); });
   const auto images = errors_by_image(before, refined.bundle);
   for (const std::string& line :
        report_lines(report, images, refined.bundle, refined.ports, adjust))
-    spdlog::info("{}", line);
+    log_info("{}", line);
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(report, refined.bundle);
   write(options, refined, model, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
-  spdlog::info("Refined model in {}", options.output.string());
+  log_info("Refined model in {}", options.output.string());
   return 0;
 }
 

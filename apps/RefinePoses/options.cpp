@@ -6,7 +6,6 @@
 #include "base/error.h"
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 using axial::fail;
 
 namespace {
@@ -37,44 +36,43 @@ Options parse_command_line(int argc, const char* const* argv) {
       "turns poses that COLMAP found in photographs taken under water into refractive ones",
       {},
       {}};
-  program.visible.add_options()  //
-      ("input-file,i", po::value(&input),
-       "COLMAP folder of the raw underwater photographs, with any lens models: the model is in "
-       "DIR/sparse, DIR/sparse/0 or DIR")  //
-      ("lens", po::value(&lens),
-       "the lens in air: cameras.txt or cameras.bin, or a folder with it, or Calibmar's "
-       "calibration.yaml; by camera id, or one for all; a model of COLMAP-Underwater has it")  //
-      ("housing", po::value(&housing),
-       "housing file: ports the cameras look through; a model of COLMAP-Underwater has them, and "
-       "Calibmar's file")  //
-      ("output-folder,o", po::value(&output),
-       "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")  //
-      ("poses", po::value(&options.poses)->default_value("adjust"),
-       "adjust, or known: they are right and in metres, and stay; points are placed, and what "
-       "--refine names is adjusted")  //
-      ("refine", po::value(&options.refine_list)->default_value(""),
-       "what else is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
-       "the "
-       "glass), index (of the water), focal")(
-          "normal-sigma", po::value(&sigmas.normal_degrees)->default_value(0),
-          "how well the normal was measured [degrees]; 0: not at all")(
-          "distance-sigma", po::value(&sigmas.distance)->default_value(0), "the distance [m]")(
-          "centre-sigma", po::value(&sigmas.centre)->default_value(0), "a dome's centre [m]")(
-          "thickness-sigma", po::value(&sigmas.thickness)->default_value(0),
-          "the thickness of the glass [m]")(
-          "index-sigma", po::value(&sigmas.index)->default_value(0), "the water's index")(
-          "focal-sigma", po::value(&sigmas.focal)->default_value(0), "focal lengths, relative")(
-          "scale-from", po::value(&options.scale_from),
-          "what is known in metres: images:NAME,NAME,METRES or points:ID,ID,METRES or "
-          "positions:FILE with a line NAME X Y Z for each image; without it refraction alone tells "
-          "the scale, weakly")("scale-sigma", po::value(&options.scale_sigma)->default_value(0.001),
-                               "how well that is known [m]")(
-          "max-error", po::value(&options.refine.tracks.max_error)->default_value(4),
-          "observations with larger errors are dropped [px]")(
-          "colmap-underwater", po::value(&options.underwater)->default_value(false),
-          "also write colmap-underwater/, the model with its ports for COLMAP-Underwater")(
-          "min-angle", po::value(&options.refine.tracks.min_angle)->default_value(1.5),
-          "points seen under smaller angles are dropped [degrees]");
+  program.visible
+      .add("input-file,i", &input,
+           "COLMAP folder of the raw underwater photographs, with any lens models: the model is in "
+           "DIR/sparse, DIR/sparse/0 or DIR")
+      .add("lens", &lens,
+           "the lens in air: cameras.txt or cameras.bin, or a folder with it, or Calibmar's "
+           "calibration.yaml; by camera id, or one for all; a model of COLMAP-Underwater has it")
+      .add("housing", &housing,
+           "housing file: ports the cameras look through; a model of COLMAP-Underwater has them, "
+           "and Calibmar's file")
+      .add("output-folder,o", &output,
+           "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
+      .add_with_default("poses", &options.poses,
+                        "adjust, or known: they are right and in metres, and stay; points are "
+                        "placed, and what --refine names is adjusted")
+      .add_with_default("refine", &options.refine_list,
+                        "what else is unknown: any of normal, distance (flat ports), centre "
+                        "(domes), thickness (of the glass), index (of the water), focal")
+      .add_with_default("normal-sigma", &sigmas.normal_degrees,
+                        "how well the normal was measured [degrees]; 0: not at all")
+      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
+      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
+      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
+      .add_with_default("index-sigma", &sigmas.index, "the water's index")
+      .add_with_default("focal-sigma", &sigmas.focal, "focal lengths, relative")
+      .add("scale-from", &options.scale_from,
+           "what is known in metres: images:NAME,NAME,METRES or points:ID,ID,METRES or "
+           "positions:FILE with a line NAME X Y Z for each image; without it refraction alone "
+           "tells the scale, weakly")
+      .add_with_default("scale-sigma", &options.scale_sigma, "how well that is known [m]")
+      .add_with_default("max-error", &options.refine.tracks.max_error,
+                        "observations with larger errors are dropped [px]")
+      .add_with_default(
+          "colmap-underwater", &options.underwater,
+          "also write colmap-underwater/, the model with its ports for COLMAP-Underwater")
+      .add_with_default("min-angle", &options.refine.tracks.min_angle,
+                        "points seen under smaller angles are dropped [degrees]");
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   const axial::CommonOptions& common = options.parsed.common;

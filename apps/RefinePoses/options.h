@@ -15,9 +15,9 @@ struct Options {
   std::filesystem::path housing;  // file
   std::filesystem::path output;   // folder
   bool underwater = false;        // also write the model for COLMAP-Underwater
-  std::string poses;              // "adjust" or "known"
+  std::string poses = "adjust";   // "adjust" or "known"
   std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
-  double scale_sigma = 0;         // [m]
+  double scale_sigma = 0.001;     // [m]
   std::string refine_list;        // see pose/free_numbers.h
   axial::pose::Sigmas sigmas;
   axial::pose::RefineOptions refine;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/json.h"
 #include "pose/free_numbers.h"
 
 namespace {
@@ -87,5 +88,5 @@ std::string report_json(const pose::RefineReport& report, std::span<const ImageE
     json["cameras"].push_back(camera);
   }
   // Names in another encoding than UTF-8 are not worth the loss of the report.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return io::to_text(json, 1) + "\n";
 }

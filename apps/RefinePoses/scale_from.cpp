@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scale_from.h"
 
-#include <spdlog/spdlog.h>
-
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,7 +11,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parse_number.h"
+#include "scene/decompositions.h"
 
 namespace {
 
@@ -68,13 +67,6 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   return known;
 }
 
-// Second largest extent over the largest; 0 for points on a line.
-double spread(const Eigen::Matrix3Xd& points) {
-  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Eigen::VectorXd extents = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();
-  return extents(0) > 0 ? extents(1) / extents(0) : 0;
-}
-
 void check_positions(const std::vector<pose::KnownPosition>& positions, const pose::Bundle& bundle,
                      const std::filesystem::path& file) {
   Eigen::Matrix3Xd known(3, positions.size()), model(3, positions.size());
@@ -85,8 +77,7 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
     known.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
     model.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
   }
-  constexpr double kLine = 1e-3;
-  if (spread(known) < kLine || spread(model) < kLine)
+  if (relative_width(known) < kLineWidth || relative_width(model) < kLineWidth)
     fail("{}: the positions lie on one line, which leaves the model free to roll about it",
          file.string());
 }
@@ -115,7 +106,7 @@ void read_positions(const std::filesystem::path& file, double sigma, const pose:
   if (adjust.positions.size() < 3)
     fail("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),
          adjust.positions.size(), without_pose.empty() ? "" : "; " + without_pose.front());
-  for (const std::string& line : without_pose) spdlog::warn("{}", line);
+  for (const std::string& line : without_pose) log_warning("{}", line);
   check_positions(adjust.positions, bundle, file);
 }
 

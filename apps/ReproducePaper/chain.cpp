@@ -107,7 +107,7 @@ Json to_json(const SceneOptions& options) {
 }
 
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
-  const std::string key = Fingerprint().add(to_json(options).dump()).hex().substr(0, 8);
+  const std::string key = Fingerprint().add(io::to_text(to_json(options))).hex().substr(0, 8);
   const SimulatedScene scene{chain.work /
                              fmt::format("{}-{}-{}", options.preset, options.seed, key)};
   step(scene.folder, {to_json(options), content_of_programs({"SimulateUnderwater"})}, [&] {

@@ -169,7 +169,7 @@ Json evaluated(const Chain& chain, const fs::path& dense, const SimulatedScene& 
   if (!run_sibling(chain, "EvaluateReconstruction", arguments, dense / "evaluate.log",
                    options.or_nothing ? nothing_to_measure() : Words()))
     return nullptr;
-  const Json all = Json::parse(read_file(file));
+  const Json all = io::json_from(read_file(file));
   const Json &accuracy = all.at("accuracy"), &score = all.at("scores").at(0);
   Json result{{"points", accuracy.at("count")},  {"mean", accuracy.at("mean")},
               {"median", accuracy.at("median")}, {"variance", accuracy.at("variance")},

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Repeats the paper's experiments: numbers as JSON, and from these its figures and tables.
-#include <spdlog/spdlog.h>
-
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "io/json.h"
 #include "options.h"
 #include "page.h"
 #include "results.h"
@@ -16,7 +16,7 @@ namespace {
 void write_documents(const experiments::Experiment& experiment, const Arguments& arguments,
                      const CommonOptions& common, const experiments::Json& results) {
   const std::filesystem::path folder = results_folder(arguments, common);
-  write_atomically(folder / (experiment.name + ".json"), results.dump() + "\n");
+  write_atomically(folder / (experiment.name + ".json"), io::to_text(results) + "\n");
   const auto documents = experiment.documents(results);
   for (const experiments::Document& document : documents)
     write_atomically(folder / document.file, document.text);
@@ -30,22 +30,22 @@ void reproduce(const experiments::Experiment& experiment, const Arguments& argum
           console_progress(experiment.name));
   const experiments::Json results = kept_results(experiment, arguments.quick, folder);
   if (results.is_null()) {
-    spdlog::info("{}: other parts are still to be computed", experiment.name);
+    log_info("{}: other parts are still to be computed", experiment.name);
     return;
   }
   write_documents(experiment, arguments, common, results);
   std::filesystem::remove_all(work_folder(arguments, common, experiment.name));
-  spdlog::info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
+  log_info("{}: {} parts in {}", experiment.name, experiment.parts.size(), folder.string());
 }
 
 void log_times(const std::vector<experiments::Experiment>& experiments,
                const std::filesystem::path& folder) {
-  spdlog::info("{:<16} {:>5} {:>9} {:>11}  {}", "experiment", "parts", "time [s]", "longest [s]",
-               "longest part");
+  log_info("{:<16} {:>5} {:>9} {:>11}  {}", "experiment", "parts", "time [s]", "longest [s]",
+           "longest part");
   for (const experiments::Experiment& experiment : experiments) {
     const PartTimes times = part_times(experiment, folder);
-    spdlog::info("{:<16} {:>5} {:>9.1f} {:>11.1f}  {}", experiment.name, times.parts, times.sum,
-                 times.longest, times.longest_part);
+    log_info("{:<16} {:>5} {:>9.1f} {:>11.1f}  {}", experiment.name, times.parts, times.sum,
+             times.longest, times.longest_part);
   }
 }
 

@@ -6,7 +6,6 @@
 #include "results.h"
 
 namespace axial {
-namespace po = boost::program_options;
 namespace {
 
 struct Chained {
@@ -25,16 +24,17 @@ ProgramOptions describe(Arguments& a) {
       "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
       "with EXPERIMENT figure2, runtime, figure3, figure4, reconstruction, sensitivity, need or "
       "all";
-  program.visible.add_options()("output,o", po::value(&a.output),
-                                "folder of the results (required); finished parts found there are "
-                                "not computed again")(
-      "quick", po::value(&a.quick)->default_value(false)->implicit_value(true),
-      "fewer samples, smaller images: a look in a few minutes, in DIR/quick")(
-      "part", po::value(&a.part),
-      "compute only the parts whose names begin so; figures and tables come with the last part")(
-      "page", po::value(&a.page), "Markdown page to bring up to date with the results");
+  program.visible
+      .add("output,o", &a.output,
+           "folder of the results (required); finished parts found there are not computed again")
+      .add_switch("quick", &a.quick,
+                  "fewer samples, smaller images: a look in a few minutes, in DIR/quick")
+      .add(
+          "part", &a.part,
+          "compute only the parts whose names begin so; figures and tables come with the last part")
+      .add("page", &a.page, "Markdown page to bring up to date with the results");
   // The name that parse_options knows the positional argument by.
-  program.hidden.add_options()("input-file", po::value(&a.experiment), "the experiment");
+  program.hidden.add("input-file", &a.experiment, "the experiment");
   return program;
 }
 

@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/parse_number.h"
+#include "io/json.h"
 
 namespace axial {
 namespace {
@@ -22,7 +23,7 @@ fs::path parts_folder(const fs::path& folder, const std::string& experiment) {
 
 // Parts of other inputs stand beside each other.
 fs::path part_file(const fs::path& folder, const Part& part) {
-  const std::string key = Fingerprint().add(part.inputs.dump()).hex().substr(0, 8);
+  const std::string key = Fingerprint().add(io::to_text(part.inputs)).hex().substr(0, 8);
   return folder / (part.name + "-" + key + ".json");
 }
 
@@ -34,7 +35,7 @@ fs::path time_file(fs::path part_file) {
 // The kept part, or null. A damaged file is as good as none.
 Json kept_part(const fs::path& file, const Part& part) {
   if (!fs::is_regular_file(file)) return nullptr;
-  const Json kept = Json::parse(read_file(file), nullptr, false);
+  const Json kept = io::json_from(read_file(file));
   const bool whole = kept.is_object() && kept.contains("inputs") && kept.contains("result");
   return whole && kept["inputs"] == part.inputs ? kept : Json(nullptr);
 }
@@ -45,7 +46,7 @@ void compute(const Part& part, const fs::path& file) {
   const Json finished{{"inputs", part.inputs}, {"result", part.compute()}};
   const std::chrono::duration<double> taken = Clock::now() - begin;
   write_atomically(time_file(file), fmt::format("{:.2f}", taken.count()));
-  write_atomically(file, finished.dump() + "\n");
+  write_atomically(file, io::to_text(finished) + "\n");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "chain.h"
+#include "io/json.h"
 
 namespace axial {
 
@@ -13,11 +14,11 @@ Words& operator+=(Words& words, const Words& more);
 template <class Make>
 void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   const std::filesystem::path mark = folder / "made-from.json";
-  if (std::filesystem::is_regular_file(mark) && read_file(mark) == inputs.dump()) return;
+  if (std::filesystem::is_regular_file(mark) && read_file(mark) == io::to_text(inputs)) return;
   std::filesystem::remove_all(folder);
   make_folder(folder);
   make();
-  write_atomically(mark, inputs.dump());
+  write_atomically(mark, io::to_text(inputs));
 }
 
 // One of the project's programs. False: it said one of `excuses`, see run_unless_excused.

@@ -9,53 +9,46 @@
 #include "base/parse_number.h"
 
 namespace axial {
-namespace po = boost::program_options;
 
 ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
   program.name = "SimulateUnderwater";
   program.description = "makes a synthetic scene with ground truth, in air and under water";
-  const simulate::PresetOptions preset;
-  program.visible.add_options()("preset", po::value(&a.preset.name)->default_value(preset.name),
-                                "reef, outcrop, closeup or survey")(
-      "seed", po::value(&a.preset.seed)->default_value(preset.seed), "of everything random")(
-      "output,o", po::value(&a.output), "folder of the scene (required)")(
-      "views", po::value(&a.preset.views)->default_value(0), "images (0: the preset's number)")(
-      "width", po::value(&a.preset.width)->default_value(preset.width), "of the images [px]")(
-      "height", po::value(&a.preset.height)->default_value(preset.height), "of the images [px]")(
-      "fov-degrees",
-      po::value(&a.preset.horizontal_fov_degrees)->default_value(preset.horizontal_fov_degrees),
-      "horizontal field of view in air, without the lens's distortion")(
-      "lens", po::value(&a.lens),
-      "a distorted one: OPENCV,k1,k2,p1,p2 or OPENCV_FISHEYE,k1,k2,k3,k4")(
-      "scale", po::value(&a.preset.scale)->default_value(preset.scale),
-      "of the scene and the views' distances, not of the port")(
-      "coarseness", po::value(&a.preset.coarseness)->default_value(preset.coarseness),
-      "of the mesh: the distance between its vertices times this")(
-      "relief", po::value(&a.preset.relief)->default_value(preset.relief),
-      "of the scene's heights")("samples", po::value(&a.samples)->default_value(3),
-                                "rays along each side of a pixel")(
-      "port-distance", po::value(&a.port_distance), "camera centre to glass [m]")(
-      "port-thickness", po::value(&a.port_thickness), "of the glass [m]")(
-      "tilt-degrees", po::value(&a.tilt_degrees), "of the port against the optical axis")(
-      "water-level", po::value(&a.water_level),
-      "height of a water surface that cameras in the air look through, in place of a port [m]")(
-      "dome-radius", po::value(&a.dome_radius),
-      "inner radius of a dome in place of the flat port [m]")(
-      "dome-x", po::value(&a.dome_x)->default_value(0), "camera centre to dome centre [m]")(
-      "dome-y", po::value(&a.dome_y)->default_value(0), "camera centre to dome centre [m]")(
-      "dome-z", po::value(&a.dome_z)->default_value(0), "camera centre to dome centre [m]")(
-      "n-glass", po::value(&a.n_glass), "refractive index")("n-water", po::value(&a.n_water),
-                                                            "refractive index")(
-      "haze", po::value(&a.haze)->default_value(0),
-      "share of the light that the medium, water or air, scatters into view, 0 to 1")(
-      "noise", po::value(&a.noise)->default_value(1.2), "standard deviation [grey levels]")(
-      "jpeg-quality", po::value(&a.jpeg_quality)->default_value(93), "1 to 100")(
-      "truth", po::value(&a.truth)->default_value(true),
-      "write distances and normals of the images")(
-      "truth-only", po::value(&a.truth_only)->default_value(false)->implicit_value(true),
-      "write mesh.ply, distances and normals, nothing else")(
-      "medium", po::value(&a.medium)->default_value("both"), "air, water or both");
+  program.visible.add_with_default("preset", &a.preset.name, "reef, outcrop, closeup or survey")
+      .add_with_default("seed", &a.preset.seed, "of everything random")
+      .add("output,o", &a.output, "folder of the scene (required)")
+      .add_with_default("views", &a.preset.views, "images (0: the preset's number)")
+      .add_with_default("width", &a.preset.width, "of the images [px]")
+      .add_with_default("height", &a.preset.height, "of the images [px]")
+      .add_with_default("fov-degrees", &a.preset.horizontal_fov_degrees,
+                        "horizontal field of view in air, without the lens's distortion")
+      .add("lens", &a.lens, "a distorted one: OPENCV,k1,k2,p1,p2 or OPENCV_FISHEYE,k1,k2,k3,k4")
+      .add_with_default("scale", &a.preset.scale,
+                        "of the scene and the views' distances, not of the port")
+      .add_with_default("coarseness", &a.preset.coarseness,
+                        "of the mesh: the distance between its vertices times this")
+      .add_with_default("relief", &a.preset.relief, "of the scene's heights")
+      .add_with_default("samples", &a.samples, "rays along each side of a pixel")
+      .add("port-distance", &a.port_distance, "camera centre to glass [m]")
+      .add("port-thickness", &a.port_thickness, "of the glass [m]")
+      .add("tilt-degrees", &a.tilt_degrees, "of the port against the optical axis")
+      .add("water-level", &a.water_level,
+           "height of a water surface that cameras in the air look through, in place of a port [m]")
+      .add("dome-radius", &a.dome_radius, "inner radius of a dome in place of the flat port [m]")
+      .add_with_default("dome-x", &a.dome_x, "camera centre to dome centre [m]")
+      .add_with_default("dome-y", &a.dome_y, "camera centre to dome centre [m]")
+      .add_with_default("dome-z", &a.dome_z, "camera centre to dome centre [m]")
+      .add("n-glass", &a.n_glass, "refractive index")
+      .add("n-water", &a.n_water, "refractive index")
+      .add_with_default(
+          "haze", &a.haze,
+          "share of the light that the medium, water or air, scatters into view, 0 to 1")
+      .add_with_default("noise", &a.noise, "standard deviation [grey levels]")
+      .add_with_default("jpeg-quality", &a.jpeg_quality, "1 to 100")
+      .add_with_default("truth", &a.truth, "write distances and normals of the images")
+      .add_switch("truth-only", &a.truth_only,
+                  "write mesh.ply, distances and normals, nothing else")
+      .add_with_default("medium", &a.medium, "air, water or both");
   return program;
 }
 
@@ -93,27 +86,26 @@ void apply_lens_option(simulate::Preset& preset, const Arguments& a) {
   simulate::check_lens(preset.lens);
 }
 
-void apply_port_options(simulate::Preset& preset, const Arguments& a,
-                        const po::variables_map& values) {
+void apply_port_options(simulate::Preset& preset, const Arguments& a, const ParsedOptions& parsed) {
   simulate::Port& port = preset.port;
-  const bool surface = given(values, "water-level");
+  const bool surface = given(parsed, "water-level");
   for (const char* of_housing :
        {"port-distance", "port-thickness", "tilt-degrees", "dome-radius", "n-glass"})
-    if (surface && given(values, of_housing))
+    if (surface && given(parsed, of_housing))
       fail("--{} is of a housing, and --water-level puts the cameras in the air", of_housing);
   if (surface) preset.water_level = a.water_level;
-  if (given(values, "port-distance")) port.distance = a.port_distance;
-  if (given(values, "port-thickness")) port.thickness = a.port_thickness;
-  if (given(values, "tilt-degrees")) port.normal = simulate::tilted_normal(a.tilt_degrees);
-  const bool dome = given(values, "dome-radius");
+  if (given(parsed, "port-distance")) port.distance = a.port_distance;
+  if (given(parsed, "port-thickness")) port.thickness = a.port_thickness;
+  if (given(parsed, "tilt-degrees")) port.normal = simulate::tilted_normal(a.tilt_degrees);
+  const bool dome = given(parsed, "dome-radius");
   for (const char* of_flat : {"port-distance", "tilt-degrees"})
-    if (dome && given(values, of_flat))
+    if (dome && given(parsed, of_flat))
       fail("--{} is of a flat port, and --dome-radius makes a dome", of_flat);
   for (const char* of_dome : {"dome-x", "dome-y", "dome-z"})
-    if (!dome && given(values, of_dome)) fail("--{} needs --dome-radius", of_dome);
+    if (!dome && given(parsed, of_dome)) fail("--{} needs --dome-radius", of_dome);
   if (dome) port.dome = simulate::Dome{{a.dome_x, a.dome_y, a.dome_z}, a.dome_radius};
-  if (given(values, "n-glass")) port.n_glass = a.n_glass;
-  if (given(values, "n-water")) port.n_water = a.n_water;
+  if (given(parsed, "n-glass")) port.n_glass = a.n_glass;
+  if (given(parsed, "n-water")) port.n_water = a.n_water;
 }
 
 }  // namespace axial

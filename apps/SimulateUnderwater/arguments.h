@@ -10,9 +10,9 @@ namespace axial {
 
 struct Arguments {
   simulate::PresetOptions preset;
-  std::string output, medium, lens;
-  int samples = 0, jpeg_quality = 0;
-  double haze = 0, noise = 0;
+  std::string output, medium = "both", lens;
+  int samples = 3, jpeg_quality = 93;
+  double haze = 0, noise = 1.2;
   bool truth = true, truth_only = false;
   double water_level = 0;
   double dome_radius = 0, dome_x = 0, dome_y = 0, dome_z = 0;
@@ -31,7 +31,6 @@ void apply_lens_option(simulate::Preset& preset, const Arguments& a);
 
 // Replaces those properties of the preset's port that the user gave, or the port by the water's
 // surface.
-void apply_port_options(simulate::Preset& preset, const Arguments& a,
-                        const boost::program_options::variables_map& values);
+void apply_port_options(simulate::Preset& preset, const Arguments& a, const ParsedOptions& parsed);
 
 }  // namespace axial

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes a synthetic scene with ground truth: images in air and behind a port under water.
-#include <spdlog/spdlog.h>
 
 #include "arguments.h"
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/image.h"
@@ -41,7 +41,7 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   make_folder(folder);
   const simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
   check_submerged(preset, mesh);
-  spdlog::info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
+  log_info("{}: {} vertices, {} faces", a.preset.name, mesh.vertices.size(), mesh.faces.size());
   const simulate::RayScene scene(mesh);
   const simulate::Shader shader = simulate::seabed_shader(mesh, scene, preset.texture);
   write_mesh(folder / "mesh.ply", mesh);
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     const ThreadLimit limit(parsed.common.max_threads);
     simulate::Preset preset = simulate::make_preset(arguments.preset);
     apply_lens_option(preset, arguments);
-    apply_port_options(preset, arguments, parsed.values);
+    apply_port_options(preset, arguments, parsed);
     simulate::check_ports(preset);
     simulate_scene(arguments, preset, in_working_folder(parsed.common, arguments.output));
     return 0;

@@ -16,9 +16,12 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Throws an Error with the formatted message.
+[[noreturn]] void fail_formatted(fmt::string_view format, fmt::format_args arguments);
+
 template <class... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
-  throw Error(fmt::format(format, std::forward<Args>(args)...));
+  fail_formatted(format, fmt::make_format_args(args...));
 }
 
 }  // namespace axial

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/program.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <boost/program_options.hpp>
 #include <fstream>
 #include <iostream>
 #include <new>
 #include <typeinfo>
 
 #include "base/error.h"
+#include "base/log.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -40,6 +40,39 @@ po::options_description common_options(CommonOptions& common, const ProgramOptio
       "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
       "verbosity,v", po::value(&common.verbosity)->default_value(2), verbosity.c_str());
   return generic;
+}
+
+template <class T>
+std::string default_text(const T& value) {
+  if constexpr (std::is_same_v<T, bool>)
+    return value ? "1" : "0";
+  else
+    return fmt::format("{}", value);
+}
+
+template <class T>
+po::typed_value<T>* bound(const Option& option, T* target) {
+  po::typed_value<T>* value = po::value(target);
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+    value->composing();
+  } else if (option.shows_default) {
+    value->default_value(*target, default_text(*target));
+  }
+  if constexpr (std::is_same_v<T, bool>)
+    if (option.is_switch) value->implicit_value(true);
+  return value;
+}
+
+po::options_description described(const OptionList& list) {
+  po::options_description description(list.title());
+  for (const Option& option : list.options())
+    std::visit(
+        [&](auto* target) {
+          description.add_options()(option.name.c_str(), bound(option, target),
+                                    option.help.c_str());
+        },
+        option.target);
+  return description;
 }
 
 std::string one_line(std::string text) {
@@ -80,15 +113,18 @@ void apply(const CommonOptions& common) {
     fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
   if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
-  constexpr std::array kLevels{spdlog::level::warn, spdlog::level::info, spdlog::level::debug,
-                               spdlog::level::trace};
-  spdlog::set_level(kLevels[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);
+  constexpr std::array kLevels{LogLevel::warning, LogLevel::info, LogLevel::debug, LogLevel::trace};
+  set_log_level(kLevels[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);
+}
+
+bool given_in(const po::variables_map& values, const std::string& name) {
+  return values.count(name) > 0 && !values[name].defaulted();
 }
 
 }  // namespace
 
-bool given(const po::variables_map& values, const std::string& name) {
-  return values.count(name) > 0 && !values[name].defaulted();
+bool given(const ParsedOptions& parsed, const std::string& name) {
+  return parsed.given.contains(name);
 }
 
 fs::path in_working_folder(const CommonOptions& common, const std::string& path) {
@@ -98,12 +134,15 @@ fs::path in_working_folder(const CommonOptions& common, const std::string& path)
 
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program) {
   ParsedOptions parsed;
+  po::variables_map values;
   std::string working_folder;
+  const po::options_description visible = described(program.visible);
+  const po::options_description hidden = described(program.hidden);
   po::options_description command_line;
   command_line.add(common_options(parsed.common, program, working_folder));
-  command_line.add(program.visible).add(program.hidden);
+  command_line.add(visible).add(hidden);
   po::options_description config;
-  config.add(program.visible).add(program.hidden);
+  config.add(visible).add(hidden);
   po::positional_options_description positional;
   positional.add("input-file", -1);
 
@@ -115,37 +154,37 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     const po::parsed_options arguments = parser.run();
     refuse_stray_arguments(arguments);
     refuse_negative(arguments, command_line);
-    po::store(arguments, parsed.values);
+    po::store(arguments, values);
 
-    if (parsed.values.count("working-folder"))
-      working_folder = parsed.values["working-folder"].as<std::string>();
+    if (values.count("working-folder")) working_folder = values["working-folder"].as<std::string>();
     std::error_code error;
     parsed.common.working_folder = fs::absolute(working_folder.empty() ? "." : working_folder);
     if (!fs::is_directory(parsed.common.working_folder, error))
       fail("--working-folder {}: is not a folder", working_folder);
 
-    const fs::path cfg =
-        parsed.common.working_folder / parsed.values["config-file"].as<std::string>();
+    const fs::path cfg = parsed.common.working_folder / values["config-file"].as<std::string>();
     if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
       try {
         const po::parsed_options in_file = po::parse_config_file(in, config);
         refuse_negative(in_file, config);
-        po::store(in_file, parsed.values);
+        po::store(in_file, values);
       } catch (const po::error& cfg_error) {
         fail("{}: {}", cfg.string(), one_line(cfg_error.what()));
       }
-    } else if (given(parsed.values, "config-file")) {
+    } else if (given_in(values, "config-file")) {
       fail("{}: cannot be opened", cfg.string());
     }
-    po::notify(parsed.values);
+    po::notify(values);
+    for (const auto& [name, value] : values)
+      if (given_in(values, name)) parsed.given.insert(name);
 
-    const bool help = parsed.values.count("help") > 0;
-    const bool no_input = has_input && !parsed.values.count("input-file");
+    const bool help = values.count("help") > 0;
+    const bool no_input = has_input && !values.count("input-file");
     if (help || no_input) {
       po::options_description shown;
       std::string unused_folder;
       CommonOptions unused;
-      shown.add(common_options(unused, program, unused_folder)).add(program.visible);
+      shown.add(common_options(unused, program, unused_folder)).add(visible);
       std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
       parsed.exit_code = help ? 0 : 1;
       if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";
@@ -169,11 +208,7 @@ std::string line_start(int descriptor) {
 }  // namespace
 
 int run_program(const std::string& name, const std::function<int()>& body) {
-  const auto log =
-      std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
-  log->set_pattern(line_start(STDOUT_FILENO) + "%H:%M:%S [%n] %v");
-  log->flush_on(spdlog::level::trace);
-  spdlog::set_default_logger(log);
+  start_log(name, line_start(STDOUT_FILENO));
   try {
     return body();
   } catch (const std::bad_alloc&) {

@@ -3,10 +3,12 @@
 // code.
 #pragma once
 
-#include <boost/program_options.hpp>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
+
+#include "base/option_list.h"
 
 namespace axial {
 
@@ -17,17 +19,16 @@ struct CommonOptions {
   int archive_type = -1;
   int process_priority = -1;
   unsigned max_threads = 0;
-  // 0: warnings, 1: stages (spdlog's info), 2: progress (debug), 3: details (trace).
+  // 0: warnings, 1: stages (the log's info), 2: progress (debug), 3: details (trace).
   int verbosity = 2;
 };
 
 struct ProgramOptions {
   std::string name;         // "DensifyPointCloud": log tag and default cfg name
   std::string description;  // one line for --help
-  // Options of this program, allowed on the command line and in the cfg file, bound to the caller's
-  // variables by boost::program_options::value(&variable).
-  boost::program_options::options_description visible{"Options"};
-  boost::program_options::options_description hidden{"Hidden options"};
+  // Options of this program, allowed on the command line and in the cfg file.
+  OptionList visible{"Options"};
+  OptionList hidden{"Hidden options"};
   std::string when_verbose = "";  // ", ...": what -v 3 and above give besides, for --help
 };
 
@@ -41,14 +42,14 @@ struct ProgramOptions {
 // Throws Error for an unknown option, a malformed value, an unusable working folder.
 struct ParsedOptions {
   CommonOptions common;
-  boost::program_options::variables_map values;
+  std::set<std::string> given;  // full names of the options on the command line or in the cfg
   bool run = false;
   int exit_code = 0;
 };
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
-// True if the user gave the option, on the command line or in the cfg.
-bool given(const boost::program_options::variables_map& values, const std::string& name);
+// True if the user gave the option of this full name, on the command line or in the cfg.
+bool given(const ParsedOptions& parsed, const std::string& name);
 
 // `path` relative to the working folder unless absolute; empty stays empty.
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);

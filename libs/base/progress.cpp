@@ -2,12 +2,13 @@
 #include "base/progress.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 #include <memory>
+
+#include "base/log.h"
 
 namespace axial {
 namespace {
@@ -24,8 +25,8 @@ struct State {
 ProgressSink console_progress(const std::string& title) {
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   return [title, terminal, state = std::make_shared<State>()](std::size_t done, std::size_t total) {
-    const auto level = done < total ? spdlog::level::debug : spdlog::level::info;
-    if (!spdlog::should_log(level)) return;
+    const auto level = done < total ? LogLevel::debug : LogLevel::info;
+    if (!logs(level)) return;
     const auto now = Clock::now();
     const std::chrono::duration<double> since = now - state->shown;
     if (done < total && since.count() < (terminal ? 0.2 : 5.0)) return;
@@ -43,7 +44,7 @@ ProgressSink console_progress(const std::string& title) {
       fmt::print("\r{}\033[K", line);
       std::fflush(stdout);
     } else {
-      spdlog::log(level, line);
+      log_line(level, line);
     }
   };
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/board_pose.h"
 
-#include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 #include <optional>
 
 #include "base/error.h"
 #include "pose/adjust.h"
+#include "scene/decompositions.h"
 
 namespace axial::calibrate {
 namespace {
@@ -41,9 +41,7 @@ bool spans_a_plane(const std::vector<cv::Point3d>& board) {
   Eigen::Matrix3Xd places(3, board.size());
   for (std::size_t i = 0; i < board.size(); ++i)
     places.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(board[i].x, board[i].y, board[i].z);
-  const Eigen::Matrix3Xd centred = places.colwise() - places.rowwise().mean();
-  const Eigen::Vector3d extents = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
-  return extents(1) > 1e-3 * extents(0);
+  return relative_width(places) > kLineWidth;
 }
 
 Pose pose_of(const cv::Mat& turn, const cv::Mat& place, const Eigen::Vector3d& centre) {

@@ -2,11 +2,11 @@
 #include "calibrate/information.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "pose/observation_cost.h"
+#include "scene/decompositions.h"
 
 namespace axial::calibrate {
 namespace {
@@ -77,11 +77,12 @@ pose::HousingChange<double> sigmas_from(const Information& information,
   for (int i = 0; i < kHousingNumbers; ++i)
     for (int j = 0; j < kHousingNumbers; ++j)
       if (free(i) && free(j)) scaled(i, j) = information(i, j) * scale(i) * scale(j);
-  const Eigen::SelfAdjointEigenSolver<Information> eigen(scaled);
+  const EigenPairs eigen = symmetric_eigen(scaled);
   constexpr double kLeast = 1e-14;
-  const Information covariance = eigen.eigenvectors() *
-                                 eigen.eigenvalues().cwiseMax(kLeast).cwiseInverse().asDiagonal() *
-                                 eigen.eigenvectors().transpose();
+  const Information vectors = eigen.vectors;
+  const pose::HousingChange<double> values = eigen.values;
+  const Information covariance =
+      vectors * values.cwiseMax(kLeast).cwiseInverse().asDiagonal() * vectors.transpose();
   return scale.cwiseProduct(covariance.diagonal().cwiseSqrt());
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud/normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <nanoflann.hpp>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/decompositions.h"
 
 namespace axial::cloud {
 namespace {
@@ -38,7 +38,7 @@ Eigen::Vector3d smallest_component(const std::vector<Eigen::Vector3f>& points,
     const Eigen::Vector3d d = points[i].cast<double>() - mean;
     covariance += d * d.transpose();
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  SymmetricEigen3 solver;
   solver.computeDirect(covariance);
   return solver.eigenvectors().col(0);
 }

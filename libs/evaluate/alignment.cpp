@@ -2,11 +2,12 @@
 #include "evaluate/alignment.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
 #include "base/error.h"
+#include "scene/decompositions.h"
 
 namespace axial::evaluate {
 namespace {
@@ -20,9 +21,7 @@ Eigen::Matrix3Xd columns(std::span<const Eigen::Vector3d> points) {
 
 void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
   if (!points.allFinite()) fail("a {} position is not finite", which);
-  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Eigen::Vector3d spread = Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues();
-  if (!(spread[1] > 1e-3 * spread[0]))
+  if (!(relative_width(points) > kLineWidth))
     fail("the {} {} positions lie on one line: they fix no similarity", points.cols(), which);
 }
 
@@ -49,7 +48,7 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
   check_spread(to, "reference");
-  const Eigen::Matrix4d m = Eigen::umeyama(from, to, true);
+  const Eigen::Matrix4d m = best_similarity(from, to);
   Similarity result;
   result.scale = std::cbrt(m.topLeftCorner<3, 3>().determinant());
   result.rotation = m.topLeftCorner<3, 3>() / result.scale;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluate/icp.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "evaluate/sampling.h"
+#include "scene/decompositions.h"
 
 namespace axial::evaluate {
 namespace {
@@ -76,13 +76,12 @@ Vector6d solve_step(const std::vector<Pair>& pairs, const Eigen::Vector3d& centr
     normal_matrix += row * row.transpose();
     right_side -= row * pair.distance;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(normal_matrix);
-  const double least = 1e-6 * eigen.eigenvalues()[5];
+  const EigenPairs eigen = symmetric_eigen(normal_matrix);
+  const double least = 1e-6 * eigen.values[5];
   Vector6d step = Vector6d::Zero();
   for (int k = 0; k < 6; ++k) {
-    const double value = eigen.eigenvalues()[k];
-    if (value > least)
-      step += eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(right_side) / value);
+    const Vector6d direction = eigen.vectors.col(k);
+    if (eigen.values[k] > least) step += direction * (direction.dot(right_side) / eigen.values[k]);
   }
   return step;
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "evaluate/sampling.h"
 #include "evaluate/statistics.h"
+#include "scene/decompositions.h"
 
 namespace axial::evaluate {
 namespace {
@@ -123,7 +123,7 @@ Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
     const Eigen::Vector3d d = x.cast<double>() - centre;
     spread += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  const SymmetricEigen3 axes(spread);
   Eigen::Vector3d forward = axes.eigenvectors().col(0);
   Eigen::Vector3d mean_normal = Eigen::Vector3d::Zero();
   for (const auto& n : normals) mean_normal += n.cast<double>();

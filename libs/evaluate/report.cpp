@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 namespace axial::evaluate {
 namespace {

@@ -2,7 +2,7 @@
 // Evaluations as text for people and as JSON for programs (fields: docs/evaluate.md).
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "evaluate/alignment.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/colmap_scene.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -12,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
@@ -44,7 +43,7 @@ void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double
     fail("{}: camera {}: the distortion of its {} lens turns the image over", model_folder.string(),
          from.id, from.model);
   if (!lens.shows_all(camera.width, camera.height))
-    spdlog::warn(
+    log_warning(
         "{}: camera {} ({}): its lens is not defined as far as the corners of its image; pixels "
         "beyond are not matched",
         model_folder.string(), from.id, from.model);
@@ -64,8 +63,8 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   const auto distortion = lens_distortion(camera);
   const bool resampled = !lens && (import.undistort || !distortion);
   if (!lens && !import.undistort && !distortion)
-    spdlog::info("camera {} ({}): images are undistorted: not a lens that is matched as it is",
-                 camera.id, camera.model);
+    log_info("camera {} ({}): images are undistorted: not a lens that is matched as it is",
+             camera.id, camera.model);
   if (lens) imported.camera.lens = *lens;
   if (resampled) imported.camera.lens = pinhole_inside(camera, model_folder.string());
   if (!lens && !resampled) imported.camera.lens = undistorted_lens(camera);

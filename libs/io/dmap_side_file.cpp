@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "io/lens_json.h"
@@ -46,7 +47,7 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   root.require_object({"version", "width", "height", "lens", "distortion", "port", "min_depth_m",
                        "max_depth_m", "made_from", "content"});
   if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
   DmapSideFile side;
   side.camera.width = read_side(root, "width");
   side.camera.height = read_side(root, "height");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/housing.h"
 
-#include <spdlog/spdlog.h>
-
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "io/calibmar.h"
 #include "io/image_names.h"
 #include "io/port_json.h"
@@ -164,7 +164,7 @@ Housing read_housing(const fs::path& path) {
   const JsonPlace root{json, path.string() + ": housing"};
   root.require_object({"version", "ports", "default", "cameras", "images"});
   if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
   Housing housing;
   read_ports(root.at("ports"), housing);
   housing.default_port = port_name(root, "default", housing);
@@ -217,7 +217,7 @@ void attach_ports(Scene& scene, const Housing& housing) {
     }
   }
   for (const auto& [name, unused] : housing.images)
-    if (!used.contains(name)) spdlog::warn("housing: no image goes by images.{}", name);
+    if (!used.contains(name)) log_warning("housing: no image goes by images.{}", name);
 }
 
 }  // namespace axial::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/lens_json.h"
 
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "base/error.h"
@@ -13,7 +14,8 @@ void read_list(const JsonPlace& place, const char* key, std::span<double> number
   if (!place.has(key)) return;
   const nlohmann::json& list = place.json.at(key);
   if (!list.is_array() || list.size() > numbers.size())
-    fail("{}.{} is {}, expected at most {} numbers", place.where, key, list.dump(), numbers.size());
+    fail("{}.{} is {}, expected at most {} numbers", place.where, key, to_text(list),
+         numbers.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!list[i].is_number()) fail("{}.{}[{}] is no number", place.where, key, i);
     numbers[i] = list[i].get<double>();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/lenses.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "io/image_names.h"
 #include "io/lens_json.h"
 
@@ -100,7 +100,7 @@ Lenses read_lenses(const fs::path& path) {
   const JsonPlace root{json, path.string() + ": lenses"};
   root.require_object({"version", "lenses", "default", "images"});
   if (root.at("version").json != 1)
-    fail("{}.version is {}, expected 1", root.where, root.at("version").json.dump());
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
   Lenses lenses;
   read_definitions(root.at("lenses"), lenses);
   lenses.default_lens = lens_name(root, "default", lenses);
@@ -146,7 +146,7 @@ void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
            image.path);
   }
   for (const auto& [name, unused] : lenses.images)
-    if (!used.contains(name)) spdlog::warn("{}: no image goes by images.{}", file.string(), name);
+    if (!used.contains(name)) log_warning("{}: no image goes by images.{}", file.string(), name);
 }
 
 bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {

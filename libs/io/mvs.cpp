@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mvs.h"
 
-#include <spdlog/spdlog.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "io/image.h"
 #include "io/mvs_format.h"
 #include "io/rotation.h"
@@ -184,7 +183,7 @@ void warn_of_normalised_cameras(const Scene& scene, const MvsFile& mvs, const st
     if (!image.calibrated) continue;
     const MvsImage& record = mvs.images[i];
     if (mvs.platforms[record.platform].cameras[record.camera].width > 0) continue;
-    spdlog::warn(
+    log_warning(
         "{}: cameras are stored without a resolution; the principal point of {} is taken "
         "to be ({:.2f}, {:.2f}) of {}x{} pixels",
         file, image.path, image.camera.lens.cx, image.camera.lens.cy, image.camera.width,

@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/port_json.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <vector>
+#include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 
 namespace axial::io {
 namespace {
 
 using nlohmann::json;
-
-// Remembers the keys of every open object, because the parser itself keeps the last of two values.
-class DuplicateKeys {
- public:
-  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
-    if (event == json::parse_event_t::object_start) open_.emplace_back();
-    if (event == json::parse_event_t::object_end) open_.pop_back();
-    if (event == json::parse_event_t::key && !open_.back().insert(parsed).second)
-      fail("key {} occurs twice", parsed.dump());
-    return true;
-  }
-
- private:
-  std::vector<std::set<std::string>> open_;
-};
 
 void require_index(double n, const char* key, const std::string& where) {
   // No transparent solid or liquid a port is made of is denser than 3 (diamond: 2.4).
@@ -50,7 +32,7 @@ Eigen::Vector3d vector(const JsonPlace& place) {
   const json& v = place.json;
   if (!v.is_array() || v.size() != 3 ||
       !std::ranges::all_of(v, [](const json& number) { return number.is_number(); }))
-    fail("{} is {}, expected three numbers", place.where, v.dump());
+    fail("{} is {}, expected three numbers", place.where, to_text(v));
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
@@ -148,23 +130,8 @@ void check(const refractive::DomePort<double>& port, const std::string& where,
 
 }  // namespace
 
-json read_json(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kLargest = 256u << 20;
-  const std::string bytes = read_file(path, kLargest);
-  try {
-    return json::parse(bytes, DuplicateKeys());
-  } catch (const std::exception& error) {
-    fail("{}: malformed JSON: {}", path.string(), error.what());
-  }
-}
-
-void write_json(const std::filesystem::path& path, const json& value) {
-  // Names in another encoding than UTF-8 cannot be kept exactly in JSON: say so, do not mangle.
-  try {
-    write_atomically(path, value.dump(2) + "\n");
-  } catch (const json::exception& error) {
-    fail("{}: cannot be written: {}", path.string(), error.what());
-  }
+bool JsonPlace::has(const char* key) const {
+  return json.contains(key);
 }
 
 void JsonPlace::require_object(std::initializer_list<const char*> known) const {
@@ -182,13 +149,14 @@ JsonPlace JsonPlace::at(const std::string& key) const {
 
 double JsonPlace::number(const char* key) const {
   const JsonPlace value = at(key);
-  if (!value.json.is_number()) fail("{} is {}, expected a number", value.where, value.json.dump());
+  if (!value.json.is_number())
+    fail("{} is {}, expected a number", value.where, to_text(value.json));
   return value.json.get<double>();
 }
 
 std::string JsonPlace::text(const char* key) const {
   const JsonPlace value = at(key);
-  if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, value.json.dump());
+  if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, to_text(value.json));
   return value.json.get<std::string>();
 }
 
@@ -196,7 +164,7 @@ Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) 
   const double length = n.stableNorm();
   if (!(length > 1e-6 && std::isfinite(length)))
     fail("{} is [{},{},{}], which is no direction", where, n.x(), n.y(), n.z());
-  if (std::abs(length - 1) > 1e-6) spdlog::warn("{} has length {}: normalised", where, length);
+  if (std::abs(length - 1) > 1e-6) log_warning("{} has length {}: normalised", where, length);
   // Left as it is where it is unit to rounding, so that writing what was read changes nothing.
   return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
 }

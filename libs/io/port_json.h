@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: JSON files, and a port in JSON (housing files, side files of depth maps).
+// Private to libs/io: a port in JSON (housing files, side files of depth maps).
 #pragma once
 
-#include <filesystem>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "io/json.h"
 #include "refractive/port.h"
 #include "scene/water_surface.h"
 
 namespace axial::io {
-
-// The file as JSON. Error that names the file for anything else, duplicate keys included.
-nlohmann::json read_json(const std::filesystem::path& path);
-
-// One JSON text, indented, with a newline at the end; written whole or not at all.
-void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
 // A value inside a JSON file, with its place for error messages: `where` is "file: key.key".
 struct JsonPlace {
@@ -25,7 +18,7 @@ struct JsonPlace {
 
   // Error unless this is an object whose keys are all among `known`.
   void require_object(std::initializer_list<const char*> known) const;
-  bool has(const char* key) const { return json.contains(key); }
+  bool has(const char* key) const;
   JsonPlace at(const std::string& key) const;  // Error if the key is missing
   double number(const char* key) const;        // Error unless a finite number
   std::string text(const char* key) const;

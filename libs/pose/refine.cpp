@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "base/error.h"
+#include "scene/decompositions.h"
 
 namespace axial::pose {
 namespace {
@@ -41,7 +42,7 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
     from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
     to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
   }
-  const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, true);
+  const Eigen::Matrix4d similarity = best_similarity(from, to);
   const double scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
   const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / scale;
   const auto place = [&](Eigen::Vector3d& x) {

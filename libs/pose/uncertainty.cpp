@@ -2,7 +2,6 @@
 #include <ceres/crs_matrix.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "pose/adjust.h"
 #include "pose/adjust_problem.h"
+#include "scene/decompositions.h"
 
 namespace axial::pose {
 namespace {
@@ -50,7 +50,7 @@ Sparse inverse_of_blocks(const Sparse& blocks) {
   for (int start = 0; start < blocks.cols(); start += 3) {
     const Eigen::Matrix3d block = blocks.block(start, start, 3, 3);
     // A point that nothing sees, or that is at infinity, knows nothing of the cameras' places.
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(block);
+    const SymmetricEigen3 eigen(block);
     if (!(eigen.eigenvalues()(2) > 0)) continue;
     const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1e-12 * eigen.eigenvalues()(2));
     const Eigen::Matrix3d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() *

@@ -3,20 +3,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <new>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "support/empty_folder.h"
 
 namespace axial {
 namespace {
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -27,14 +26,17 @@ class ProgramTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   ParsedOptions parse(std::vector<std::string> arguments, bool in_folder = true) {
+    level_ = 1;
+    limit_ = 640;
+    secret_ = 0;
     ProgramOptions program;
     program.name = "TestProgram";
     program.description = "tests";
-    if (takes_input_) program.visible.add_options()("input-file,i", po::value(&input_), "input");
-    program.visible.add_options()("crop-to-roi", po::value(&crop_)->default_value(true), "crop")(
-        "resolution-level", po::value(&level_)->default_value(1), "level")(
-        "resolution-limit", po::value(&limit_)->default_value(640), "limit");
-    program.hidden.add_options()("secret", po::value(&secret_)->default_value(0), "hidden");
+    if (takes_input_) program.visible.add("input-file,i", &input_, "input");
+    program.visible.add_with_default("crop-to-roi", &crop_, "crop")
+        .add_with_default("resolution-level", &level_, "level")
+        .add_with_default("resolution-limit", &limit_, "limit");
+    program.hidden.add_with_default("secret", &secret_, "hidden");
     arguments.insert(arguments.begin(), "TestProgram");
     if (in_folder) arguments.insert(arguments.end(), {"-w", folder_.string()});
     std::vector<const char*> argv;
@@ -67,7 +69,7 @@ class ProgramTest : public testing::Test {
 
   fs::path folder_;
   std::string input_, out_, err_;
-  bool takes_input_ = true, crop_ = false;
+  bool takes_input_ = true, crop_ = true;
   int level_ = 0, limit_ = 0, secret_ = 0;
 };
 
@@ -80,8 +82,8 @@ TEST_F(ProgramTest, HasTheDefaultsOfEveryProgram) {
   EXPECT_EQ(parsed.common.archive_type, -1);
   EXPECT_EQ(parsed.common.max_threads, 0u);
   EXPECT_EQ(parsed.common.verbosity, 2);
-  EXPECT_FALSE(given(parsed.values, "crop-to-roi"));
-  EXPECT_TRUE(given(parsed.values, "input-file"));
+  EXPECT_FALSE(given(parsed, "crop-to-roi"));
+  EXPECT_TRUE(given(parsed, "input-file"));
 }
 
 TEST_F(ProgramTest, TakesEverySpellingOfAnOption) {
@@ -95,7 +97,7 @@ TEST_F(ProgramTest, TakesEverySpellingOfAnOption) {
     EXPECT_EQ(input_, "a.mvs");
     EXPECT_EQ(level_, 3);
     EXPECT_EQ(parsed.common.verbosity, 1);
-    EXPECT_TRUE(given(parsed.values, "resolution-level"));
+    EXPECT_TRUE(given(parsed, "resolution-level"));
   }
 }
 
@@ -137,15 +139,15 @@ TEST_F(ProgramTest, RefusesStrayArgumentsWhereThereIsNoInputFile) {
 }
 
 TEST_F(ProgramTest, LogsMoreTheHigherTheVerbosity) {
-  const auto before = spdlog::get_level();
-  const std::vector<std::pair<const char*, spdlog::level::level_enum>> levels = {
-      {"-v-1", spdlog::level::warn}, {"-v0", spdlog::level::warn},  {"-v1", spdlog::level::info},
-      {"-v2", spdlog::level::debug}, {"-v3", spdlog::level::trace}, {"-v9", spdlog::level::trace}};
+  const LogLevel before = log_level();
+  const std::vector<std::pair<const char*, LogLevel>> levels = {
+      {"-v-1", LogLevel::warning}, {"-v0", LogLevel::warning}, {"-v1", LogLevel::info},
+      {"-v2", LogLevel::debug},    {"-v3", LogLevel::trace},   {"-v9", LogLevel::trace}};
   for (const auto& [option, level] : levels) {
     parse({"a.mvs", option});
-    EXPECT_EQ(spdlog::get_level(), level) << option;
+    EXPECT_EQ(log_level(), level) << option;
   }
-  spdlog::set_level(before);
+  set_log_level(before);
 }
 
 TEST_F(ProgramTest, LetsTheCommandLineWinOverTheFileAndTheFileOverDefaults) {
@@ -156,7 +158,7 @@ TEST_F(ProgramTest, LetsTheCommandLineWinOverTheFileAndTheFileOverDefaults) {
   EXPECT_EQ(limit_, 200);
   EXPECT_EQ(secret_, 5);
   EXPECT_TRUE(crop_);
-  EXPECT_TRUE(given(parsed.values, "resolution-level"));
+  EXPECT_TRUE(given(parsed, "resolution-level"));
 }
 
 TEST_F(ProgramTest, ReadsTheNamedConfigFileInTheWorkingFolder) {
@@ -216,9 +218,7 @@ TEST_F(ProgramTest, TurnsExceptionsIntoOneLineAndExitCode1) {
   const auto run = [&](const std::function<int()>& body) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
-    const auto logger = spdlog::default_logger();
     const int code = run_program("TestProgram", body);
-    spdlog::set_default_logger(logger);
     out_ = testing::internal::GetCapturedStdout();
     err_ = testing::internal::GetCapturedStderr();
     return code;
@@ -233,7 +233,7 @@ TEST_F(ProgramTest, TurnsExceptionsIntoOneLineAndExitCode1) {
   EXPECT_EQ(run([]() -> int { throw std::bad_alloc(); }), 1);
   EXPECT_EQ(err_, "TestProgram: out of memory\n");
   EXPECT_EQ(run([] {
-              spdlog::info("hello");
+              log_info("hello");
               return 0;
             }),
             0);

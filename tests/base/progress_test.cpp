@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "base/log.h"
 #include "base/program.h"
 
 namespace axial {
@@ -25,22 +25,20 @@ using testing::Not;
 // What a program whose standard output is `file` writes there while it does four things, with a
 // warning after two, logging at `level`. Closes `file`, and reads to the end from `reader`, which
 // is open on the same file or terminal: a terminal may hand on what was written piece by piece.
-std::string written(int file, int reader, spdlog::level::level_enum level) {
+std::string written(int file, int reader, LogLevel level) {
   std::fflush(stdout);
   const int kept = ::dup(STDOUT_FILENO);
   ::dup2(file, STDOUT_FILENO);
-  const auto logger = spdlog::default_logger();
   run_program("Test", [&] {
-    spdlog::set_level(level);
+    set_log_level(level);
     const ProgressSink progress = console_progress("Done things");
     for (std::size_t done = 1; done <= 4; ++done) {
       progress(done, 4);
-      if (done == 2) spdlog::warn("careful");
+      if (done == 2) log_warning("careful");
     }
     std::fflush(stdout);
     return 0;
   });
-  spdlog::set_default_logger(logger);
   ::dup2(kept, STDOUT_FILENO);
   ::close(kept);
   ::close(file);
@@ -51,7 +49,7 @@ std::string written(int file, int reader, spdlog::level::level_enum level) {
   return text;
 }
 
-std::string on_terminal(spdlog::level::level_enum level) {
+std::string on_terminal(LogLevel level) {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   EXPECT_EQ(::grantpt(terminal), 0);
   EXPECT_EQ(::unlockpt(terminal), 0);
@@ -62,7 +60,7 @@ std::string on_terminal(spdlog::level::level_enum level) {
   return text;
 }
 
-std::string in_file(spdlog::level::level_enum level) {
+std::string in_file(LogLevel level) {
   std::FILE* file = std::tmpfile();
   const int reader = ::open(("/proc/self/fd/" + std::to_string(::fileno(file))).c_str(), O_RDONLY);
   const std::string text = written(::dup(::fileno(file)), reader, level);
@@ -72,7 +70,7 @@ std::string in_file(spdlog::level::level_enum level) {
 }
 
 TEST(Progress, RewritesOneLineOnATerminal) {
-  const std::string text = on_terminal(spdlog::level::debug);
+  const std::string text = on_terminal(LogLevel::debug);
   EXPECT_THAT(text, HasSubstr("\rDone things 1/4 (25%, 0s, 0s left)\033[K"));
   EXPECT_THAT(text, ContainsRegex("\r\033\\[K.*\\[Test\\] Done things 4/4 \\(100%, 0.0s\\)"));
   EXPECT_THAT(text, ContainsRegex("left\\)\033\\[K\r\033\\[K[0-9:]+ \\[Test\\] careful"));
@@ -80,7 +78,7 @@ TEST(Progress, RewritesOneLineOnATerminal) {
 }
 
 TEST(Progress, WritesPlainLinesIntoAFile) {
-  const std::string text = in_file(spdlog::level::debug);
+  const std::string text = in_file(LogLevel::debug);
   EXPECT_THAT(text, HasSubstr("[Test] Done things 1/4 (25%, 0s, 0s left)\n"));
   EXPECT_THAT(text, HasSubstr("[Test] Done things 4/4 (100%, 0.0s)\n"));
   EXPECT_THAT(text, Not(HasSubstr("\r")));
@@ -91,10 +89,10 @@ TEST(Progress, WritesPlainLinesIntoAFile) {
 
 TEST(Progress, IsSilentWhereTheLogIs) {
   for (const auto& output : {on_terminal, in_file}) {
-    const std::string ends = output(spdlog::level::info);
+    const std::string ends = output(LogLevel::info);
     EXPECT_THAT(ends, HasSubstr("Done things 4/4"));
     EXPECT_THAT(ends, Not(HasSubstr("1/4")));
-    EXPECT_THAT(output(spdlog::level::warn),
+    EXPECT_THAT(output(LogLevel::warning),
                 MatchesRegex("(\r\033\\[K)?[0-9:]+ \\[Test\\] careful\r?\n"));
   }
 }

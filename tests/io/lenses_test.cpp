@@ -2,12 +2,9 @@
 #include "io/lenses.h"
 
 #include <gmock/gmock.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
-
-#include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "wrong_input.h"
 
 namespace axial::io {
@@ -175,13 +172,9 @@ TEST_F(LensesTest, RefusesAFileThatIsNotThere) {
 TEST_F(LensesTest, WarnsOfNamesThatNoImageHas) {
   test::put(file_, kExample);
   add("b.jpg", std::nullopt);
-  std::ostringstream said;
-  const auto logger = spdlog::default_logger();
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-      "said", std::make_shared<spdlog::sinks::ostream_sink_mt>(said)));
+  const LogCapture log;
   attach_lenses_beside(scene_, scene_file_);
-  spdlog::set_default_logger(logger);
-  EXPECT_THAT(said.str(), HasSubstr(file_.string() + ": no image goes by images.a.jpg"));
+  EXPECT_THAT(log.text(), HasSubstr(file_.string() + ": no image goes by images.a.jpg"));
 }
 
 TEST_F(LensesTest, SurvivesDamage) {

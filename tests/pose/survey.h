@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pose/bundle.h"
+#include "scene/decompositions.h"
 
 namespace axial::pose::testing {
 
@@ -117,7 +118,7 @@ inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool wit
     from.col(i) = found.images[static_cast<std::size_t>(i)].pose.centre;
     to.col(i) = truth.images[static_cast<std::size_t>(i)].pose.centre;
   }
-  const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, with_scale);
+  const Eigen::Matrix4d similarity = best_similarity(from, to, with_scale);
   PoseErrors errors;
   errors.scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
   const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / errors.scale;

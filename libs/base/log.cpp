@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/log.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <sstream>
+
+namespace axial {
+namespace {
+
+spdlog::level::level_enum level_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::trace:
+      return spdlog::level::trace;
+    case LogLevel::debug:
+      return spdlog::level::debug;
+    case LogLevel::info:
+      return spdlog::level::info;
+    default:
+      return spdlog::level::warn;
+  }
+}
+
+}  // namespace
+
+void set_log_level(LogLevel level) {
+  spdlog::set_level(level_of(level));
+}
+
+LogLevel log_level() {
+  switch (spdlog::get_level()) {
+    case spdlog::level::trace:
+      return LogLevel::trace;
+    case spdlog::level::debug:
+      return LogLevel::debug;
+    case spdlog::level::info:
+      return LogLevel::info;
+    default:
+      return LogLevel::warning;
+  }
+}
+
+bool logs(LogLevel level) {
+  return spdlog::should_log(level_of(level));
+}
+
+void start_log(const std::string& name, const std::string& line_start) {
+  const auto log =
+      std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
+  log->set_pattern(line_start + "%H:%M:%S [%n] %v");
+  log->flush_on(spdlog::level::trace);
+  spdlog::set_default_logger(log);
+}
+
+void log_line(LogLevel level, std::string_view line) {
+  spdlog::default_logger_raw()->log(level_of(level),
+                                    spdlog::string_view_t(line.data(), line.size()));
+}
+
+void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments) {
+  if (logs(level)) log_line(level, fmt::vformat(format, arguments));
+}
+
+struct LogCapture::State {
+  std::ostringstream text;
+  std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+};
+
+LogCapture::LogCapture() : state_(std::make_unique<State>()) {
+  const auto log = std::make_shared<spdlog::logger>(
+      "captured", std::make_shared<spdlog::sinks::ostream_sink_mt>(state_->text));
+  log->set_pattern("%v");
+  spdlog::set_default_logger(log);
+}
+
+LogCapture::~LogCapture() {
+  spdlog::set_default_logger(state_->before);
+}
+
+std::string LogCapture::text() const {
+  return state_->text.str();
+}
+
+}  // namespace axial

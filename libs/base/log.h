@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program's log. The only place that knows the logging library, whose headers take seconds to
+// compile.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace axial {
+
+enum class LogLevel { trace, debug, info, warning };
+
+// From now on lines of `level` and above are written. The default is `info`.
+void set_log_level(LogLevel level);
+
+LogLevel log_level();
+
+// Whether lines of `level` are written.
+bool logs(LogLevel level);
+
+// From now on lines go to standard output as "HH:MM:SS [name] text". `line_start` is written before
+// each of them.
+void start_log(const std::string& name, const std::string& line_start);
+
+// Writes one line, unless `level` is below the log's.
+void log_line(LogLevel level, std::string_view line);
+
+// The same for a format and its arguments. They are formatted only if the line is written.
+void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
+
+template <class... Args>
+void log_warning(fmt::format_string<Args...> format, Args&&... args) {
+  log_formatted(LogLevel::warning, format, fmt::make_format_args(args...));
+}
+
+template <class... Args>
+void log_info(fmt::format_string<Args...> format, Args&&... args) {
+  log_formatted(LogLevel::info, format, fmt::make_format_args(args...));
+}
+
+template <class... Args>
+void log_details(fmt::format_string<Args...> format, Args&&... args) {
+  log_formatted(LogLevel::trace, format, fmt::make_format_args(args...));
+}
+
+// While it lives, lines of `info` and above become its text and are not written.
+class LogCapture {
+ public:
+  LogCapture();
+  ~LogCapture();
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+
+  // The lines so far, each with a newline at its end.
+  std::string text() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace axial
