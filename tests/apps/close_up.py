@@ -25,7 +25,8 @@ class SceneTest(ProgramTest):
         cls.addClassCleanup(cls.shared.cleanup)
         cls.truth = os.path.join(cls.shared.name, "closeup")
         made = run("SimulateUnderwater", "--preset", "closeup", "--views", 4, "--width", 512,
-                   "--height", 384, "--seed", 1, "--samples", 2, *cls.SCENE, "-o", cls.truth)
+                   "--height", 384, "--seed", 1, "--samples", 2, "--coarseness", 3, *cls.SCENE,
+                   "-o", cls.truth)
         assert made.returncode == 0, made.stderr
 
     def import_scene(self, medium, folder, *arguments, housing=True):

@@ -98,6 +98,13 @@ class ProgramTest(unittest.TestCase):
 
 
 def main():
+    """Runs the script's cases, or those of the classes that are named; --list names the classes."""
+    if sys.argv[1:] == ["--list"]:
+        loader = unittest.defaultTestLoader
+        print("\n".join(name for name, value in vars(sys.modules["__main__"]).items()
+                        if isinstance(value, type) and issubclass(value, unittest.TestCase)
+                        and loader.getTestCaseNames(value)))
+        return
     if not BIN:
         sys.exit("set AXIAL_BIN to the folder of the programs")
     unittest.main(verbosity=2)

@@ -33,7 +33,8 @@ class SimulateUnderwater : public test::ProgramTest {
 };
 
 const std::string kSmall =
-    "--preset closeup --views 3 --width 96 --height 72 --samples 1 --process-priority 0 ";
+    "--preset closeup --coarseness 4 --views 3 --width 96 --height 72 --samples 1 "
+    "--process-priority 0 ";
 
 const std::string kPort = "--port-distance 0.05 --tilt-degrees 0 --n-glass 1.6 --noise 0 ";
 
