@@ -154,6 +154,7 @@ function(add_axial_test name)
   if(ARG_PROGRAMS)
     add_dependencies(${target} ${ARG_PROGRAMS})
   endif()
-  gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST
+  # Starting under a sanitizer on a busy machine can take longer than the usual five seconds.
+  gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()
