@@ -105,7 +105,8 @@ std::size_t ply_size(PlyType type) {
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
-  if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r\n"))
+  const std::string_view text = without_byte_order_mark(bytes);
+  if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n"))
     fail("{}: is no PLY file (does not start with 'ply')", file);
   TextReader reader(bytes, file);
   PlyHeader header;

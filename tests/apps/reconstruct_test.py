@@ -90,6 +90,16 @@ class WithAnotherColmap(unittest.TestCase):
                             (b"1 OPENCV 640 480 a\n", "OPENCV")]:
             self.assertEqual(self.start_of(text, model), [])
 
+    def test_reads_positions_as_refine_poses_does(self):
+        """The same lines as in tests/io/position_file_test.cpp."""
+        images = {"a.jpg", "dive 1/a b.jpg", "#5 of 7.jpg", '"q" 1.jpg'}
+        for line, name in (("a.jpg 1 2 3", "a.jpg"), ("dive 1/a b.jpg 1 2 3\r", "dive 1/a b.jpg"),
+                           ("#5 of 7.jpg 1 2 3", "#5 of 7.jpg"), ("#a.jpg 1 2 3", None),
+                           ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
+                           ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
+                           ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
+            self.assertEqual(self.module.name_of_position(line, images.__contains__), name, line)
+
     def test_says_which_positions_are_of_no_photograph(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):
             (self.folder / name).touch()
