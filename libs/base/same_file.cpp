@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -21,15 +22,24 @@ std::optional<Identity> identity_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+void require_no_inputs(std::span<const std::filesystem::path> outputs,
+                       std::span<const std::filesystem::path> inputs, const std::string& option) {
+  std::map<Identity, const std::filesystem::path*> known;
+  for (const std::filesystem::path& input : inputs)
+    if (const auto identity = identity_of(input)) known.emplace(*identity, &input);
+  for (const std::filesystem::path& output : outputs) {
+    const auto identity = identity_of(output);
+    const auto input = identity ? known.find(*identity) : known.end();
+    if (input == known.end()) continue;
+    fail("{} {}: is {}, which is read and would be overwritten", option, output.string(),
+         output == *input->second ? "an input" : "the input " + input->second->string());
+  }
+}
+
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& option) {
-  const std::optional<Identity> target = identity_of(output);
-  if (!target) return;
-  for (const std::filesystem::path& input : inputs)
-    if (identity_of(input) == target)
-      fail("{} {}: is {}, which is read and would be overwritten", option, output.string(),
-           output == input ? std::string("an input") : "the input " + input.string());
+  if (identity_of(output)) require_no_inputs({&output, 1}, inputs, option);
 }
 
 }  // namespace axial

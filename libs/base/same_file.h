@@ -15,4 +15,8 @@ namespace axial {
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs, const std::string& option);
 
+// The same for each of many outputs.
+void require_no_inputs(std::span<const std::filesystem::path> outputs,
+                       std::span<const std::filesystem::path> inputs, const std::string& option);
+
 }  // namespace axial

@@ -12,7 +12,9 @@
 #include "base/file_extension.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
 #include "io/colmap_lens.h"
+#include "io/colmap_undistort.h"
 #include "io/image.h"
 #include "io/image_names.h"
 #include "scene/resolution.h"
@@ -28,10 +30,10 @@ bool is_jpeg(const fs::path& path) {
   return extension == ".jpg" || extension == ".jpeg";
 }
 
-// What replaces one camera of the model. Images are resampled where `map` is not empty.
+// What replaces one camera of the model.
 struct ImportedCamera {
   CameraModel camera;
-  cv::Mat2f map;
+  bool resampled = false;  // its images
 };
 
 // The lens as it is. A warning where it does not show its whole image.
@@ -71,18 +73,22 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   if (const auto& l = imported.camera.lens; !(l.fx > 0 && l.fy > 0))
     fail("{}: camera {}: focal length ({}, {}) is not positive", model_folder.string(), camera.id,
          l.fx, l.fy);
-  if (resampled) imported.map = undistortion_map(camera, imported.camera.lens);
+  imported.resampled = resampled;
   if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera);
   return imported;
 }
 
 std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
-                                                       const ColmapImport& import) {
+                                                       const ColmapImport& import,
+                                                       const ProgressSink& progress) {
   std::set<std::uint32_t> used;
   for (const ColmapImage& image : model.images) used.insert(image.camera);
   std::map<std::uint32_t, ImportedCamera> imported;
-  for (const ColmapCamera& camera : model.cameras)
-    if (used.contains(camera.id)) imported.emplace(camera.id, import_camera(camera, import));
+  for (const ColmapCamera& camera : model.cameras) {
+    if (!used.contains(camera.id)) continue;
+    imported.emplace(camera.id, import_camera(camera, import));
+    if (progress) progress(imported.size(), used.size());
+  }
   return imported;
 }
 
@@ -102,8 +108,9 @@ void check_mask(const fs::path& image, const CameraModel& camera) {
 }
 
 // Names come from a file: none may lead out of the folder that is written to, or back to the
-// photographs.
-void check_undistorted_names(const ColmapModel& model, const ColmapImport& import) {
+// photographs, and no two to one file. `resampled`: the images to undistort, as indices.
+void check_undistorted_names(const ColmapModel& model, std::span<const std::size_t> resampled,
+                             const ColmapImport& import) {
   std::error_code error;
   if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
     fail("{}: holds the images to undistort, and would be overwritten",
@@ -114,6 +121,26 @@ void check_undistorted_names(const ColmapModel& model, const ColmapImport& impor
       fail("{}: image {}: name '{}' is not below the image folder", import.model_folder.string(),
            image.id, image.name);
   }
+  std::vector<std::string> names;
+  std::vector<fs::path> photographs, undistorted;
+  for (const std::size_t i : resampled) {
+    names.push_back(model.images[i].name);
+    undistorted.push_back(import.undistorted_folder / undistorted_name(names.back()));
+  }
+  require_apart(names, import.model_folder);
+  for (const ColmapImage& image : model.images)
+    photographs.push_back(import.image_folder / image.name);
+  require_no_inputs(undistorted, photographs, "The undistorted image");
+}
+
+// The images to undistort, those of one camera one after another.
+std::vector<std::size_t> images_to_undistort(
+    const ColmapModel& model, const std::map<std::uint32_t, ImportedCamera>& cameras) {
+  std::vector<std::size_t> images;
+  for (std::size_t i = 0; i < model.images.size(); ++i)
+    if (cameras.at(model.images[i].camera).resampled) images.push_back(i);
+  std::ranges::stable_sort(images, {}, [&](std::size_t i) { return model.images[i].camera; });
+  return images;
 }
 
 // The mask beside `source`, if there is one, goes beside `target`. Labels are copied, never mixed.
@@ -128,48 +155,51 @@ void undistort_mask(const fs::path& source, const fs::path& target, const cv::Ma
 }
 
 // Writes the undistorted image, and its mask, and returns the image's path.
-fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
+fs::path undistort(const fs::path& source, const std::string& name, const cv::Mat2f& map,
                    const fs::path& folder) {
   const cv::Mat3b distorted = read_color_image(source);
   cv::Mat3b straight;
-  cv::remap(distorted, straight, camera.map, cv::noArray(), cv::INTER_LANCZOS4,
-            cv::BORDER_REPLICATE);
-  fs::path target = folder / name;
+  cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
+  const fs::path target = folder / undistorted_name(name);
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
   constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target)) {
+  if (is_jpeg(target))
     write_jpeg(target, straight, kQuality);
-  } else {
-    if (target.extension() != ".png") target += ".png";  // a.tif and a.bmp may lie side by side
+  else
     write_png(target, straight);
-  }
-  undistort_mask(source, target, camera.map);
+  undistort_mask(source, target, map);
   return target;
 }
 
-void import_points(const ColmapModel& model, Scene& scene) {
+void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene) {
   std::unordered_map<std::uint32_t, std::uint32_t> index_of;
   for (std::size_t i = 0; i < model.images.size(); ++i)
     index_of.emplace(model.images[i].id, static_cast<std::uint32_t>(i));
+  std::size_t repetitions = 0;
   for (const ColmapPoint3D& point : model.points) {
     SparsePoint sparse;
     sparse.position = point.position.cast<float>();
     for (const ColmapTrackElement& element : point.track)
       sparse.views.push_back({index_of.at(element.image), 0.0f});
-    std::sort(sparse.views.begin(), sparse.views.end(),
-              [](const SparseView& a, const SparseView& b) { return a.image < b.image; });
+    std::ranges::sort(sparse.views, {}, &SparseView::image);
+    const auto repeated = std::ranges::unique(sparse.views, {}, &SparseView::image);
+    repetitions += repeated.size();
+    sparse.views.erase(repeated.begin(), repeated.end());
     scene.points.push_back(std::move(sparse));
     scene.point_colors.push_back(point.color);
   }
+  if (repetitions > 0)
+    log_info("{}: {} observations are of an image that sees the point already, and do not count",
+             import.model_folder.string(), repetitions);
 }
 
 // The name that `image`, imported as `path`, goes by in the scene's housing.
 std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
   const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
-  fs::path name = fs::path(image.name).lexically_normal();
-  if (undistorted) name.replace_extension(path.extension());
+  const fs::path name =
+      undistorted ? undistorted_name(image.name) : fs::path(image.name).lexically_normal();
   return name.generic_string();
 }
 
@@ -190,11 +220,11 @@ void check_ports(const Housing& resolved, const Scene& scene,
 }  // namespace
 
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
-                          const ProgressSink& progress) {
+                          const ProgressSink& undistorting, const ProgressSink& preparing_cameras) {
   if (model.images.size() < 2)
     fail("{}: the model has {} registered images, at least 2 are needed",
          import.model_folder.string(), model.images.size());
-  const auto cameras = import_cameras(model, import);
+  const auto cameras = import_cameras(model, import, preparing_cameras);
   const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
                                      [](const ColmapImage& image) { return image.id == 0; });
 
@@ -212,23 +242,26 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
     check_size(image.path, image.camera);
-    if (!cameras.at(model.images[i].camera).map.empty()) check_mask(image.path, image.camera);
+    if (cameras.at(model.images[i].camera).resampled) check_mask(image.path, image.camera);
   });
-  const bool all_straight = std::all_of(
-      cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
-  if (!all_straight) check_undistorted_names(model, import);
+  const std::vector<std::size_t> resampled = images_to_undistort(model, cameras);
+  if (!resampled.empty()) check_undistorted_names(model, resampled, import);
+  std::unordered_map<std::uint32_t, const ColmapCamera*> camera_of;
+  for (const ColmapCamera& camera : model.cameras) camera_of.emplace(camera.id, &camera);
+  UndistortionMaps maps;
+  for (const std::size_t i : resampled)
+    maps.expect(*camera_of.at(model.images[i].camera), scene.images[i].camera.lens);
   std::mutex mutex;
   std::size_t done = 0;
-  parallel_for(scene.images.size(), [&](std::size_t i) {
-    const ImportedCamera& camera = cameras.at(model.images[i].camera);
-    if (camera.map.empty()) return;
-    SceneImage& image = scene.images[i];
-    image.path =
-        undistort(image.path, model.images[i].name, camera, import.undistorted_folder).string();
+  for_each_in_flight(resampled.size(), thread_count(), [&](std::size_t k) {
+    const ColmapImage& from = model.images[resampled[k]];
+    SceneImage& image = scene.images[resampled[k]];
+    image.path = undistort(image.path, from.name, maps.take(from.camera), import.undistorted_folder)
+                     .string();
     const std::scoped_lock lock(mutex);
-    if (progress) progress(++done, scene.images.size());
+    if (undistorting) undistorting(++done, resampled.size());
   });
-  import_points(model, scene);
+  import_points(model, import, scene);
   return scene;
 }
 
