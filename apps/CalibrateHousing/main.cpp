@@ -6,6 +6,7 @@
 #include "calibrate/coverage.h"
 #include "io/calibmar.h"
 #include "io/housing.h"
+#include "io/rival_ports.h"
 #include "options.h"
 #include "photographs.h"
 #include "report.h"
@@ -120,6 +121,9 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, lens);
   const std::string port_name = port_to_calibrate(options, housing, lens);
   const refractive::Port<double> port = known_port(options, housing, port_name, lens.id);
+  if (lens.port && !io::same_port(io::to_housing_port(*lens.port), io::to_housing_port(port)))
+    log_warning("The port is that of {}, and not that of {}, which differs",
+                options.housing.string(), options.lens.string());
   set_unknown(options, port);
   check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);

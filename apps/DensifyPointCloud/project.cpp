@@ -13,6 +13,7 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "io/rival_ports.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -45,6 +46,7 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
     return {};
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
+  axial::io::warn_of_housing_beside(scene, options.input, housing, file);
   axial::io::attach_ports(scene, housing);
   std::size_t images = 0, wet = 0, flat = 0;
   for (const axial::SceneImage& image : scene.images) {

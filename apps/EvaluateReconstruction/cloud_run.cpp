@@ -15,6 +15,7 @@
 #include "io/colmap_scene.h"
 #include "io/image.h"
 #include "io/ply.h"
+#include "io/rival_ports.h"
 #include "runs.h"
 
 namespace fs = std::filesystem;
@@ -68,6 +69,8 @@ std::vector<evaluate::View> read_views(const Options& options) {
     housing = io::read_housing(options.housing);
     for (const std::string& entry : io::unused_entries(*housing, model))
       log_warning("{}: no image goes by {}", options.housing.string(), entry);
+    io::warn_of_other_ports(*housing, options.housing.string(), io::housing_of(model.cameras),
+                            "the model in " + folder.string(), model);
   }
   return naming(folder,
                 [&] { return evaluate::views_of_model(model, housing ? &*housing : nullptr); });

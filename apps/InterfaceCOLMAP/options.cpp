@@ -12,14 +12,17 @@ namespace {
 
 // A folder that was asked for counts from the working folder, as in OpenMVS. The default belongs to
 // the COLMAP folder: whatever images/ the program is started beside must not win over the model's.
-fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& colmap_folder,
-                           const std::string& name) {
+void find_image_folder(const std::string& name, Options& options) {
+  const axial::ParsedOptions& parsed = options.parsed;
   fs::path candidates[] = {axial::in_working_folder(parsed.common, name),
-                           (colmap_folder / name).lexically_normal()};
+                           (options.colmap_folder / name).lexically_normal()};
   if (!axial::given(parsed, "image-folder")) std::swap(candidates[0], candidates[1]);
   std::error_code error;
-  for (const fs::path& candidate : candidates)
-    if (fs::is_directory(candidate, error)) return candidate;
+  for (const fs::path& candidate : candidates) {
+    if (!fs::is_directory(candidate, error)) continue;
+    (options.image_folder.empty() ? options.image_folder : options.other_image_folder) = candidate;
+  }
+  if (!options.image_folder.empty()) return;
   const std::string also = candidates[0] == candidates[1] ? "" : " and " + candidates[1].string();
   fail("--image-folder {}: no such folder (looked for {}{})", name, candidates[0].string(), also);
 }
@@ -68,6 +71,6 @@ Options parse_command_line(int argc, const char* const* argv) {
                                       : axial::in_working_folder(common, output);
   if (axial::given(options.parsed, "undistort")) options.undistort = undistort;
   options.housing_file = axial::in_working_folder(common, housing);
-  options.image_folder = find_image_folder(options.parsed, options.colmap_folder, image_folder);
+  find_image_folder(image_folder, options);
   return options;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -9,6 +10,7 @@
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
 #include "io/housing.h"
+#include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
 #include "report.h"
@@ -52,17 +54,42 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
   return carried;
 }
 
-// Of the file, or else what is carried.
+// Of the file, or else what is carried. A warning where what is passed over differs.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
                          const Lenses& lenses) {
+  const io::Housing carried = carried_housing(model, lenses);
+  const std::string of_model = "the model in " + options.model.string();
+  const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
   if (!options.housing.empty()) {
     io::Housing housing = io::read_housing(options.housing);
     io::refuse_water_surfaces(housing, options.housing);
+    io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model);
     return housing;
   }
-  const io::Housing carried = carried_housing(model, lenses);
   if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
+  io::warn_of_other_ports(carried, of_lens, io::housing_of(model.cameras), of_model, model);
   return carried;
+}
+
+bool same_lens(const io::ColmapCamera& a, const io::ColmapCamera& b) {
+  return a.model == b.model && std::ranges::equal(a.params, b.params, [](double x, double y) {
+           return std::abs(x - y) <= 1e-9 * std::max(1.0, std::abs(x));
+         });
+}
+
+// A model's camera behind a port has its lens in air, too.
+void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
+                          const Lenses& lenses) {
+  for (const io::ColmapCamera& camera : model.cameras) {
+    const auto lens = std::ranges::find_if(lenses, [&](const io::ColmapCamera& candidate) {
+      return lenses.size() == 1 || candidate.id == camera.id;
+    });
+    if (!camera.port || lens == lenses.end() || same_lens(*lens, camera)) continue;
+    return log_warning(
+        "The lenses are those of {}, and not those of {}, which differ, first for "
+        "camera {}",
+        options.lens.string(), options.model.string(), camera.id);
+  }
 }
 
 // Before the work: that the output can be written, and is not the input.
@@ -81,9 +108,13 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
       log_warning("{}: too few observations fit; it is left out", bundle.images[i].name);
-  if (4 * report.observations_after < 3 * report.observations_before)
+  if (report.repeated > 0)
+    log_info("{} observations are of an image that sees the point already, and do not count",
+             report.repeated);
+  const std::size_t distinct = report.observations_before - report.repeated;
+  if (4 * report.observations_after < 3 * distinct)
     log_warning("{} of {} observations do not fit: is this the housing, and the lens in air?",
-                report.observations_before - report.observations_after, report.observations_before);
+                distinct - report.observations_after, distinct);
   if (!report.last.converged)
     log_warning("Not converged after {} iterations", report.last.iterations);
 }
@@ -110,6 +141,7 @@ int run(int argc, char** argv) {
   const fs::path folder = io::find_colmap_model(options.model);
   const io::ColmapModel model = io::read_colmap_model(folder);
   const Lenses lenses = load_lenses(options, model);
+  warn_of_other_lenses(options, model, lenses);
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
