@@ -11,8 +11,9 @@
 namespace densify {
 namespace {
 
-cv::Mat1b load_mask(const View& view, int ignored_label) {
+cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck& check) {
   const cv::Mat1w labels = axial::io::read_label_image(view.mask);
+  check.add(labels);
   axial::io::check_mask_shape(view.mask, labels.size(), view.file_size);
   const cv::Size size(view.camera.width, view.camera.height);
   cv::Mat1b mask;
@@ -20,14 +21,15 @@ cv::Mat1b load_mask(const View& view, int ignored_label) {
   return mask;
 }
 
-WorkImage load(const Project& project, const Options& options, std::size_t image) {
+WorkImage load(const Project& project, const Options& options, std::size_t image,
+               LabelCheck& check) {
   const View& view = project.views[image];
   WorkImage result;
   result.color = axial::resized_image(axial::io::read_color_image(project.scene.images[image].path),
                                       {view.camera.width, view.camera.height});
   cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
   if (!needs_colors(options)) result.color.release();
-  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label);
+  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label, check);
   return result;
 }
 
@@ -35,7 +37,8 @@ WorkImage load(const Project& project, const Options& options, std::size_t image
 
 ImageStore::ImageStore(const Project& project, const Options& options, std::size_t capacity)
     : project_(project),
-      cache_([&](std::size_t image) { return load(project, options, image); }, capacity) {}
+      labels_(options.ignore_mask_label),
+      cache_([&](std::size_t image) { return load(project, options, image, labels_); }, capacity) {}
 
 void ImageStore::check_all(std::size_t at_once) {
   const std::size_t count = project_.views.size();
@@ -48,6 +51,7 @@ void ImageStore::check_all(std::size_t at_once) {
     const std::lock_guard lock(reporting);
     progress(++done, count);
   });
+  labels_.warn_if_absent(project_);
 }
 
 }  // namespace densify

@@ -54,9 +54,11 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("max-resolution", &options.resolution.max, "cap on the longest side [px]")
       .add_with_default("min-resolution", &options.resolution.min,
                         "the longest side is not halved below this [px]")
-      .add("mask-path", &raw.mask_path, "folder with <image>.mask.png for every image")
+      .add("mask-path", &raw.mask_path,
+           "folder of masks, one for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in subfolders as the images are")
       .add_with_default("ignore-mask-label", &options.ignore_mask_label,
-                        "mask value to leave out; below 0: no masks")
+                        "mask value to leave out; below 0: no masks (default with --mask-path: 0)")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("max-memory", &options.max_memory,
                         "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
@@ -187,6 +189,8 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.output.replace_extension(".mvs");
   options.housing = axial::in_working_folder(common, raw.housing);
   options.mask_folder = axial::in_working_folder(common, raw.mask_path);
+  if (!options.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
+    options.ignore_mask_label = 0;
   options.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
                                         {{"auto", CameraChoice::automatic},
                                          {"pinhole", CameraChoice::pinhole},

@@ -13,6 +13,7 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "masks.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -23,13 +24,17 @@ namespace {
 // Image paths in a scene count from the working folder; a scene that was moved whole is found
 // beside its own file.
 void find_images(axial::Scene& scene, const Options& options) {
-  for (axial::SceneImage& image : scene.images) {
+  const auto find = [&](std::string& path) {
     std::error_code error;
-    if (fs::exists(image.path, error)) continue;
+    if (path.empty() || fs::exists(path, error)) return;
     const fs::path relative =
-        fs::path(image.path).lexically_relative(options.parsed.common.working_folder);
+        fs::path(path).lexically_relative(options.parsed.common.working_folder);
     const fs::path beside = options.input.parent_path() / relative;
-    if (fs::exists(beside, error)) image.path = beside.string();
+    if (fs::exists(beside, error)) path = beside.string();
+  };
+  for (axial::SceneImage& image : scene.images) {
+    find(image.path);
+    find(image.mask_path);
   }
 }
 
@@ -71,30 +76,6 @@ cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_si
   return axial::working_size(file_size.width, file_size.height, options.resolution);
 }
 
-fs::path mask_path(const axial::SceneImage& image, const Options& options) {
-  const fs::path name = axial::io::mask_beside(image.path).filename();
-  if (!options.mask_folder.empty()) {
-    if (!image.mask_path.empty())
-      fail("--mask-path {}: image {} names a mask of its own, {}", options.mask_folder.string(),
-           image.path, image.mask_path);
-    const fs::path path = options.mask_folder / name;
-    std::error_code error;
-    if (!fs::exists(path, error)) fail("{}: no such mask for image {}", path.string(), image.path);
-    return path;
-  }
-  return image.mask_path.empty() ? axial::io::mask_beside(image.path) : fs::path(image.mask_path);
-}
-
-// Where the labels of an image are that masks are asked for.
-fs::path find_mask(const axial::SceneImage& image, const Options& options) {
-  const fs::path path = mask_path(image, options);
-  if (options.ignore_mask_label < 0) return {};
-  std::error_code error;
-  if (fs::exists(path, error)) return path;
-  axial::log_warning("{}: no mask", image.path);
-  return {};
-}
-
 void load_views(Project& project, const Options& options) {
   const std::size_t count = project.scene.images.size();
   project.views.resize(count);
@@ -107,8 +88,8 @@ void load_views(Project& project, const Options& options) {
     const cv::Size size = size_to_work_on(image, view.file_size, options);
     view.camera = image.camera.resized(size.width, size.height);
     view.pose = image.pose;
-    view.mask = find_mask(image, options);
   });
+  choose_masks(project, options);
 }
 
 void check_ids(const Project& project) {

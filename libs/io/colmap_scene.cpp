@@ -15,6 +15,7 @@
 #include "io/colmap_lens.h"
 #include "io/image.h"
 #include "io/image_names.h"
+#include "io/masks.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
@@ -94,11 +95,23 @@ void check_size(const fs::path& path, const CameraModel& camera) {
 }
 
 // The mask of an image that is to be undistorted, which has `camera`'s size.
-void check_mask(const fs::path& image, const CameraModel& camera) {
-  const fs::path mask = mask_beside(image);
-  std::error_code error;
-  if (fs::exists(mask, error))
-    check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+void check_mask(const fs::path& mask, const CameraModel& camera) {
+  if (!mask.empty()) check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+}
+
+// Where the masks of images are that are to be undistorted; empty for the others.
+std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<bool>& resampled) {
+  std::vector<MaskRequest> requests;
+  for (const SceneImage& image : scene.images) requests.push_back({image.path, {}});
+  const std::vector<FoundMask> found = find_masks(requests);
+  const RivalMasks rivals = rival_masks(found);
+  if (rivals.count > 0)
+    log_warning("{}: is used, and {}, which differs, is not ({} images have such masks)",
+                rivals.used.string(), rivals.other.string(), rivals.count);
+  std::vector<fs::path> masks(found.size());
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    if (resampled[i]) masks[i] = found[i].path;
+  return masks;
 }
 
 // Names come from a file: none may lead out of the folder that is written to, or back to the
@@ -116,11 +129,9 @@ void check_undistorted_names(const ColmapModel& model, const ColmapImport& impor
   }
 }
 
-// The mask beside `source`, if there is one, goes beside `target`. Labels are copied, never mixed.
-void undistort_mask(const fs::path& source, const fs::path& target, const cv::Mat2f& map) {
-  const fs::path mask = mask_beside(source);
-  std::error_code error;
-  if (!fs::exists(mask, error)) return;
+// `mask`, unless it is empty, goes beside `target`. Labels are copied, never mixed.
+void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2f& map) {
+  if (mask.empty()) return;
   const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
   cv::Mat1w straight;
   cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
@@ -128,8 +139,8 @@ void undistort_mask(const fs::path& source, const fs::path& target, const cv::Ma
 }
 
 // Writes the undistorted image, and its mask, and returns the image's path.
-fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
-                   const fs::path& folder) {
+fs::path undistort(const fs::path& source, const fs::path& mask, const std::string& name,
+                   const ImportedCamera& camera, const fs::path& folder) {
   const cv::Mat3b distorted = read_color_image(source);
   cv::Mat3b straight;
   cv::remap(distorted, straight, camera.map, cv::noArray(), cv::INTER_LANCZOS4,
@@ -145,7 +156,7 @@ fs::path undistort(const fs::path& source, const std::string& name, const Import
     if (target.extension() != ".png") target += ".png";  // a.tif and a.bmp may lie side by side
     write_png(target, straight);
   }
-  undistort_mask(source, target, camera.map);
+  undistort_mask(mask, target, camera.map);
   return target;
 }
 
@@ -209,13 +220,17 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   }
 
   // Everything is checked before the first file is written.
+  std::vector<bool> resampled;
+  for (const ColmapImage& image : model.images)
+    resampled.push_back(!cameras.at(image.camera).map.empty());
+  const bool all_straight = std::ranges::count(resampled, true) == 0;
+  const std::vector<fs::path> masks =
+      all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
     check_size(image.path, image.camera);
-    if (!cameras.at(model.images[i].camera).map.empty()) check_mask(image.path, image.camera);
+    check_mask(masks[i], image.camera);
   });
-  const bool all_straight = std::all_of(
-      cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
   if (!all_straight) check_undistorted_names(model, import);
   std::mutex mutex;
   std::size_t done = 0;
@@ -224,7 +239,8 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
     if (camera.map.empty()) return;
     SceneImage& image = scene.images[i];
     image.path =
-        undistort(image.path, model.images[i].name, camera, import.undistorted_folder).string();
+        undistort(image.path, masks[i], model.images[i].name, camera, import.undistorted_folder)
+            .string();
     const std::scoped_lock lock(mutex);
     if (progress) progress(++done, scene.images.size());
   });

@@ -152,10 +152,6 @@ cv::Mat1w read_label_image(const std::filesystem::path& path) {
   return labels;
 }
 
-std::filesystem::path mask_beside(const std::filesystem::path& image) {
-  return image.parent_path() / (image.stem().string() + ".mask.png");
-}
-
 void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image) {
   if (!same_shape(size, image))
     fail("{}: is {}x{}, but its image is {}x{}", mask.string(), size.width, size.height,

@@ -16,9 +16,6 @@ cv::Size read_image_size(const std::filesystem::path& path);
 // A label image of one channel, 8 or 16 bit, as 16 bit.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
-// "<image without extension>.mask.png": where an image's labels lie unless said otherwise.
-std::filesystem::path mask_beside(const std::filesystem::path& image);
-
 // Error if a mask of `size` is no resized version of its image.
 void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image);
 
