@@ -123,7 +123,7 @@ int run(int argc, char** argv) {
   set_unknown(options, port);
   check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);
-  const auto views = find_views(photographs, options.board, lens);
+  const auto views = find_views(photographs, options.board, lens, options.bit_depth);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

@@ -210,8 +210,9 @@ class DepthMapRun {
     if (options_.postprocess & kSpeckles) map = axial::depth::remove_speckles(map);
     if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
-      if (!project_.views[image].mask.empty())
-        cv::compare(images_.get(image)->mask, 0, ignored, cv::CMP_EQ);
+      if (project_.views[image].masked())
+        if (const auto pixels = images_.get(image); !pixels->mask.empty())
+          cv::compare(pixels->mask, 0, ignored, cv::CMP_EQ);
       map = axial::depth::fill_gaps(map, {}, ignored);
     }
     return map;

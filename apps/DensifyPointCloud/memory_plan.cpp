@@ -54,21 +54,22 @@ Counts count(const Project& project, const Options& options) {
 }
 
 Sizes measure(const Project& project, const Options& options, const Counts& counts) {
-  std::uint64_t pixels = 0, file_pixels = 0;
+  std::uint64_t pixels = 0, decode = 0;
   bool masks = false;
   for (const View& view : project.views) {
     const auto area = [](std::int64_t width, std::int64_t height) {
       return static_cast<std::uint64_t>(width * height);
     };
     pixels = std::max(pixels, area(view.camera.width, view.camera.height));
-    file_pixels = std::max(file_pixels, area(view.file_size.width, view.file_size.height));
-    masks |= !view.mask.empty();
+    decode = std::max(decode,
+                      view.file.decode_bytes * area(view.file.size.width, view.file.size.height));
+    masks |= view.masked();
   }
   const std::uint64_t sources = counts.matched - 1;
   const std::uint64_t colors = needs_colors(options) ? 3 : 0;
   Sizes sizes{};
   sizes.scene = axial::allocated_memory();
-  sizes.decode = 4 * file_pixels + 4 * pixels;
+  sizes.decode = decode + 4 * pixels;
   sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
   sizes.map = 20 * pixels;
   sizes.read_map = 44 * pixels;

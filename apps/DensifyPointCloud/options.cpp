@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/bit_depth.h"
 
 namespace densify {
 using axial::fail;
@@ -156,6 +157,7 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
   check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  axial::io::check_bit_depth(options.bit_depth);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
 }
 
@@ -169,6 +171,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
       ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
   declare_io(program.visible, raw, options);
+  axial::io::declare_bit_depth(program.visible, options.bit_depth);
   declare_camera(program.visible, raw, options);
   declare_matching(program.visible, options);
   declare_fusion(program.visible, raw, options);

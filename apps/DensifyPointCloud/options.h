@@ -28,6 +28,7 @@ struct Options {
   std::filesystem::path housing;        // empty: beside the scene
   std::filesystem::path mask_folder;
   int ignore_mask_label = -1;  // below 0: no masks
+  int bit_depth = 0;           // of 16-bit images; 0: found
 
   CameraChoice camera = CameraChoice::automatic;
   bool refractive = false;  // demand a housing

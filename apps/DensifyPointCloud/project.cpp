@@ -6,10 +6,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/first_error.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "io/bit_depth.h"
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
@@ -76,20 +78,38 @@ cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_si
   return axial::working_size(file_size.width, file_size.height, options.resolution);
 }
 
+View load_view(const axial::SceneImage& image, std::size_t index, const Options& options) {
+  View view;
+  view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(index) : image.id;
+  view.file = axial::io::read_image_header(image.path);
+  const cv::Size size = size_to_work_on(image, view.file.size, options);
+  view.camera = image.camera.resized(size.width, size.height);
+  view.pose = image.pose;
+  return view;
+}
+
+void find_bit_depth(Project& project, const Options& options) {
+  std::vector<fs::path> photographs;
+  std::vector<axial::io::ImageHeader> headers;
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    if (!project.scene.images[i].calibrated) continue;
+    photographs.emplace_back(project.scene.images[i].path);
+    headers.push_back(project.views[i].file);
+  }
+  project.bit_depth = axial::io::common_bit_depth(photographs, headers, options.bit_depth);
+}
+
 void load_views(Project& project, const Options& options) {
   const std::size_t count = project.scene.images.size();
   project.views.resize(count);
+  axial::FirstError error;
   axial::parallel_for(count, [&](std::size_t i) {
-    const axial::SceneImage& image = project.scene.images[i];
-    if (!image.calibrated) return;
-    View& view = project.views[i];
-    view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(i) : image.id;
-    view.file_size = axial::io::read_image_size(image.path);
-    const cv::Size size = size_to_work_on(image, view.file_size, options);
-    view.camera = image.camera.resized(size.width, size.height);
-    view.pose = image.pose;
+    if (project.scene.images[i].calibrated)
+      error.run(i, [&] { project.views[i] = load_view(project.scene.images[i], i, options); });
   });
+  error.rethrow();
   choose_masks(project, options);
+  find_bit_depth(project, options);
 }
 
 void check_ids(const Project& project) {
@@ -195,6 +215,8 @@ std::string fingerprint(const Project& project, const Options& options) {
     for (const double value : view.pose.rotation.reshaped()) print.add(value);
     for (const double value : view.pose.centre) print.add(value);
     print.add(contents[i]);
+    if (view.file.bits > 8) print.add(static_cast<std::uint64_t>(project.bit_depth));
+    if (view.file.alpha) print.add("transparent pixels are masked");
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
       print.add(static_cast<std::uint64_t>(list->size()));
       for (const axial::ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/housing.h"
+#include "io/image.h"
 #include "io/lenses.h"
 #include "options.h"
 #include "scene/scene.h"
@@ -24,8 +25,11 @@ struct View {
   std::uint32_t id = 0;  // global id
   axial::CameraModel camera;
   axial::Pose pose;
-  cv::Size file_size;
+  axial::io::ImageHeader file;
   std::filesystem::path mask;  // empty: none
+
+  // Whether WorkImage::mask may be there.
+  bool masked() const { return !mask.empty() || file.alpha; }
 };
 
 struct Project {
@@ -37,6 +41,7 @@ struct Project {
   std::vector<std::vector<axial::ViewScore>> neighbours;  // filtered
   std::vector<std::vector<axial::ViewScore>> sources;     // chosen for matching
   std::vector<std::size_t> references;                    // images that get a depth map
+  int bit_depth = 16;                                     // that the values of 16-bit images use
   std::string fingerprint;
 };
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "io/colmap_lens.h"
@@ -138,19 +139,39 @@ void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2
   write_png(mask_beside(target), straight);
 }
 
+// A photograph as `map` sees it: B G R of its own depth, and alpha if some of it is transparent.
+// Hidden colours are mixed into no pixel that is not.
+cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
+  cv::Mat straight;
+  cv::remap(photograph.pixels, straight, map, cv::noArray(), cv::INTER_LANCZOS4,
+            cv::BORDER_REPLICATE);
+  if (straight.depth() == CV_16U) {
+    // Where the interpolation overshoots, it must not take more bits than the camera has.
+    cv::Mat values = straight.reshape(1);
+    cv::min(values, (1 << bits_used(photograph.pixels)) - 1, values);
+  }
+  if (photograph.opaque.empty()) return straight;
+  cv::Mat alpha;
+  cv::remap(photograph.opaque, alpha, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // what the kernel of 8 x 8 reaches
+  alpha.convertTo(alpha, straight.depth(), straight.depth() == CV_16U ? 257 : 1);
+  std::vector<cv::Mat> channels;
+  cv::split(straight, channels);
+  channels.push_back(alpha);
+  cv::merge(channels, straight);
+  return straight;
+}
+
 // Writes the undistorted image, and its mask, and returns the image's path.
 fs::path undistort(const fs::path& source, const fs::path& mask, const std::string& name,
                    const ImportedCamera& camera, const fs::path& folder) {
-  const cv::Mat3b distorted = read_color_image(source);
-  cv::Mat3b straight;
-  cv::remap(distorted, straight, camera.map, cv::noArray(), cv::INTER_LANCZOS4,
-            cv::BORDER_REPLICATE);
+  const cv::Mat straight = resampled(read_photograph(source), camera.map);
   fs::path target = folder / name;
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
   constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target)) {
+  if (is_jpeg(target) && straight.type() == CV_8UC3) {
     write_jpeg(target, straight, kQuality);
   } else {
     if (target.extension() != ".png") target += ".png";  // a.tif and a.bmp may lie side by side
@@ -226,24 +247,30 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   const bool all_straight = std::ranges::count(resampled, true) == 0;
   const std::vector<fs::path> masks =
       all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
+  FirstError error;
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
-    check_size(image.path, image.camera);
-    check_mask(masks[i], image.camera);
+    error.run(i, [&] {
+      check_size(image.path, image.camera);
+      check_mask(masks[i], image.camera);
+    });
   });
+  error.rethrow();
   if (!all_straight) check_undistorted_names(model, import);
   std::mutex mutex;
   std::size_t done = 0;
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const ImportedCamera& camera = cameras.at(model.images[i].camera);
     if (camera.map.empty()) return;
-    SceneImage& image = scene.images[i];
-    image.path =
-        undistort(image.path, masks[i], model.images[i].name, camera, import.undistorted_folder)
-            .string();
+    error.run(i, [&] {
+      fs::path path = scene.images[i].path;
+      path = undistort(path, masks[i], model.images[i].name, camera, import.undistorted_folder);
+      scene.images[i].path = path.string();
+    });
     const std::scoped_lock lock(mutex);
     if (progress) progress(++done, scene.images.size());
   });
+  error.rethrow();
   import_points(model, scene);
   return scene;
 }

@@ -259,5 +259,48 @@ TEST_F(ColmapScene, MasksOfAnotherShapeAreRefused) {
   EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
 }
 
+TEST_F(ColmapScene, MasksOfAllNamesAreUndistorted) {
+  for (const char* name : {"c.png.png", "c_mask.png", "c.mask.png"}) {
+    const fs::path mask = folder_ / "images" / name;
+    write_png(mask, cv::Mat1b(kHeight, kWidth, 7));
+    fs::remove_all(import_.undistorted_folder);
+    import_colmap_scene(model_, import_);
+    EXPECT_TRUE(fs::exists(import_.undistorted_folder / "c.mask.png")) << name;
+    fs::remove(mask);
+  }
+}
+
+// A camera of 12 bits stays one, however sharp its edges are.
+TEST_F(ColmapScene, WideValuesStayWideWhereImagesAreUndistorted) {
+  cv::Mat pixels(kHeight, kWidth, CV_16UC3, cv::Scalar::all(0));
+  for (int x = 0; x < kWidth; x += 8) pixels.colRange(x, x + 4).setTo(cv::Scalar::all(4095));
+  write_png(folder_ / "images" / "c.png", pixels);
+  const Scene scene = import_colmap_scene(model_, import_);
+  const Photograph straight = read_photograph(scene.images[2].path);
+  EXPECT_EQ(straight.pixels.type(), CV_16UC3);
+  EXPECT_EQ(bits_used(straight.pixels), 12);
+  EXPECT_TRUE(straight.opaque.empty());
+}
+
+TEST_F(ColmapScene, HiddenColorsStayHiddenWhereImagesAreUndistorted) {
+  cv::Mat pixels(kHeight, kWidth, CV_8UC4, cv::Scalar(90, 90, 90, 255));
+  pixels.colRange(0, kWidth / 2).setTo(cv::Scalar(255, 0, 255, 0));
+  fs::remove(folder_ / "images" / "c.png");
+  write_png(folder_ / "images" / "c.jpg", pixels);  // a name is no format
+  model_.images[2].name = "c.jpg";
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_EQ(scene.images[2].path, (import_.undistorted_folder / "c.jpg.png").string());
+  const Photograph straight = read_photograph(scene.images[2].path);
+  ASSERT_EQ(straight.opaque.size(), cv::Size(kWidth, kHeight));
+  int shown = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      if (!straight.opaque(y, x)) continue;
+      ++shown;
+      EXPECT_EQ(straight.pixels.at<cv::Vec3b>(y, x), cv::Vec3b(90, 90, 90)) << x << " " << y;
+    }
+  EXPECT_NEAR(shown, kWidth * kHeight / 2, kWidth * kHeight / 10);
+}
+
 }  // namespace
 }  // namespace axial::io
