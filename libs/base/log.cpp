@@ -9,6 +9,8 @@
 #include <memory>
 #include <sstream>
 
+#include "base/message.h"
+
 namespace axial {
 namespace {
 
@@ -62,7 +64,9 @@ void log_line(LogLevel level, std::string_view line) {
 }
 
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments) {
-  if (logs(level)) log_line(level, fmt::vformat(format, arguments));
+  if (!logs(level)) return;
+  const std::string line = fmt::vformat(format, arguments);
+  log_line(level, level == LogLevel::warning ? as_message(line) : line);
 }
 
 struct LogCapture::State {

@@ -7,13 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <boost/program_options.hpp>
+#include <cctype>
 #include <fstream>
 #include <iostream>
-#include <new>
+#include <set>
 #include <typeinfo>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/message.h"
+#include "base/out_of_memory.h"
+#include "base/standard_streams.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -75,11 +79,6 @@ po::options_description described(const OptionList& list) {
   return description;
 }
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 // boost reads "-1" as an unsigned number, and as a huge one.
 void refuse_negative(const po::parsed_options& parsed, const po::options_description& known) {
   for (const po::option& option : parsed.options) {
@@ -106,6 +105,42 @@ void refuse_stray_arguments(const po::parsed_options& parsed) {
            option.value.front());
     has_input = true;
   }
+}
+
+bool is_boolean(std::string word) {
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
+  constexpr std::array kWords{"0", "1", "false", "true", "no", "yes", "off", "on"};
+  return std::ranges::find(kWords, word) != kWords.end();
+}
+
+// Nothing for a name that is unknown or ambiguous: boost reports these.
+const po::option_description* find_option(const po::options_description& known,
+                                          const std::string& name) {
+  try {
+    return known.find_nothrow(name, true);
+  } catch (const po::error&) {
+    return nullptr;
+  }
+}
+
+// The words of the command line. A switch gets a value if the next word is none: boost would take
+// that word for the value, whatever it is.
+std::vector<std::string> words_of(int argc, const char* const* argv,
+                                  const po::options_description& known, const OptionList& visible) {
+  std::set<std::string> switches;
+  for (const Option& option : visible.options())
+    if (option.is_switch) switches.insert(option.name.substr(0, option.name.find(',')));
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];
+    const bool bare =
+        word.size() > 2 && word.starts_with("--") && word.find('=') == std::string::npos;
+    const auto* option = bare ? find_option(known, word.substr(2)) : nullptr;
+    const bool has_value = i + 1 < argc && is_boolean(argv[i + 1]);
+    if (option && switches.contains(option->long_name()) && !has_value) word += "=1";
+    words.push_back(std::move(word));
+  }
+  return words;
 }
 
 void apply(const CommonOptions& common) {
@@ -147,7 +182,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   positional.add("input-file", -1);
 
   try {
-    po::command_line_parser parser(argc, argv);
+    po::command_line_parser parser(words_of(argc, argv, command_line, program.visible));
     parser.options(command_line);
     const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
     if (has_input) parser.positional(positional);
@@ -169,7 +204,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
         refuse_negative(in_file, config);
         po::store(in_file, values);
       } catch (const po::error& cfg_error) {
-        fail("{}: {}", cfg.string(), one_line(cfg_error.what()));
+        fail("{}: {}", cfg.string(), as_message(cfg_error.what()));
       }
     } else if (given_in(values, "config-file")) {
       fail("{}: cannot be opened", cfg.string());
@@ -191,7 +226,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
       return parsed;
     }
   } catch (const po::error& error) {
-    fail("command line: {}", one_line(error.what()));
+    fail("command line: {}", as_message(error.what()));
   }
   apply(parsed.common);
   parsed.run = true;
@@ -199,6 +234,16 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 }
 
 namespace {
+
+// The loader calls it before it initialises the libraries: one of them might open files, or run out
+// of memory.
+void prepare_process(int, char**, char**) {
+  open_standard_streams();
+  report_uncaught_exceptions();
+}
+
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const prepare_process_first)(int, char**, char**) = prepare_process;
 
 // On a terminal a line of progress may be under way: what is written next takes its place.
 std::string line_start(int descriptor) {
@@ -208,13 +253,12 @@ std::string line_start(int descriptor) {
 }  // namespace
 
 int run_program(const std::string& name, const std::function<int()>& body) {
-  start_log(name, line_start(STDOUT_FILENO));
   try {
+    start_log(name, line_start(STDOUT_FILENO));
     return body();
-  } catch (const std::bad_alloc&) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": out of memory\n";
   } catch (const std::exception& error) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": " << one_line(error.what()) << "\n";
+    const std::string text = is_out_of_memory(error) ? "out of memory" : as_message(error.what());
+    std::cerr << line_start(STDERR_FILENO) << name << ": " << text << "\n";
   }
   return 1;
 }
