@@ -3,8 +3,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files_in.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
 #include "io/colmap.h"
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
@@ -65,14 +67,37 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model,
   return carried;
 }
 
+// The files that are read, as far as the model's folder is not their only place.
+std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
+  std::vector<fs::path> inputs{options.housing};
+  constexpr std::string_view kPositions = "positions:";
+  if (options.scale_from.starts_with(kPositions))
+    inputs.push_back(options.parsed.common.working_folder /
+                     options.scale_from.substr(kPositions.size()));
+  for (const fs::path& folder : {model, options.lens})
+    for (const fs::path& file : files_in(folder)) inputs.push_back(file);
+  return inputs;
+}
+
+std::vector<fs::path> outputs_of(const Options& options) {
+  std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json"};
+  for (const char* name : {"cameras", "images", "points3D"}) {
+    const fs::path sparse = options.output / "sparse", other = options.output / "colmap-underwater";
+    outputs.push_back(sparse / name += ".txt");
+    for (const char* extension : {".txt", ".bin"})
+      if (options.underwater) outputs.push_back(other / name += extension);
+  }
+  return outputs;
+}
+
 // Before the work: that the output can be written, and is not the input.
 void check_output(const Options& options, const fs::path& model) {
-  make_folder(options.output);
   std::error_code error;
   if (fs::equivalent(options.output / "sparse", model, error) ||
       fs::equivalent(options.output / "sparse", model.parent_path(), error))
     fail("--output-folder {}: its sparse/ is the model that is read", options.output.string());
-  require_writable(options.output / "report.json");
+  require_no_inputs(outputs_of(options), inputs_of(options, model), "--output-folder");
+  require_writable_folder(options.output);
 }
 
 // What is left of `images`, said where it is not all.
@@ -88,19 +113,21 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
     log_warning("Not converged after {} iterations", report.last.iterations);
 }
 
-// The model last: it is not there without the housing it belongs to.
+// All files or none.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
            const io::Housing& housing, const std::string& report) {
   const io::ColmapModel result = to_model(refined, model);
-  io::write_housing(options.output / "housing.json", housing);
-  write_atomically(options.output / "report.json", report);
-  if (options.underwater) {
-    make_folder(options.output / "colmap-underwater");
-    io::write_underwater_text(options.output / "colmap-underwater", result);
-    io::write_underwater_binary(options.output / "colmap-underwater", result);
-  }
-  make_folder(options.output / "sparse");
-  io::write_colmap_text(options.output / "sparse", result);
+  write_folder(options.output, [&](const fs::path& folder) {
+    io::write_housing(folder / "housing.json", housing);
+    write_atomically(folder / "report.json", report);
+    if (options.underwater) {
+      make_folder(folder / "colmap-underwater");
+      io::write_underwater_text(folder / "colmap-underwater", result);
+      io::write_underwater_binary(folder / "colmap-underwater", result);
+    }
+    make_folder(folder / "sparse");
+    io::write_colmap_text(folder / "sparse", result);
+  });
 }
 
 int run(int argc, char** argv) {
