@@ -24,8 +24,8 @@ using axial::DepthMap;
 
 namespace {
 
-// Of -v, as in OpenMVS: pictures of the maps, and of those of every stage.
-constexpr int kVerbosityOfPictures = 3, kVerbosityOfStages = 5;
+// From this -v on pictures of every stage's maps, too.
+constexpr int kVerbosityOfStages = 5;
 
 // One round over all images. The files of a stage that is not the last carry its name and go once
 // the next stage is complete.

@@ -8,6 +8,9 @@
 
 namespace densify {
 
+// From this -v on pictures of the depth maps lie beside them, as in OpenMVS.
+inline constexpr int kVerbosityOfPictures = 3;
+
 // depthNNNN.dmap in the working folder, NNNN the image's global id.
 std::filesystem::path depth_map_path(const Project& project, const Options& options,
                                      std::size_t image);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/atomic_file.h"
+#include <optional>
+
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -10,6 +11,7 @@
 #include "io/ply.h"
 #include "memory_plan.h"
 #include "options.h"
+#include "outputs.h"
 #include "project.h"
 
 namespace {
@@ -48,20 +50,21 @@ int run(int argc, char** argv) {
   axial::share_one_heap();
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
-  axial::require_writable(options.output);
-  axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
-  axial::remove_abandoned(options.parsed.common.working_folder, "depth");
+  densify::check_outputs(options);
   const densify::Project project = densify::load_project(options);
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
-  densify::ImageStore images(project, options, plan.cached_images);
-  images.check_all(plan.decodes);
-  densify::make_depth_maps(project, options, plan, images);
+  densify::check_outputs(project, options);
+  std::optional<densify::ImageStore> images(std::in_place, project, options, plan.cached_images);
+  images->check_all(plan.decodes);
+  densify::make_depth_maps(project, options, plan, *images);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");
   const std::size_t points = options.fuse
-                                 ? densify::write_cloud(project, options, plan, images, ply)
+                                 ? densify::write_cloud(project, options, plan, *images, ply)
                                  : write_sparse_cloud(project.scene, ply);
+  images.reset();  // the scene's bytes take its place
+  axial::return_freed_memory();
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   axial::log_info("{}: {} points", ply.string(), points);

@@ -13,6 +13,7 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "memory_plan.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -36,8 +37,7 @@ void find_images(axial::Scene& scene, const Options& options) {
 std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Options& options) {
   if (options.camera == CameraChoice::pinhole) return {};
   const bool demanded = options.refractive || options.camera == CameraChoice::flat_port;
-  const fs::path file =
-      options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
+  const fs::path file = housing_file(options);
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (demanded || !options.housing.empty())
@@ -123,6 +123,7 @@ void select_views(Project& project, const Options& options) {
   axial::Scene& scene = project.scene;
   if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
   if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
+  require_memory_to_score(scene, options);
   project.preparations = axial::score_neighbours(scene, options.selection,
                                                  axial::console_progress("Scored neighbours"));
   project.neighbours.resize(scene.images.size());
@@ -137,7 +138,8 @@ void select_views(Project& project, const Options& options) {
     project.sources[i] =
         axial::choose_source_views(project.neighbours[i], options.number_views, options.selection);
     if (project.sources[i].empty())
-      axial::log_warning("{}: left out: no good images in view", scene.images[i].path);
+      axial::log_warning("{}: left out: {}", scene.images[i].path,
+                         axial::why_no_source_view(scene.images[i].neighbours, options.selection));
     else
       project.references.push_back(i);
   }
@@ -243,7 +245,12 @@ void warn_of_missing_lenses(const Options& options) {
 
 }  // namespace
 
+fs::path housing_file(const Options& options) {
+  return options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
+}
+
 Project load_project(const Options& options) {
+  require_memory_to_read(options);
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
@@ -263,9 +270,9 @@ Project load_project(const Options& options) {
 void write_cameras_beside_output(const Project& project, const Options& options) {
   axial::io::write_lenses_beside(options.output, project.lenses, project.housing.has_value());
   const fs::path file = axial::io::housing_beside(options.output);
-  if (project.housing) return axial::io::write_housing(file, *project.housing);
-  if (file == axial::io::housing_beside(options.input)) return;
   std::error_code error;
+  if (fs::equivalent(file, housing_file(options), error)) return;
+  if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (fs::remove(file, error)) axial::log_info("{} removed: the scene has no ports", file.string());
 }
 

@@ -45,8 +45,12 @@ struct Project {
 // shape than their camera; ImageStore::check_all finds the rest.
 Project load_project(const Options& options);
 
+// Where the housing is read from, if there is one.
+std::filesystem::path housing_file(const Options& options);
+
 // Leaves the housing and the lenses beside the output scene, where every later program finds them.
-// A scene without ports or distorted lenses gets none, and an older one of the same name goes.
+// A scene without ports or distorted lenses gets none, and an older one of the same name goes; the
+// housing that --housing names stays as it is.
 void write_cameras_beside_output(const Project& project, const Options& options);
 
 }  // namespace densify
