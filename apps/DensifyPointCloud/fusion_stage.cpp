@@ -30,8 +30,13 @@ std::vector<axial::cloud::FusionView> views_to_fuse(const Project& project) {
 class CloudRun {
  public:
   CloudRun(const Project& project, const Options& options, const MemoryPlan& plan,
-           ImageStore& images, const std::filesystem::path& ply)
-      : project_(project), options_(options), plan_(plan), images_(images), ply_(ply) {}
+           const ExistingMaps& existing, ImageStore& images, const std::filesystem::path& ply)
+      : project_(project),
+        options_(options),
+        plan_(plan),
+        existing_(existing),
+        images_(images),
+        ply_(ply) {}
 
   std::size_t run() {
     const bool whole = options_.estimate_colors == 1 || options_.estimate_normals == 1;
@@ -61,11 +66,18 @@ class CloudRun {
     return cloud.size();
   }
 
+  axial::DepthMap load_map(std::size_t image) const {
+    const auto file = depth_map_path(project_, options_, image);
+    if (options_.make_maps) return axial::io::read_dmap(file).map;
+    axial::DepthMap map = axial::io::read_dmap(file, side_to_read(existing_[image].origin)).map;
+    // Fusion estimates the normals of maps that have none.
+    if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
+    return map;
+  }
+
   void fuse_into(const axial::cloud::CloudSink& sink) {
     axial::cloud::FusionProviders providers;
-    providers.load_map = [&](std::size_t image) {
-      return axial::io::read_dmap(depth_map_path(project_, options_, image)).map;
-    };
+    providers.load_map = [&](std::size_t image) { return load_map(image); };
     if (options_.estimate_colors == 2)
       providers.load_color = [&](std::size_t image) { return images_.get(image)->color; };
     axial::cloud::FuseOptions fusion = options_.fusion;
@@ -84,6 +96,7 @@ class CloudRun {
   const Project& project_;
   const Options& options_;
   const MemoryPlan& plan_;
+  const ExistingMaps& existing_;
   ImageStore& images_;
   const std::filesystem::path& ply_;
   std::size_t removed_ = 0;
@@ -92,9 +105,10 @@ class CloudRun {
 }  // namespace
 
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
-                        ImageStore& images, const std::filesystem::path& ply) {
+                        const ExistingMaps& existing, ImageStore& images,
+                        const std::filesystem::path& ply) {
   axial::map_large_blocks();
-  return CloudRun(project, options, plan, images, ply).run();
+  return CloudRun(project, options, plan, existing, images, ply).run();
 }
 
 }  // namespace densify

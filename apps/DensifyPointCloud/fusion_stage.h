@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "existing_maps.h"
 #include "image_store.h"
 #include "memory_plan.h"
 #include "project.h"
@@ -11,6 +12,7 @@ namespace densify {
 // options say; returns its number of points. The cloud goes to the file as it grows, unless its
 // colours or normals are estimated from the whole of it (1).
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
-                        ImageStore& images, const std::filesystem::path& ply);
+                        const ExistingMaps& existing, ImageStore& images,
+                        const std::filesystem::path& ply);
 
 }  // namespace densify

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "depth_stage.h"
+#include "existing_maps.h"
 #include "fusion_stage.h"
 #include "image_store.h"
 #include "io/mvs.h"
@@ -42,6 +45,20 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
   }
 }
 
+// OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
+void say_who_may_read(const densify::Project& project, const fs::path& scene) {
+  const bool pinholes = std::ranges::none_of(project.views, [](const densify::View& view) {
+    return view.camera.port || view.camera.distortion;
+  });
+  if (pinholes) return;
+  const fs::path name = scene.filename();
+  axial::log_info(
+      "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
+      "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
+      "depth maps give wrong results there",
+      name.string(), name.string());
+}
+
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -49,19 +66,27 @@ int run(int argc, char** argv) {
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
   axial::require_writable(options.output);
-  axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
-  axial::remove_abandoned(options.parsed.common.working_folder, "depth");
-  const densify::Project project = densify::load_project(options);
+  if (options.make_maps) {
+    axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
+    axial::remove_abandoned(options.parsed.common.working_folder, "depth");
+  }
+  densify::Project loaded = densify::load_project(options);
+  const densify::ExistingMaps existing = densify::find_existing_maps(loaded, options);
+  if (options.make_maps)
+    densify::check_overwriting(loaded, options, existing);
+  else
+    densify::keep_images_with_maps(loaded, options, existing);
+  const densify::Project& project = loaded;
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
   densify::ImageStore images(project, options, plan.cached_images);
   images.check_all(plan.decodes);
-  densify::make_depth_maps(project, options, plan, images);
+  if (options.make_maps) densify::make_depth_maps(project, options, plan, existing, images);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");
-  const std::size_t points = options.fuse
-                                 ? densify::write_cloud(project, options, plan, images, ply)
-                                 : write_sparse_cloud(project.scene, ply);
+  const std::size_t points =
+      options.fuse ? densify::write_cloud(project, options, plan, existing, images, ply)
+                   : write_sparse_cloud(project.scene, ply);
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   axial::log_info("{}: {} points", ply.string(), points);
@@ -71,6 +96,7 @@ int run(int argc, char** argv) {
         "masks and the region of interest leave nothing",
         options.fusion.min_views);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
+  say_who_may_read(project, options.output);
   return 0;
 }
 

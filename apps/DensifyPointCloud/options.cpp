@@ -58,6 +58,8 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("ignore-mask-label", &options.ignore_mask_label,
                         "mask value to leave out; below 0: no masks")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
+      .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
+                        "overwrite depth maps of other programs in the working folder")
       .add_with_default("max-memory", &options.max_memory,
                         "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
                         "and --estimate-normals 1 keep the whole cloud on top of it");
@@ -78,7 +80,8 @@ void declare_matching(axial::OptionList& list, Options& options) {
 
 void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
   list.add_with_default("fusion-mode", &raw.fusion_mode,
-                        "0 depth maps and fusion, 1 depth maps only")
+                        "0 depth maps and fusion, 1 depth maps only, -1 fuse the depth maps in the "
+                        "working folder, whoever wrote them, and write none")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement)")
       .add_with_default("estimate-colors", &options.estimate_colors,
@@ -149,7 +152,9 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("geometric-iters", options.geometric_iterations, 0, 20);
   check_range("postprocess-dmaps", options.postprocess, 0u, 7u);
   check_range("number-views-fuse", options.fusion.min_views, std::size_t{0}, std::size_t{255});
-  check_range("fusion-mode", raw.fusion_mode, 0, 1);
+  if (raw.fusion_mode == -2)
+    fail("--fusion-mode -2: disparity maps are not built; -1 fuses the depth maps that exist");
+  check_range("fusion-mode", raw.fusion_mode, -1, 1);
   check_range("estimate-colors", options.estimate_colors, 0u, 2u);
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
@@ -200,7 +205,8 @@ Options parse_command_line(int argc, const char* const* argv) {
       {{"affine", axial::depth::Warp::affine}, {"homography", axial::depth::Warp::homography}});
   if (options.refractive && options.camera == CameraChoice::pinhole)
     fail("--refractive contradicts --camera-model pinhole");
-  options.fuse = raw.fusion_mode == 0;
+  options.make_maps = raw.fusion_mode >= 0;
+  options.fuse = raw.fusion_mode <= 0;
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
   return options;

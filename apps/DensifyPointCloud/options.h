@@ -41,7 +41,9 @@ struct Options {
   unsigned postprocess = kSpeckles | kGaps;
 
   axial::cloud::FuseOptions fusion;
-  bool fuse = true;  // --fusion-mode 0
+  bool make_maps = true;  // --fusion-mode 0 and 1; otherwise those that exist are fused
+  bool fuse = true;       // --fusion-mode 0 and -1
+  bool overwrite_dmaps = false;
   unsigned estimate_colors = 2;
   unsigned estimate_normals = 2;
   axial::RegionMode region = axial::RegionMode::adaptive;
