@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/log_file.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -34,7 +35,8 @@ po::options_description common_options(CommonOptions& common, const ProgramOptio
       "config-file,c", po::value(&common.config_file)->default_value(program.name + ".cfg"),
       "file with option values, 'name = value' a line")(
       "archive-type", po::value(&common.archive_type)->default_value(-1),
-      "scene format; only -1 (interchange .mvs) is supported")(
+      "scene format: -1 (interchange .mvs), which also 0 to 3 fall back to")(
+      "log-file", po::value(&common.log_file), "file to add the log's lines to, errors included")(
       "process-priority", po::value(&common.process_priority)->default_value(-1),
       "below zero lowers the process's priority")(
       "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
@@ -108,9 +110,16 @@ void refuse_stray_arguments(const po::parsed_options& parsed) {
   }
 }
 
-void apply(const CommonOptions& common) {
+void apply(CommonOptions& common) {
+  if (!common.log_file.empty()) log_to_file_too(in_working_folder(common, common.log_file));
+  if (common.archive_type < -1 || common.archive_type > 3)
+    fail("--archive-type {}: must be from -1 to 3", common.archive_type);
   if (common.archive_type != -1)
-    fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
+    log_warning(
+        "--archive-type {}: OpenMVS's own projects are not written, scenes are interchange .mvs "
+        "(-1)",
+        common.archive_type);
+  common.archive_type = -1;
   if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
   constexpr std::array kLevels{LogLevel::warning, LogLevel::info, LogLevel::debug, LogLevel::trace};
@@ -205,6 +214,11 @@ std::string line_start(int descriptor) {
   return ::isatty(descriptor) != 0 ? "\r\033[K" : "";
 }
 
+void say_error(const std::string& name, std::string_view what) {
+  std::cerr << line_start(STDERR_FILENO) << name << ": " << what << "\n";
+  log_to_file_only(what);
+}
+
 }  // namespace
 
 int run_program(const std::string& name, const std::function<int()>& body) {
@@ -212,9 +226,9 @@ int run_program(const std::string& name, const std::function<int()>& body) {
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": out of memory\n";
+    say_error(name, "out of memory");
   } catch (const std::exception& error) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": " << one_line(error.what()) << "\n";
+    say_error(name, one_line(error.what()));
   }
   return 1;
 }

@@ -16,6 +16,7 @@ namespace axial {
 struct CommonOptions {
   std::filesystem::path working_folder;  // absolute; base of every relative path
   std::string config_file;
+  std::string log_file;  // empty: none
   int archive_type = -1;
   int process_priority = -1;
   unsigned max_threads = 0;

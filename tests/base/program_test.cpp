@@ -128,7 +128,7 @@ TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--max-threads", "-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads=-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads", "5000"}), HasSubstr("at most 1024"));
-  EXPECT_THAT(error({"a.mvs", "--archive-type", "2"}), HasSubstr("archive-type is 2"));
+  EXPECT_THAT(error({"a.mvs", "--archive-type", "4"}), HasSubstr("--archive-type 4"));
 }
 
 TEST_F(ProgramTest, RefusesStrayArgumentsWhereThereIsNoInputFile) {
