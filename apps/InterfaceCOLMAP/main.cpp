@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "io/colmap.h"
+#include "io/colmap_export.h"
 #include "io/colmap_scene.h"
 #include "io/housing.h"
 #include "io/lenses.h"
@@ -44,11 +45,39 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   return carried;
 }
 
+// A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
+int export_scene(const Options& options) {
+  Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
+  io::attach_lenses_beside(scene, options.scene_file);
+  const fs::path housing_file = io::housing_beside(options.scene_file);
+  std::error_code error;
+  if (fs::exists(housing_file, error)) io::attach_ports(scene, io::read_housing(housing_file));
+  const fs::path images =
+      options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
+  const io::ColmapModel model = io::export_colmap_model(scene, images);
+  const fs::path folder = options.export_folder / "sparse";
+  make_folder(folder);
+  const std::size_t behind_ports = count_behind_ports(scene);
+  if (behind_ports > 0) {
+    log_warning(
+        "{} of {} images are behind ports, which are written behind their cameras as "
+        "COLMAP-Underwater reads them: COLMAP itself does not",
+        behind_ports, scene.images.size());
+    io::write_underwater_text(folder, model);
+  } else {
+    io::write_colmap_text(folder, model);
+  }
+  log_info("{}: {} images below {}, {} cameras, {} points", folder.string(), model.images.size(),
+           images.string(), model.cameras.size(), model.points.size());
+  return 0;
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
 
+  if (!options.export_folder.empty()) return export_scene(options);
   const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
   const io::ColmapModel model = io::read_colmap_model(model_folder);
   log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
@@ -84,7 +113,8 @@ int run(int argc, char** argv) {
   if (const std::size_t distorted = count_distorted(scene))
     log_info("{}: {} of {} images keep their distorted lens",
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
-  io::write_mvs(options.scene_file, scene, folder);
+  io::write_mvs(options.scene_file, scene, folder,
+                options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
   return 0;
