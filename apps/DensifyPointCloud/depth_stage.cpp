@@ -194,12 +194,13 @@ class DepthMapRun {
   }
 
   DepthMap clean(DepthMap map, std::size_t image) const {
-    if (options_.postprocess & kSpeckles) map = axial::depth::remove_speckles(map);
+    if (options_.postprocess & kSpeckles)
+      map = axial::depth::remove_speckles(map, options_.speckles);
     if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
       if (!project_.views[image].mask.empty())
         cv::compare(images_.get(image)->mask, 0, ignored, cv::CMP_EQ);
-      map = axial::depth::fill_gaps(map, {}, ignored);
+      map = axial::depth::fill_gaps(map, options_.gaps, ignored);
     }
     return map;
   }

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "cloud_exports.h"
 #include "depth_stage.h"
 #include "existing_maps.h"
 #include "fusion_stage.h"
@@ -12,6 +13,7 @@
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "memory_plan.h"
+#include "neighbour_lists.h"
 #include "options.h"
 #include "project.h"
 
@@ -21,20 +23,8 @@ namespace fs = std::filesystem;
 
 // --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
 std::size_t write_sparse_cloud(const axial::Scene& scene, const fs::path& ply) {
-  axial::PointCloud cloud;
-  cloud.view_begin.push_back(0);
-  for (const axial::SparsePoint& point : scene.points) {
-    cloud.positions.push_back(point.position);
-    for (const axial::SparseView& view : point.views) {
-      cloud.view_images.push_back(view.image);
-      cloud.view_weights.push_back(view.confidence);
-    }
-    cloud.view_begin.push_back(cloud.view_images.size());
-  }
-  cloud.normals = scene.point_normals;
-  cloud.colors = scene.point_colors;
-  axial::io::write_cloud_ply(ply, cloud);
-  return cloud.size();
+  axial::io::write_cloud_ply(ply, densify::cloud_of(scene));
+  return scene.points.size();
 }
 
 void remove_depth_maps(const densify::Project& project, const densify::Options& options) {
@@ -43,6 +33,12 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
     fs::remove(file);
     fs::remove(file.string() + ".json");
   }
+}
+
+// As OpenMVS's programs do. What cannot be made, require_writable reports.
+void make_folder_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::create_directories(file.parent_path(), ignored);
 }
 
 // OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
@@ -65,7 +61,17 @@ int run(int argc, char** argv) {
   axial::share_one_heap();
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
+  make_folder_of(options.output);
   axial::require_writable(options.output);
+  if (densify::only_exports(options)) {
+    densify::export_cloud(densify::load_scene(options).scene, options);
+    return 0;
+  }
+  if (!options.neighbour_lists_output.empty()) {
+    densify::write_neighbour_lists(options.neighbour_lists_output,
+                                   densify::load_project(options).scene);
+    return 0;
+  }
   if (options.make_maps) {
     axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
     axial::remove_abandoned(options.parsed.common.working_folder, "depth");

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "dense_config.h"
 
 namespace densify {
 using axial::fail;
@@ -14,8 +16,9 @@ namespace {
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
   std::string input, output, housing, mask_path;
+  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config;
   std::string camera_model = "auto", projection = "exact", warp = "affine";
-  int fusion_mode = 0, estimate_roi = 2;
+  int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
 
 // An OpenMVS option that scripts pass and that is not built: accepted at these values only.
@@ -26,15 +29,8 @@ struct NotBuilt {
 };
 
 std::vector<NotBuilt> not_built() {
-  return {{"pointcloud-file,p", "", {""}},
-          {"view-neighbors-file", "", {""}},
-          {"output-view-neighbors-file", "", {""}},
-          {"estimate-scale", "0", {"0", "0.0"}},
-          {"sub-scene-area", "0", {"0", "0.0"}},
+  return {{"sub-scene-area", "0", {"0", "0.0"}},
           {"sample-mesh", "0", {"0", "0.0"}},
-          {"filter-point-cloud", "0", {"0"}},
-          {"export-number-views", "0", {"0"}},
-          {"tower-mode", "0", {"0"}},
           {"cuda-device", "-1", {"-1", "-2"}}};
 }
 
@@ -42,7 +38,6 @@ std::vector<NotBuilt> not_built_hidden() {
   return {{"mesh-file", "", {""}},
           {"export-roi-file", "", {""}},
           {"import-roi-file", "", {""}},
-          {"dense-config-file", "", {""}},
           {"export-depth-maps-name", "", {""}}};
 }
 
@@ -94,6 +89,29 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
       .add_with_default("crop-to-roi", &options.crop_to_roi,
                         "crop the cloud to the region of interest");
+}
+
+void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
+  list.add("pointcloud-file,p", &raw.point_cloud,
+           "PLY cloud with views, in place of the scene's sparse points")
+      .add("view-neighbors-file", &raw.neighbour_lists,
+           "text file of neighbours: a line an image, its index and theirs, best first")
+      .add("output-view-neighbors-file", &raw.neighbour_lists_output, "write such a file and quit")
+      .add_with_default("filter-point-cloud", &options.filter_point_cloud,
+                        "below 0: write the scene's or -p's points whose visibility is above it "
+                        "to <output>_filtered.ply and .mvs, and quit; above 0 does nothing")
+      .add_with_default("export-number-views", &options.export_number_views,
+                        "N: write the points that N images or more see to <output>_<N>views.ply, "
+                        "and quit; -N: .mvs, too")
+      .add_with_default("estimate-scale", &options.estimate_scale,
+                        "above 0: write the points with their sizes, so many pixels of their "
+                        "views, to <output>_scale.ply, and quit")
+      .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect");
+}
+
+void declare_hidden(axial::OptionList& list, Raw& raw) {
+  list.add("dense-config-file", &raw.dense_config,
+           "OpenMVS's Densify.ini: settings that have no option; written if it is not there");
 }
 
 void declare_camera(axial::OptionList& list, Raw& raw, Options& options) {
@@ -160,6 +178,23 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
   check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
+  check_range("export-number-views", options.export_number_views, -255, 255);
+  check_range("estimate-scale", options.estimate_scale, 0.0, 1e6);
+  check_range("filter-point-cloud", options.filter_point_cloud, -(1 << 30), 1 << 30);
+  check_range("tower-mode", raw.tower_mode, -4, 4);
+}
+
+// Options whose values are taken and change nothing.
+void warn_of_no_effect(const Options& options, const Raw& raw) {
+  if (raw.tower_mode != 0)
+    axial::log_warning(
+        "--tower-mode {}: not built: no points are added around a line of cameras, as with 0",
+        raw.tower_mode);
+  if (options.filter_point_cloud > 0)
+    axial::log_warning(
+        "--filter-point-cloud {}: does nothing, as in OpenMVS: only values below 0 filter, and "
+        "only clouds that are there already (-p)",
+        options.filter_point_cloud);
 }
 
 }  // namespace
@@ -175,6 +210,8 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_camera(program.visible, raw, options);
   declare_matching(program.visible, options);
   declare_fusion(program.visible, raw, options);
+  declare_points(program.visible, raw, options);
+  declare_hidden(program.hidden, raw);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);
@@ -185,12 +222,18 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(visible);
   refuse_not_built(hidden);
   check_values(options, raw);
+  warn_of_no_effect(options, raw);
+  if (!raw.dense_config.empty())
+    apply_dense_config(axial::in_working_folder(common, raw.dense_config), options);
   options.input = axial::in_working_folder(common, raw.input);
   options.output = axial::in_working_folder(common, raw.output);
   if (options.output.empty())
     options.output = options.input.parent_path() / (options.input.stem().string() + "_dense.mvs");
   options.output.replace_extension(".mvs");
   options.housing = axial::in_working_folder(common, raw.housing);
+  options.point_cloud = axial::in_working_folder(common, raw.point_cloud);
+  options.neighbour_lists = axial::in_working_folder(common, raw.neighbour_lists);
+  options.neighbour_lists_output = axial::in_working_folder(common, raw.neighbour_lists_output);
   options.mask_folder = axial::in_working_folder(common, raw.mask_path);
   options.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
                                         {{"auto", CameraChoice::automatic},

@@ -13,6 +13,8 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "neighbour_lists.h"
+#include "point_source.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -119,12 +121,23 @@ void check_ids(const Project& project) {
            project.scene.images[i].path, project.views[i].id);
 }
 
+// An image whose neighbours are given needs points of its own for its depth range only.
+void use_neighbour_lists(Project& project, const Options& options) {
+  const std::vector<bool> named = read_neighbour_lists(options.neighbour_lists, project.scene);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    axial::ViewPreparation& preparation = project.preparations[i];
+    if (named[i] && preparation.init_points.size() >= options.selection.min_init_points)
+      preparation.problem.clear();
+  }
+}
+
 void select_views(Project& project, const Options& options) {
   axial::Scene& scene = project.scene;
   if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
   if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
   project.preparations = axial::score_neighbours(scene, options.selection,
                                                  axial::console_progress("Scored neighbours"));
+  if (!options.neighbour_lists.empty()) use_neighbour_lists(project, options);
   project.neighbours.resize(scene.images.size());
   project.sources.resize(scene.images.size());
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
@@ -206,6 +219,7 @@ std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
   print.add("AxialMVS depth maps 8");  // the number: of the matching method
   add_options(print, options);
+  if (!options.map_settings.empty()) print.add(options.map_settings);
   const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     const View& view = project.views[i];
@@ -243,7 +257,7 @@ void warn_of_missing_lenses(const Options& options) {
 
 }  // namespace
 
-Project load_project(const Options& options) {
+Project load_scene(const Options& options) {
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
   find_images(project.scene, options);
@@ -253,6 +267,12 @@ Project load_project(const Options& options) {
   if (project.housing) warn_of_missing_lenses(options);
   axial::log_info("Scene {}: {} images, {} points", options.input.filename().string(),
                   project.scene.images.size(), project.scene.points.size());
+  if (!options.point_cloud.empty()) use_point_cloud(project.scene, options.point_cloud);
+  return project;
+}
+
+Project load_project(const Options& options) {
+  Project project = load_scene(options);
   load_views(project, options);
   check_ids(project);
   select_views(project, options);

@@ -40,6 +40,10 @@ struct Project {
   std::string fingerprint;
 };
 
+// The scene with its ports and lenses, and the points of -p: all that needs no image files. Error
+// for anything wrong with these files.
+Project load_scene(const Options& options);
+
 // Reads the scene and the bytes of its images and masks, but keeps no pixels. Error for anything
 // wrong with the scene or its housing, for files that are missing or cut, and for images of another
 // shape than their camera; ImageStore::check_all finds the rest.
