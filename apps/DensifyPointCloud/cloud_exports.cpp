@@ -12,9 +12,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "cloud/visibility.h"
 #include "io/mvs.h"
 #include "io/ply.h"
-#include "visibility.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -64,7 +64,7 @@ void write(const axial::Scene& scene, const Options& options, const std::string&
 }
 
 void export_filtered(axial::Scene& scene, const Options& options) {
-  const std::vector<long> visibility = visibility_of_points(scene);
+  const std::vector<long> visibility = axial::cloud::visibility_of_points(scene);
   keep_points(scene,
               [&](std::size_t point) { return visibility[point] > options.filter_point_cloud; });
   write(scene, options, "_filtered", true);
@@ -79,7 +79,7 @@ void export_number_of_views(axial::Scene& scene, const Options& options) {
 
 // Positions, colours and normals where the scene has them, confidence and value.
 void write_scales(const fs::path& ply, const axial::Scene& scene,
-                  const std::vector<PointScale>& scales) {
+                  const std::vector<axial::cloud::PointScale>& scales) {
   const bool colors = !scene.point_colors.empty(), normals = !scene.point_normals.empty();
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float32 x\n"
@@ -103,8 +103,9 @@ void write_scales(const fs::path& ply, const axial::Scene& scene,
 
 void export_scales(const axial::Scene& scene, const Options& options) {
   const fs::path ply = beside_output(options, "_scale.ply");
-  std::vector<PointScale> scales = scales_of_points(scene);
-  for (PointScale& scale : scales) scale.scale *= static_cast<float>(options.estimate_scale);
+  std::vector<axial::cloud::PointScale> scales = axial::cloud::scales_of_points(scene);
+  for (axial::cloud::PointScale& scale : scales)
+    scale.scale *= static_cast<float>(options.estimate_scale);
   write_scales(ply, scene, scales);
   axial::log_info("{}: {} points", ply.string(), scene.points.size());
 }

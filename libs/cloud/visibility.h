@@ -6,13 +6,13 @@
 
 #include "scene/scene.h"
 
-namespace densify {
+namespace axial::cloud {
 
 // For every point how much speaks for it. From each view of each point p a cone of one pixel opens
 // towards it. Points in the cone that are farther than p, by more than 1 %, gain their own number
 // of views; points that are nearer by more than 1 % lose p's number of views, because p is seen
 // through them. Error for views of images that do not exist.
-std::vector<long> visibility_of_points(const axial::Scene& scene);
+std::vector<long> visibility_of_points(const Scene& scene);
 
 struct PointScale {
   float scale = 0;       // width of a pixel at the point, mean over its views [scene units]
@@ -20,6 +20,6 @@ struct PointScale {
 };
 
 // Points that no calibrated image sees get 0 and 0.
-std::vector<PointScale> scales_of_points(const axial::Scene& scene);
+std::vector<PointScale> scales_of_points(const Scene& scene);
 
-}  // namespace densify
+}  // namespace axial::cloud

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility.h"
+#include "cloud/visibility.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace densify {
+namespace axial::cloud {
 namespace {
 
 // A point in one image.
@@ -47,14 +47,14 @@ Cells sorted_into_cells(std::vector<Seen> seen, int width, int height) {
   return cells;
 }
 
-std::vector<std::vector<std::uint32_t>> points_of_images(const axial::Scene& scene) {
+std::vector<std::vector<std::uint32_t>> points_of_images(const Scene& scene) {
   std::vector<std::vector<std::uint32_t>> points(scene.images.size());
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    std::uint32_t previous = axial::kNoId;
-    for (const axial::SparseView& view : scene.points[i].views) {
+    std::uint32_t previous = kNoId;
+    for (const SparseView& view : scene.points[i].views) {
       if (view.image >= scene.images.size())
-        axial::fail("points[{}]: view of image {}, but there are {} images", i, view.image,
-                    scene.images.size());
+        fail("points[{}]: view of image {}, but there are {} images", i, view.image,
+             scene.images.size());
       if (view.image != previous) points[view.image].push_back(static_cast<std::uint32_t>(i));
       previous = view.image;
     }
@@ -62,7 +62,7 @@ std::vector<std::vector<std::uint32_t>> points_of_images(const axial::Scene& sce
   return points;
 }
 
-Cells project_all(const axial::Scene& scene, const axial::SceneImage& image,
+Cells project_all(const Scene& scene, const SceneImage& image,
                   const std::vector<std::uint32_t>& own) {
   std::vector<bool> asks(scene.points.size(), false);
   for (const std::uint32_t point : own) asks[point] = true;
@@ -81,7 +81,7 @@ Cells project_all(const axial::Scene& scene, const axial::SceneImage& image,
           seen.push_back({static_cast<std::uint32_t>(i), u, v, depth, asks[i]});
         }
       },
-      axial::make_camera<double>(image.camera));
+      make_camera<double>(image.camera));
   return sorted_into_cells(std::move(seen), width, height);
 }
 
@@ -104,7 +104,7 @@ void for_each_in_cone(const Cells& cells, const Visit& visit) {
 
 }  // namespace
 
-std::vector<long> visibility_of_points(const axial::Scene& scene) {
+std::vector<long> visibility_of_points(const Scene& scene) {
   constexpr double kSame = 0.01;
   std::vector<long> visibility(scene.points.size(), 0);
   const auto views = [&](const Seen& s) {
@@ -128,19 +128,18 @@ namespace {
 // projection's derivative, which for a pinhole is z / f.
 template <class Camera>
 double pixel_width(const Camera& camera, const Eigen::Vector3d& X) {
-  axial::refractive::Matrix23<double> jacobian;
+  refractive::Matrix23<double> jacobian;
   if (!camera.project(X, &jacobian).visible) return 0;
-  const axial::refractive::Matrix2<double> square = jacobian * jacobian.transpose();
+  const refractive::Matrix2<double> square = jacobian * jacobian.transpose();
   const double half_trace = square.trace() / 2;
   const double spread = std::hypot((square(0, 0) - square(1, 1)) / 2, square(0, 1));
   const double smallest = half_trace - spread;
   return smallest > 0 ? 1 / std::sqrt(smallest) : 0;
 }
 
-void add_image(const axial::Scene& scene, std::size_t image,
-               const std::vector<std::uint32_t>& points, std::vector<double>& sums,
-               std::vector<int>& counts) {
-  const axial::SceneImage& from = scene.images[image];
+void add_image(const Scene& scene, std::size_t image, const std::vector<std::uint32_t>& points,
+               std::vector<double>& sums, std::vector<int>& counts) {
+  const SceneImage& from = scene.images[image];
   std::visit(
       [&](const auto& camera) {
         for (const std::uint32_t point : points) {
@@ -151,12 +150,12 @@ void add_image(const axial::Scene& scene, std::size_t image,
           ++counts[point];
         }
       },
-      axial::make_camera<double>(from.camera));
+      make_camera<double>(from.camera));
 }
 
 }  // namespace
 
-std::vector<PointScale> scales_of_points(const axial::Scene& scene) {
+std::vector<PointScale> scales_of_points(const Scene& scene) {
   std::vector<double> sums(scene.points.size(), 0);
   std::vector<int> counts(scene.points.size(), 0);
   const auto points = points_of_images(scene);
@@ -166,11 +165,10 @@ std::vector<PointScale> scales_of_points(const axial::Scene& scene) {
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (counts[i] == 0) continue;
     scales[i].scale = static_cast<float>(sums[i] / counts[i]);
-    for (const axial::SparseView& view : scene.points[i].views)
-      scales[i].confidence += view.confidence;
+    for (const SparseView& view : scene.points[i].views) scales[i].confidence += view.confidence;
     if (scales[i].confidence == 0) scales[i].confidence = static_cast<float>(counts[i]);
   }
   return scales;
 }
 
-}  // namespace densify
+}  // namespace axial::cloud
