@@ -43,7 +43,8 @@ class CloudRun {
  private:
   std::size_t run_in_a_stream() {
     axial::io::CloudWriter writer(
-        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true});
+        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true},
+        placement_of(project_, options_));
     fuse_into([&](const axial::PointCloud& portion) { writer.add(portion); });
     writer.finish();
     return writer.size();
@@ -57,7 +58,7 @@ class CloudRun {
       axial::cloud::estimate_colors(cloud, project_.scene,
                                     [&](std::size_t image) { return images_.get(image)->color; });
     if (options_.estimate_normals == 1) axial::cloud::estimate_normals(cloud, project_.scene);
-    axial::io::write_cloud_ply(ply_, cloud);
+    axial::io::write_cloud_ply(ply_, cloud, true, placement_of(project_, options_));
     return cloud.size();
   }
 
@@ -90,6 +91,10 @@ class CloudRun {
 };
 
 }  // namespace
+
+axial::io::PlyPlacement placement_of(const Project& project, const Options& options) {
+  return {project.frame, options.double_precision};
+}
 
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
                         ImageStore& images, const std::filesystem::path& ply) {

@@ -17,7 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
-std::size_t write_sparse_cloud(const axial::Scene& scene, const fs::path& ply) {
+std::size_t write_sparse_cloud(const densify::Project& project, const densify::Options& options,
+                               const fs::path& ply) {
+  const axial::Scene& scene = project.scene;
   axial::PointCloud cloud;
   cloud.view_begin.push_back(0);
   for (const axial::SparsePoint& point : scene.points) {
@@ -30,7 +32,7 @@ std::size_t write_sparse_cloud(const axial::Scene& scene, const fs::path& ply) {
   }
   cloud.normals = scene.point_normals;
   cloud.colors = scene.point_colors;
-  axial::io::write_cloud_ply(ply, cloud);
+  axial::io::write_cloud_ply(ply, cloud, true, densify::placement_of(project, options));
   return cloud.size();
 }
 
@@ -61,7 +63,7 @@ int run(int argc, char** argv) {
   ply.replace_extension(".ply");
   const std::size_t points = options.fuse
                                  ? densify::write_cloud(project, options, plan, images, ply)
-                                 : write_sparse_cloud(project.scene, ply);
+                                 : write_sparse_cloud(project, options, ply);
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   axial::log_info("{}: {} points", ply.string(), points);

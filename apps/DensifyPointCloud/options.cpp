@@ -14,7 +14,7 @@ namespace {
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
   std::string input, output, housing, mask_path;
-  std::string camera_model = "auto", projection = "exact", warp = "affine";
+  std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2;
 };
 
@@ -57,6 +57,9 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add("mask-path", &raw.mask_path, "folder with <image>.mask.png for every image")
       .add_with_default("ignore-mask-label", &options.ignore_mask_label,
                         "mask value to leave out; below 0: no masks")
+      .add_with_default("output-precision", &raw.precision,
+                        "of the cloud's positions: float, counting from the scene's offset where "
+                        "it has one (<scene>.geo.json), or double, in world coordinates")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("max-memory", &options.max_memory,
                         "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
@@ -191,6 +194,8 @@ Options parse_command_line(int argc, const char* const* argv) {
                                         {{"auto", CameraChoice::automatic},
                                          {"pinhole", CameraChoice::pinhole},
                                          {"flatport", CameraChoice::flat_port}});
+  options.double_precision =
+      one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
   options.projection =
       one_of<axial::ProjectionMethod>("projection", raw.projection,
                                       {{"exact", axial::ProjectionMethod::exact},

@@ -48,7 +48,8 @@ struct Options {
   double roi_border = 0;
   bool crop_to_roi = true;
   bool remove_dmaps = false;
-  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of what is free
+  bool double_precision = false;  // of the cloud, which is then in world coordinates
+  std::uint64_t max_memory = 0;   // [MB of 10^6 bytes]; 0: 70 % of what is free
 };
 
 // Whether the cloud takes colours from the images.

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
@@ -33,7 +34,9 @@ void find_images(axial::Scene& scene, const Options& options) {
   }
 }
 
-std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Options& options) {
+std::optional<axial::io::Housing> attach_housing(axial::Scene& scene,
+                                                 const axial::LocalFrame& frame,
+                                                 const Options& options) {
   if (options.camera == CameraChoice::pinhole) return {};
   const bool demanded = options.refractive || options.camera == CameraChoice::flat_port;
   const fs::path file =
@@ -45,7 +48,7 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
     return {};
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
-  axial::io::attach_ports(scene, housing);
+  axial::io::attach_ports(scene, axial::io::in_frame(frame, housing));
   std::size_t images = 0, wet = 0, flat = 0;
   for (const axial::SceneImage& image : scene.images) {
     const auto& port = image.camera.port;
@@ -246,10 +249,11 @@ void warn_of_missing_lenses(const Options& options) {
 Project load_project(const Options& options) {
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
+  project.frame = axial::io::enter_local_frame(project.scene, options.input);
   find_images(project.scene, options);
   attach_lenses(project.scene, options);
   project.lenses = axial::io::lenses_of(project.scene, options.output);
-  project.housing = attach_housing(project.scene, options);
+  project.housing = attach_housing(project.scene, project.frame, options);
   if (project.housing) warn_of_missing_lenses(options);
   axial::log_info("Scene {}: {} images, {} points", options.input.filename().string(),
                   project.scene.images.size(), project.scene.points.size());
@@ -261,6 +265,8 @@ Project load_project(const Options& options) {
 }
 
 void write_cameras_beside_output(const Project& project, const Options& options) {
+  if (!project.frame.is_world() || options.output != options.input)
+    axial::io::write_geo_offset_beside(options.output, project.frame);
   axial::io::write_lenses_beside(options.output, project.lenses, project.housing.has_value());
   const fs::path file = axial::io::housing_beside(options.output);
   if (project.housing) return axial::io::write_housing(file, *project.housing);

@@ -13,6 +13,7 @@
 #include "io/housing.h"
 #include "io/lenses.h"
 #include "options.h"
+#include "scene/local_frame.h"
 #include "scene/scene.h"
 #include "scene/view_selection.h"
 
@@ -29,8 +30,9 @@ struct View {
 };
 
 struct Project {
-  axial::Scene scene;                         // as read, with ports and neighbour scores
-  std::optional<axial::io::Housing> housing;  // that the ports come from
+  axial::Scene scene;                         // in `frame`, with ports and neighbour scores
+  axial::LocalFrame frame;                    // that the scene's coordinates count from
+  std::optional<axial::io::Housing> housing;  // that the ports come from; in the world
   axial::io::Lenses lenses;                   // to be written beside the output
   std::vector<axial::ViewPreparation> preparations;
   std::vector<View> views;                                // one an image of the scene
@@ -45,8 +47,9 @@ struct Project {
 // shape than their camera; ImageStore::check_all finds the rest.
 Project load_project(const Options& options);
 
-// Leaves the housing and the lenses beside the output scene, where every later program finds them.
-// A scene without ports or distorted lenses gets none, and an older one of the same name goes.
+// Leaves the housing, the lenses and the offset beside the output scene, where every later program
+// finds them. A scene without ports, distorted lenses or an offset gets none, and an older one of
+// the same name goes.
 void write_cameras_beside_output(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "io/colmap.h"
 #include "io/colmap_scene.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
 #include "io/lenses.h"
 #include "io/mvs.h"
@@ -50,9 +51,10 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
 
   const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
-  const io::ColmapModel model = io::read_colmap_model(model_folder);
+  io::ColmapModel model = io::read_colmap_model(model_folder);
   log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
+  const LocalFrame frame = io::enter_local_frame(model);
   const io::Housing housing = load_housing(options, model);
   log_info("Images in {}", options.image_folder.string());
 
@@ -75,7 +77,7 @@ int run(int argc, char** argv) {
     const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
     for (const std::string& entry : io::unused_entries(housing, model))
       log_warning("{}: no image goes by {}", options.housing_file.string(), entry);
-    io::attach_ports(scene, by_image);
+    io::attach_ports(scene, io::in_frame(frame, by_image));
     io::write_housing(housing_file, by_image);
     log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
              scene.images.size());
@@ -84,6 +86,11 @@ int run(int argc, char** argv) {
   if (const std::size_t distorted = count_distorted(scene))
     log_info("{}: {} of {} images keep their distorted lens",
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
+  io::write_geo_offset_beside(options.scene_file, frame);
+  if (!frame.is_world())
+    log_info("{}: coordinates count from ({}, {}, {})",
+             io::geo_offset_beside(options.scene_file).string(), frame.origin.x(), frame.origin.y(),
+             frame.origin.z());
   io::write_mvs(options.scene_file, scene, folder);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
