@@ -10,6 +10,7 @@
 #include "base/program.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
+#include "io/geo_offset.h"
 
 namespace fs = std::filesystem;
 using namespace axial;
@@ -56,9 +57,12 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   io::ColmapModel model = io::read_colmap_model(io::find_colmap_model(options.model));
-  const auto reference = io::read_colmap_model(io::find_colmap_model(options.reference));
+  auto reference = io::read_colmap_model(io::find_colmap_model(options.reference));
+  io::enter_local_frame(model);
+  const LocalFrame frame = io::enter_local_frame(reference);
   const evaluate::CentreAlignment alignment = align(model, reference, options.model);
   evaluate::apply(alignment.similarity, model);
+  io::leave(frame, model);
   make_folder(options.output);
   io::write_colmap_text(options.output, model);
   log_info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),

@@ -8,6 +8,7 @@
 #include "io/colmap.h"
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
@@ -75,6 +76,16 @@ void check_output(const Options& options, const fs::path& model) {
   require_writable(options.output / "report.json");
 }
 
+// Known positions place the model: it then counts from near them, whatever it counted from before.
+LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
+  std::vector<Eigen::Vector3d> centres;
+  for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
+  const LocalFrame frame = frame_of(centres, {});
+  if (frame.is_world()) return frame;
+  for (pose::KnownPosition& known : positions) known.metres = frame.to_local(known.metres);
+  return frame;
+}
+
 // What is left of `images`, said where it is not all.
 void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
@@ -90,8 +101,9 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
 
 // The model last: it is not there without the housing it belongs to.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
-           const io::Housing& housing, const std::string& report) {
-  const io::ColmapModel result = to_model(refined, model);
+           const LocalFrame& frame, const io::Housing& housing, const std::string& report) {
+  io::ColmapModel result = to_model(refined, model);
+  io::leave(frame, result);
   io::write_housing(options.output / "housing.json", housing);
   write_atomically(options.output / "report.json", report);
   if (options.underwater) {
@@ -108,7 +120,10 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
   const fs::path folder = io::find_colmap_model(options.model);
-  const io::ColmapModel model = io::read_colmap_model(folder);
+  io::ColmapModel model = io::read_colmap_model(folder);
+  // Adjusting in the world, the solver would take steps for small that are not, against coordinates
+  // of millions.
+  LocalFrame frame = io::enter_local_frame(model);
   const Lenses lenses = load_lenses(options, model);
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
@@ -118,6 +133,7 @@ int run(int argc, char** argv) {
   pose::AdjustOptions& adjust = options.refine.adjust;
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
             refined.bundle, adjust);
+  if (!adjust.positions.empty()) frame = enter_local_frame(adjust.positions);
   if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
         return camera.measured.port.has_value();
       }))
@@ -145,7 +161,7 @@ int run(int argc, char** argv) {
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(report, refined.bundle);
-  write(options, refined, model, result,
+  write(options, refined, model, frame, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   log_info("Refined model in {}", options.output.string());
   return 0;
