@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# ccache, where it is installed and no other launcher is asked for: what was compiled before is not
-# compiled again. It has to be told that precompiled headers are used.
+# Compiles through ccache where it is installed and no other launcher is set. ccache accepts
+# precompiled headers only with these settings.
 find_program(AXIAL_CCACHE ccache)
 mark_as_advanced(AXIAL_CCACHE)
 if(AXIAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

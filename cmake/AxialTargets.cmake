@@ -19,9 +19,9 @@ endif()
 
 # What most files include of the libraries, parsed once for all of them: a third of the compile time
 # otherwise. Files still include what they use. Those with options of their own, which the parsed
-# headers do not fit, are named with axial_source_options(). Headers that instantiate templates by
-# themselves do not belong here, because every file would do so again: nlohmann/json.hpp costs 0.4 s
-# a file, even where it is not used.
+# headers do not fit, are named with axial_source_options(). Do not add a header whose inline functions
+# instantiate templates: every file instantiates them again. nlohmann/json.hpp would cost each file
+# 0.4 s, even one that does not use it.
 function(add_axial_parsed_headers name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
   add_library(${name} STATIC ${PROJECT_SOURCE_DIR}/cmake/parsed_headers.cpp)
@@ -102,16 +102,16 @@ function(add_axial_app name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()
 
-# Folders whose unit tests are for the build under the sanitizers: they read files and hold memory.
-# The others compute, and are for the release build.
+# The unit tests of these folders read files and manage memory: they are built under the sanitizers. The
+# unit tests of the other folders are numeric: they are built in release.
 set(AXIAL_SANITIZED_FOLDERS base io scene cloud)
 
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
 #                [BUILD release]):
 # tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", under the sanitizers
-# "sanitized/io/ply_test/...". It runs PROGRAMS, which are built before it. A test of LABELS unit (the
-# default) is for its folder's build, or for the one that BUILD names; with AXIAL_EVERY_TEST it is
-# built for both. Tests of other labels exist in the release build alone.
+# "sanitized/io/ply_test/...". PROGRAMS, which the test runs, are built before it. A test of LABELS unit
+# (the default) is built in its folder's build, or in the build that BUILD names (release or sanitized);
+# with AXIAL_EVERY_TEST in both. Tests of other labels are built in release alone.
 add_custom_target(axial_tests)
 function(add_axial_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;BUILD" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
@@ -154,7 +154,7 @@ function(add_axial_test name)
   if(ARG_PROGRAMS)
     add_dependencies(${target} ${ARG_PROGRAMS})
   endif()
-  # Starting under a sanitizer on a busy machine can take longer than the usual five seconds.
+  # Listing the cases under a sanitizer on a busy machine can take longer than the default of 5 s.
   gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -43,14 +43,8 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts,
       .add("refine", &options.refine_list,
            "what is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
            "the glass), index (of the water); default: normal,distance or centre");
-  axial::pose::Sigmas& sigmas = options.sigmas;
+  axial::pose::declare_sigmas(visible, options.sigmas);
   visible
-      .add_with_default("normal-sigma", &sigmas.normal_degrees,
-                        "how well the normal was measured [degrees]; 0: not at all")
-      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
-      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
-      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
-      .add_with_default("index-sigma", &sigmas.index, "the water's index")
       .add_with_default("max-error", &options.calibrate.max_error,
                         "corners with larger errors are dropped [px]")
       .add_with_default("max-distance-sigma", &options.limits.place,

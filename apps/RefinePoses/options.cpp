@@ -30,7 +30,6 @@ void check(const Options& options) {
 Options parse_command_line(int argc, const char* const* argv) {
   std::string input, lens, housing, output;
   Options options;
-  axial::pose::Sigmas& sigmas = options.sigmas;
   axial::ProgramOptions program{
       "RefinePoses",
       "turns poses that COLMAP found in photographs taken under water into refractive ones",
@@ -53,14 +52,9 @@ Options parse_command_line(int argc, const char* const* argv) {
                         "placed, and what --refine names is adjusted")
       .add_with_default("refine", &options.refine_list,
                         "what else is unknown: any of normal, distance (flat ports), centre "
-                        "(domes), thickness (of the glass), index (of the water), focal")
-      .add_with_default("normal-sigma", &sigmas.normal_degrees,
-                        "how well the normal was measured [degrees]; 0: not at all")
-      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
-      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
-      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
-      .add_with_default("index-sigma", &sigmas.index, "the water's index")
-      .add_with_default("focal-sigma", &sigmas.focal, "focal lengths, relative")
+                        "(domes), thickness (of the glass), index (of the water), focal");
+  axial::pose::declare_sigmas(program.visible, options.sigmas);
+  program.visible.add_with_default("focal-sigma", &options.sigmas.focal, "focal lengths, relative")
       .add("scale-from", &options.scale_from,
            "what is known in metres: images:NAME,NAME,METRES or points:ID,ID,METRES or "
            "positions:FILE with a line NAME X Y Z for each image; without it refraction alone "

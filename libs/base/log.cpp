@@ -6,23 +6,20 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <sstream>
 
 namespace axial {
 namespace {
 
+// In the order of LogLevel.
+constexpr std::array kLevels{spdlog::level::trace, spdlog::level::debug, spdlog::level::info,
+                             spdlog::level::warn};
+
 spdlog::level::level_enum level_of(LogLevel level) {
-  switch (level) {
-    case LogLevel::trace:
-      return spdlog::level::trace;
-    case LogLevel::debug:
-      return spdlog::level::debug;
-    case LogLevel::info:
-      return spdlog::level::info;
-    default:
-      return spdlog::level::warn;
-  }
+  return kLevels[static_cast<std::size_t>(level)];
 }
 
 }  // namespace
@@ -32,16 +29,7 @@ void set_log_level(LogLevel level) {
 }
 
 LogLevel log_level() {
-  switch (spdlog::get_level()) {
-    case spdlog::level::trace:
-      return LogLevel::trace;
-    case spdlog::level::debug:
-      return LogLevel::debug;
-    case spdlog::level::info:
-      return LogLevel::info;
-    default:
-      return LogLevel::warning;
-  }
+  return static_cast<LogLevel>(std::ranges::find(kLevels, spdlog::get_level()) - kLevels.begin());
 }
 
 bool logs(LogLevel level) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's log. The only place that knows the logging library, whose headers take seconds to
+// The program's log. No other file includes the logging library, whose headers take seconds to
 // compile.
 #pragma once
 
@@ -16,13 +16,14 @@ enum class LogLevel { trace, debug, info, warning };
 // From now on lines of `level` and above are written. The default is `info`.
 void set_log_level(LogLevel level);
 
+// The lowest level that is written, as set_log_level() or the default has it.
 LogLevel log_level();
 
 // Whether lines of `level` are written.
 bool logs(LogLevel level);
 
-// From now on lines go to standard output as "HH:MM:SS [name] text". `line_start` is written before
-// each of them.
+// From now on lines go to standard output as "HH:MM:SS [name] text". Each line begins with
+// `line_start`.
 void start_log(const std::string& name, const std::string& line_start);
 
 // Writes one line, unless `level` is below the log's.
@@ -46,7 +47,7 @@ void log_details(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::trace, format, fmt::make_format_args(args...));
 }
 
-// While it lives, lines of `info` and above become its text and are not written.
+// Collects the lines of `info` and above while the object lives; they are not written. For tests.
 class LogCapture {
  public:
   LogCapture();

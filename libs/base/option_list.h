@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of a program, each bound to a variable of the caller's. base/program.h parses them; the
-// library that does the parsing is not included here, because its headers take seconds to compile.
+// Options of a program, each bound to a variable of the caller's. base/program.h parses them. The
+// parsing library is not included here, because its headers take a second to compile.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct Option {
   bool is_switch = false;      // of a bool: the name alone means true
 };
 
-// The options in the order of --help. Every variable keeps its value unless its option is given: on
-// the command line or in the cfg file.
+// The options in the order of --help. A variable keeps its value unless its option is given on the
+// command line or in the cfg file. The variables must outlive parse_options().
 class OptionList {
  public:
   OptionList() = default;
@@ -43,7 +43,7 @@ class OptionList {
     return *this;
   }
 
-  // The same for a bool whose value may be left out: "--quick" means "--quick 1".
+  // A bool with a default, whose value may be left out: "--quick" means "--quick 1".
   OptionList& add_switch(const char* name, bool* target, const char* help) {
     options_.push_back({name, target, help, true, true});
     return *this;

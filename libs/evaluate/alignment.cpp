@@ -2,7 +2,6 @@
 #include "evaluate/alignment.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
@@ -48,12 +47,8 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
   check_spread(to, "reference");
-  const Eigen::Matrix4d m = best_similarity(from, to);
-  Similarity result;
-  result.scale = std::cbrt(m.topLeftCorner<3, 3>().determinant());
-  result.rotation = m.topLeftCorner<3, 3>() / result.scale;
-  result.translation = m.topRightCorner<3, 1>();
-  return result;
+  const SimilarityFit fit = best_similarity(from, to);
+  return {fit.scale, fit.rotation, fit.translation};
 }
 
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON texts and files. The only place where the JSON library parses and writes: each file that did
-// so itself would take seconds more to compile.
+// JSON texts and files. No other file has the JSON library parse or write: its parser and writer
+// would be compiled again there, which takes seconds.
 #pragma once
 
 #include <filesystem>

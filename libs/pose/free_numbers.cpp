@@ -106,6 +106,15 @@ std::string place_words(const refractive::Port<double>& port) {
   return std::visit(PlaceWords{}, port);
 }
 
+void declare_sigmas(OptionList& list, Sigmas& sigmas) {
+  list.add_with_default("normal-sigma", &sigmas.normal_degrees,
+                        "how well the normal was measured [degrees]; 0: not at all")
+      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
+      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
+      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
+      .add_with_default("index-sigma", &sigmas.index, "the water's index");
+}
+
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust) {
   const Words words = words_of(refine);

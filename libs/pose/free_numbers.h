@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/option_list.h"
 #include "pose/adjust.h"
 
 namespace axial::pose {
@@ -16,6 +17,10 @@ struct Sigmas {
   double index = 0;
   double focal = 0;  // relative
 };
+
+// Declares the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
+// --index-sigma, bound to `sigmas`. Only the poses' program frees focal lengths (--focal-sigma).
+void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
 // What --refine says, a list of normal, distance, centre, thickness, index and focal, and how well
 // that was measured, into `adjust`. Error for another word; for normal or distance of a dome, or

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -42,15 +41,13 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
     from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
     to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
   }
-  const Eigen::Matrix4d similarity = best_similarity(from, to);
-  const double scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
-  const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / scale;
+  const SimilarityFit fit = best_similarity(from, to);
   const auto place = [&](Eigen::Vector3d& x) {
-    x = scale * (rotation * x) + similarity.topRightCorner<3, 1>();
+    x = fit.scale * (fit.rotation * x) + fit.translation;
   };
   for (BundleImage& image : bundle.images) {
     place(image.pose.centre);
-    image.pose.rotation = image.pose.rotation * rotation.transpose();
+    image.pose.rotation = image.pose.rotation * fit.rotation.transpose();
   }
   for (BundlePoint& point : bundle.points) place(point.position);
   return true;

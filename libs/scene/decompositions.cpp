@@ -2,6 +2,7 @@
 #include "scene/decompositions.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ double relative_width(const Eigen::Matrix3Xd& points) {
   const double largest = centred.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return 0;
   centred /= largest;
-  // Squared extents have half of a double's digits, which is far finer than kLineWidth.
+  // Squared extents keep half of a double's digits: 1e-8, far below kLineWidth.
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const auto& point : centred.colwise()) moments += point * point.transpose();
   const SymmetricEigen3 squares(moments, Eigen::EigenvaluesOnly);
@@ -29,9 +30,14 @@ double relative_width(const Eigen::Matrix3Xd& points) {
   return std::sqrt(std::max(extents(1), 0.0) / extents(2));
 }
 
-Eigen::Matrix4d best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
-                                bool with_scale) {
-  return Eigen::umeyama(from, to, with_scale);
+SimilarityFit best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                              bool with_scale) {
+  const Eigen::Matrix4d matrix = Eigen::umeyama(from, to, with_scale);
+  SimilarityFit fit;
+  fit.scale = std::cbrt(matrix.topLeftCorner<3, 3>().determinant());
+  fit.rotation = matrix.topLeftCorner<3, 3>() / fit.scale;
+  fit.translation = matrix.topRightCorner<3, 1>();
+  return fit;
 }
 
 }  // namespace axial

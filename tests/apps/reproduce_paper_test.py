@@ -25,8 +25,7 @@ class Quick(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory(prefix="axial_")
         cls.output = cls.temporary.name
         cls.folder = os.path.join(cls.output, "quick")
-        result = run(PROGRAM, "all", "-o", cls.output, "--quick", "--max-threads", "2",
-                     timeout=1500)
+        result = run(PROGRAM, "all", "-o", cls.output, "--quick", timeout=1500)
         assert result.returncode == 0, result.stderr
         cls.said = result.stdout
 

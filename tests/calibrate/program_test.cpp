@@ -11,6 +11,7 @@
 #include "io/calibmar.h"
 #include "io/housing.h"
 #include "io/image.h"
+#include "io/json.h"
 #include "support/photograph.h"
 #include "support/program_run.h"
 
@@ -102,7 +103,7 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   EXPECT_LT(angle_degrees(port.normal, flat_port().normal), 0.05);
   EXPECT_EQ(port.thickness, flat_port().thickness);
 
-  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  const auto report = io::read_json(folder_ / "report.json");
   EXPECT_EQ(report["photographs"].size(), 25u);
   EXPECT_GT(report["pixel_sigma"].get<double>(),
             kUsualNoise * kLens.params[0] / testing::kUsual.params[0]);
@@ -160,7 +161,7 @@ TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
   EXPECT_THAT(outcome.output, HasSubstr("what would help most is the board "));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "housing.json"));
   // What is missing can be looked up.
-  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  const auto report = io::read_json(folder_ / "report.json");
   EXPECT_GE(report["missing"].size(), 2u);
 }
 

@@ -15,6 +15,7 @@
 #include "io/dmap.h"
 #include "io/housing.h"
 #include "io/image.h"
+#include "io/json.h"
 #include "io/ply.h"
 #include "support/program_run.h"
 
@@ -37,9 +38,7 @@ class Programs : public test::ProgramTest {
     expect_refusal(program, arguments, expected);
   }
 
-  nlohmann::json read_json(const std::string& name) const {
-    return nlohmann::json::parse(read_file(folder_ / name));
-  }
+  nlohmann::json read_json(const std::string& name) const { return io::read_json(folder_ / name); }
 
   // A rippled seabed, seen from above by four cameras, and a cloud 2 mm above all of it.
   void write_scene() const {

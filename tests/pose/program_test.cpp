@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "io/calibmar.h"
+#include "io/json.h"
 #include "pose/adjust.h"
 #include "pose/colmap_survey.h"
 #include "pose/refine.h"
@@ -77,7 +78,7 @@ TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, ::testing::HasSubstr("distance"));
   EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg"));
-  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   EXPECT_LT(report["rms_after_px"].get<double>(), report["rms_before_px"].get<double>());
   EXPECT_EQ(report["images"].size(), 12u);
@@ -95,7 +96,7 @@ TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
   const Outcome outcome =
       run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
   const std::array<double, 3> truth{2, 0, 20};    // degrees, degrees, mm
   const std::array<double, 3> wrong_by{1, 1, 5};  // what a standard deviation must not hide
@@ -136,7 +137,7 @@ TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
     EXPECT_LT((kept.centre - given.centre).norm(), 1e-12);
     EXPECT_LT((kept.rotation - given.rotation).norm(), 1e-12);
   }
-  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   EXPECT_EQ(report["scale_sigma"], 0);
 }
@@ -175,7 +176,7 @@ TEST_F(RefinePoses, FindsTheFocalLengthOfADistortingLens) {
   write("lens", lens);
   const Outcome outcome = run(kInput + "-o out --refine focal --scale-from " + baseline());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& factor = report["cameras"][0]["free"].at(0);
   EXPECT_NEAR(factor["value"].get<double>(), 1.04, 3 * factor["sigma"].get<double>());
   EXPECT_LT(factor["sigma"].get<double>(), 0.001);
@@ -200,7 +201,7 @@ TEST_F(RefinePoses, LeavesOutAnImageOfWhichNothingFits) {
   EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg: too few observations fit"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_EQ(refined.images.size(), 11u);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "out" / "report.json"));
+  const auto report = io::read_json(folder_ / "out" / "report.json");
   ASSERT_TRUE(report["scale_sigma"].is_number());
   EXPECT_GT(report["scale_sigma"].get<double>(), 1e-4);
 }

@@ -118,17 +118,15 @@ inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool wit
     from.col(i) = found.images[static_cast<std::size_t>(i)].pose.centre;
     to.col(i) = truth.images[static_cast<std::size_t>(i)].pose.centre;
   }
-  const Eigen::Matrix4d similarity = best_similarity(from, to, with_scale);
+  const SimilarityFit fit = best_similarity(from, to, with_scale);
   PoseErrors errors;
-  errors.scale = std::cbrt(similarity.topLeftCorner<3, 3>().determinant());
-  const Eigen::Matrix3d rotation = similarity.topLeftCorner<3, 3>() / errors.scale;
+  errors.scale = fit.scale;
   double sum = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector3d moved =
-        similarity.topLeftCorner<3, 3>() * from.col(i) + similarity.topRightCorner<3, 1>();
+    const Eigen::Vector3d moved = fit.scale * (fit.rotation * from.col(i)) + fit.translation;
     sum += (moved - to.col(i)).squaredNorm();
     const Eigen::Matrix3d between =
-        found.images[static_cast<std::size_t>(i)].pose.rotation * rotation.transpose() *
+        found.images[static_cast<std::size_t>(i)].pose.rotation * fit.rotation.transpose() *
         truth.images[static_cast<std::size_t>(i)].pose.rotation.transpose();
     errors.largest_angle =
         std::max(errors.largest_angle, Eigen::AngleAxisd(between).angle() / kDegree);
