@@ -8,8 +8,10 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/program.h"
+#include "base/same_file.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
+#include "io/geo_offset.h"
 
 namespace fs = std::filesystem;
 using namespace axial;
@@ -55,12 +57,19 @@ evaluate::CentreAlignment align(const io::ColmapModel& model, const io::ColmapMo
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  io::ColmapModel model = io::read_colmap_model(io::find_colmap_model(options.model));
-  const auto reference = io::read_colmap_model(io::find_colmap_model(options.reference));
+  const fs::path folder = io::find_colmap_model(options.model);
+  const fs::path reference_folder = io::find_colmap_model(options.reference);
+  io::ColmapModel model = io::read_colmap_model(folder);
+  auto reference = io::read_colmap_model(reference_folder);
+  require_not_an_input(options.output, std::vector{folder, reference_folder}, "--output-folder");
+  require_writable_folder(options.output);
+  io::enter_local_frame(model);
+  const LocalFrame frame = io::enter_local_frame(reference);
   const evaluate::CentreAlignment alignment = align(model, reference, options.model);
   evaluate::apply(alignment.similarity, model);
-  make_folder(options.output);
-  io::write_colmap_text(options.output, model);
+  io::leave(frame, model);
+  write_folder(options.output,
+               [&](const fs::path& staging) { io::write_colmap_text(staging, model); });
   log_info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
            model.images.size(), alignment.similarity.scale);
   log_info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,

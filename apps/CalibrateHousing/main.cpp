@@ -3,9 +3,11 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
 #include "calibrate/coverage.h"
 #include "io/calibmar.h"
 #include "io/housing.h"
+#include "io/rival_ports.h"
 #include "options.h"
 #include "photographs.h"
 #include "report.h"
@@ -68,9 +70,17 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
 }
 
 // Before the work.
-void check_outputs(const Options& options) {
-  for (const fs::path& path : {options.output, options.calibmar, options.report, options.coverage})
-    if (!path.empty()) require_writable(path);
+void check_outputs(const Options& options, std::vector<fs::path> inputs) {
+  inputs.insert(inputs.end(), {options.lens, options.housing});
+  const std::pair<const char*, const fs::path&> outputs[] = {{"--output-file", options.output},
+                                                             {"--calibmar", options.calibmar},
+                                                             {"--report", options.report},
+                                                             {"--coverage", options.coverage}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    require_not_an_input(path, inputs, option);
+    require_writable(path);
+  }
 }
 
 void warn(const calibrate::Calibration& calibration) {
@@ -103,13 +113,14 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
         calibration.last.iterations);
   const refractive::Port<double> port = *calibration.camera().now().port;
   io::check_port(port, "The calibrated port");
-  if (!options.calibmar.empty()) {
-    io::ColmapCamera camera = calibration.bundle.lenses[0];
-    camera.port = port;
-    io::write_calibmar(options.calibmar, camera, comments_for(lines));
-  }
   housing.ports[port_name] = io::to_housing_port(port);
-  io::write_housing(options.output, housing);
+  if (options.calibmar.empty()) return io::write_housing(options.output, housing);
+  io::ColmapCamera camera = calibration.bundle.lenses[0];
+  camera.port = port;
+  write_together({options.calibmar, options.output}, [&](const std::vector<fs::path>& files) {
+    io::write_calibmar(files[0], camera, comments_for(lines));
+    io::write_housing(files[1], housing);
+  });
 }
 
 int run(int argc, char** argv) {
@@ -120,10 +131,13 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, lens);
   const std::string port_name = port_to_calibrate(options, housing, lens);
   const refractive::Port<double> port = known_port(options, housing, port_name, lens.id);
+  if (lens.port && !io::same_port(io::to_housing_port(*lens.port), io::to_housing_port(port)))
+    log_warning("The port is that of {}, and not that of {}, which differs",
+                options.housing.string(), options.lens.string());
   set_unknown(options, port);
-  check_outputs(options);
   const std::vector<fs::path> photographs = photographs_in(options.input);
-  const auto views = find_views(photographs, options.board, lens);
+  check_outputs(options, photographs);
+  const auto views = find_views(photographs, options.board, lens, options.bit_depth);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

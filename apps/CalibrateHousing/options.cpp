@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "io/bit_depth.h"
 
 using axial::fail;
 
@@ -43,6 +44,7 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts,
       .add("refine", &options.refine_list,
            "what is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
            "the glass), index (of the water); default: normal,distance or centre");
+  axial::io::declare_bit_depth(visible, options.bit_depth);
   axial::pose::declare_sigmas(visible, options.sigmas);
   visible
       .add_with_default("max-error", &options.calibrate.max_error,
@@ -64,6 +66,7 @@ void require_positive(const char* option, double value) {
 void check(const Options& options, double max_normal_degrees) {
   if (options.lens.empty()) fail("--lens is missing: the lens as calibrated in air");
   if (options.output.empty()) fail("--output-file is missing: the housing file to write");
+  axial::io::check_bit_depth(options.bit_depth);
   require_positive("max-error", options.calibrate.max_error);
   require_positive("max-distance-sigma", options.limits.place);
   require_positive("max-normal-sigma", max_normal_degrees);

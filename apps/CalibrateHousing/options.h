@@ -16,6 +16,7 @@ struct Options {
   std::filesystem::path housing;             // housing file or calibration.yaml; empty: the lens's
   std::string port;                          // its name there; empty: the camera's
   axial::calibrate::Board board;
+  int bit_depth = 0;        // of 16-bit photographs; 0: found
   std::string refine_list;  // see pose/free_numbers.h; empty: what the kind of port has
   axial::pose::Sigmas sigmas;
   axial::calibrate::CalibrateOptions calibrate;

@@ -8,7 +8,9 @@
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/first_error.h"
 #include "base/parallel.h"
+#include "io/bit_depth.h"
 #include "io/image.h"
 
 namespace fs = std::filesystem;
@@ -32,6 +34,29 @@ std::vector<fs::path> images_of(const fs::path& folder) {
   return images;
 }
 
+void check_size(const fs::path& photograph, cv::Size size, const io::ColmapCamera& lens) {
+  if (static_cast<std::uint64_t>(size.width) != lens.width ||
+      static_cast<std::uint64_t>(size.height) != lens.height)
+    fail("{}: is {} x {}, the lens {} x {}", photograph.string(), size.width, size.height,
+         lens.width, lens.height);
+}
+
+// Transparent pixels are black: no corner is there.
+cv::Mat1b read_grey(const fs::path& path, int bits) {
+  const io::Photograph photograph = io::read_photograph(path);
+  cv::Mat1b grey;
+  cv::cvtColor(io::in_8_bits(photograph.pixels, bits), grey, cv::COLOR_BGR2GRAY);
+  if (!photograph.opaque.empty()) grey.setTo(0, photograph.opaque == 0);
+  return grey;
+}
+
+template <class Body>
+void for_each_photograph(std::span<const fs::path> photographs, const Body& body) {
+  FirstError error;
+  parallel_for(photographs.size(), [&](std::size_t i) { error.run(i, [&] { body(i); }); });
+  error.rethrow();
+}
+
 }  // namespace
 
 std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
@@ -47,18 +72,18 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
 }
 
 std::vector<calibrate::View> find_views(std::span<const fs::path> photographs,
-                                        const calibrate::Board& board,
-                                        const io::ColmapCamera& lens) {
+                                        const calibrate::Board& board, const io::ColmapCamera& lens,
+                                        int bit_depth) {
+  std::vector<io::ImageHeader> headers(photographs.size());
+  for_each_photograph(photographs, [&](std::size_t i) {
+    headers[i] = io::read_image_header(photographs[i]);
+    check_size(photographs[i], headers[i].size, lens);
+  });
+  const int bits = io::common_bit_depth(photographs, headers, bit_depth);
   std::vector<calibrate::View> views(photographs.size());
-  parallel_for(photographs.size(), [&](std::size_t i) {
-    const cv::Mat3b image = io::read_color_image(photographs[i]);
-    if (static_cast<std::uint64_t>(image.cols) != lens.width ||
-        static_cast<std::uint64_t>(image.rows) != lens.height)
-      fail("{}: is {} x {}, the lens {} x {}", photographs[i].string(), image.cols, image.rows,
-           lens.width, lens.height);
-    cv::Mat1b grey;
-    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-    views[i] = {photographs[i].filename().string(), calibrate::find_corners(grey, board)};
+  for_each_photograph(photographs, [&](std::size_t i) {
+    views[i] = {photographs[i].filename().string(),
+                calibrate::find_corners(read_grey(photographs[i], bits), board)};
   });
   return views;
 }

@@ -13,7 +13,9 @@
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
 // The board's corners in every photograph, in their order, without any where it is not found.
-// Error that names a photograph which cannot be read, or is not of the lens's size.
+// Error that names the first photograph which cannot be read, or is not of the lens's size.
+// `bit_depth`: of io::common_bit_depth.
 std::vector<axial::calibrate::View> find_views(std::span<const std::filesystem::path> photographs,
                                                const axial::calibrate::Board& board,
-                                               const axial::io::ColmapCamera& lens);
+                                               const axial::io::ColmapCamera& lens,
+                                               int bit_depth = 0);

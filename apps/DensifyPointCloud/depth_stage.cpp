@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 
-#include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -24,8 +23,8 @@ using axial::DepthMap;
 
 namespace {
 
-// Of -v, as in OpenMVS: pictures of the maps, and of those of every stage.
-constexpr int kVerbosityOfPictures = 3, kVerbosityOfStages = 5;
+// From this -v on pictures of every stage's maps, too.
+constexpr int kVerbosityOfStages = 5;
 
 // One round over all images. The files of a stage that is not the last carry its name and go once
 // the next stage is complete.
@@ -52,13 +51,12 @@ struct Task {
 class DepthMapRun {
  public:
   DepthMapRun(const Project& project, const Options& options, const MemoryPlan& plan,
-              ImageStore& images)
-      : project_(project), options_(options), plan_(plan), images_(images) {
+              const ExistingMaps& existing, ImageStore& images)
+      : project_(project), options_(options), plan_(plan), existing_(existing), images_(images) {
     add_stages();
   }
 
   void run() {
-    refuse_foreign_maps();
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size())
       axial::log_info("All {} depth maps are there already", project_.references.size());
@@ -84,7 +82,11 @@ class DepthMapRun {
     return project_.fingerprint + " " + stages_[stage].name;
   }
 
+  // Whether the file was there before this run: a stage asks before it writes.
   bool finished(std::size_t stage, std::size_t image) const {
+    if (stage + 1 == stages_.size())
+      return existing_[image].origin == axial::io::DmapOrigin::ours &&
+             existing_[image].made_from == made_from(stage);
     return axial::io::dmap_made_from(path(stage, image)) == made_from(stage);
   }
 
@@ -95,21 +97,6 @@ class DepthMapRun {
       if (complete) return s;
     }
     return 0;
-  }
-
-  // A map of no known camera lies where one behind a port or of a distorted lens is to be written:
-  // another program's.
-  void refuse_foreign_maps() const {
-    for (const std::size_t image : project_.references) {
-      const fs::path file = depth_map_path(project_, options_, image);
-      std::error_code ignored;
-      const axial::CameraModel& camera = project_.views[image].camera;
-      if ((camera.port || camera.distortion) && fs::exists(file, ignored) &&
-          !fs::exists(file.string() + ".json", ignored))
-        axial::fail(
-            "{}: has no side file, so it is the depth map of a pinhole, and would be overwritten",
-            file.string());
-    }
   }
 
   void run_stage(std::size_t stage) {
@@ -207,12 +194,14 @@ class DepthMapRun {
   }
 
   DepthMap clean(DepthMap map, std::size_t image) const {
-    if (options_.postprocess & kSpeckles) map = axial::depth::remove_speckles(map);
+    if (options_.postprocess & kSpeckles)
+      map = axial::depth::remove_speckles(map, options_.speckles);
     if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
-      if (!project_.views[image].mask.empty())
-        cv::compare(images_.get(image)->mask, 0, ignored, cv::CMP_EQ);
-      map = axial::depth::fill_gaps(map, {}, ignored);
+      if (project_.views[image].masked())
+        if (const auto pixels = images_.get(image); !pixels->mask.empty())
+          cv::compare(pixels->mask, 0, ignored, cv::CMP_EQ);
+      map = axial::depth::fill_gaps(map, options_.gaps, ignored);
     }
     return map;
   }
@@ -242,6 +231,7 @@ class DepthMapRun {
   const Project& project_;
   const Options& options_;
   const MemoryPlan& plan_;
+  const ExistingMaps& existing_;
   ImageStore& images_;
   std::vector<Stage> stages_;
   std::unique_ptr<MapCache> previous_;
@@ -255,8 +245,8 @@ fs::path depth_map_path(const Project& project, const Options& options, std::siz
 }
 
 void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,
-                     ImageStore& images) {
-  DepthMapRun(project, options, plan, images).run();
+                     const ExistingMaps& existing, ImageStore& images) {
+  DepthMapRun(project, options, plan, existing, images).run();
 }
 
 }  // namespace densify

@@ -30,8 +30,13 @@ std::vector<axial::cloud::FusionView> views_to_fuse(const Project& project) {
 class CloudRun {
  public:
   CloudRun(const Project& project, const Options& options, const MemoryPlan& plan,
-           ImageStore& images, const std::filesystem::path& ply)
-      : project_(project), options_(options), plan_(plan), images_(images), ply_(ply) {}
+           const ExistingMaps& existing, ImageStore& images, const std::filesystem::path& ply)
+      : project_(project),
+        options_(options),
+        plan_(plan),
+        existing_(existing),
+        images_(images),
+        ply_(ply) {}
 
   std::size_t run() {
     const bool whole = options_.estimate_colors == 1 || options_.estimate_normals == 1;
@@ -43,7 +48,8 @@ class CloudRun {
  private:
   std::size_t run_in_a_stream() {
     axial::io::CloudWriter writer(
-        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true});
+        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true},
+        placement_of(project_, options_));
     fuse_into([&](const axial::PointCloud& portion) { writer.add(portion); });
     writer.finish();
     return writer.size();
@@ -57,15 +63,22 @@ class CloudRun {
       axial::cloud::estimate_colors(cloud, project_.scene,
                                     [&](std::size_t image) { return images_.get(image)->color; });
     if (options_.estimate_normals == 1) axial::cloud::estimate_normals(cloud, project_.scene);
-    axial::io::write_cloud_ply(ply_, cloud);
+    axial::io::write_cloud_ply(ply_, cloud, true, placement_of(project_, options_));
     return cloud.size();
+  }
+
+  axial::DepthMap load_map(std::size_t image) const {
+    const auto file = depth_map_path(project_, options_, image);
+    if (options_.make_maps) return axial::io::read_dmap(file).map;
+    axial::DepthMap map = axial::io::read_dmap(file, side_to_read(existing_[image].origin)).map;
+    // Fusion estimates the normals of maps that have none.
+    if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
+    return map;
   }
 
   void fuse_into(const axial::cloud::CloudSink& sink) {
     axial::cloud::FusionProviders providers;
-    providers.load_map = [&](std::size_t image) {
-      return axial::io::read_dmap(depth_map_path(project_, options_, image)).map;
-    };
+    providers.load_map = [&](std::size_t image) { return load_map(image); };
     if (options_.estimate_colors == 2)
       providers.load_color = [&](std::size_t image) { return images_.get(image)->color; };
     axial::cloud::FuseOptions fusion = options_.fusion;
@@ -84,6 +97,7 @@ class CloudRun {
   const Project& project_;
   const Options& options_;
   const MemoryPlan& plan_;
+  const ExistingMaps& existing_;
   ImageStore& images_;
   const std::filesystem::path& ply_;
   std::size_t removed_ = 0;
@@ -91,10 +105,15 @@ class CloudRun {
 
 }  // namespace
 
+axial::io::PlyPlacement placement_of(const Project& project, const Options& options) {
+  return {project.frame, options.double_precision};
+}
+
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
-                        ImageStore& images, const std::filesystem::path& ply) {
+                        const ExistingMaps& existing, ImageStore& images,
+                        const std::filesystem::path& ply) {
   axial::map_large_blocks();
-  return CloudRun(project, options, plan, images, ply).run();
+  return CloudRun(project, options, plan, existing, images, ply).run();
 }
 
 }  // namespace densify

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 
+#include "base/first_error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "io/image.h"
@@ -11,23 +12,40 @@
 namespace densify {
 namespace {
 
-cv::Mat1b load_mask(const View& view, int ignored_label) {
+cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck& check) {
   const cv::Mat1w labels = axial::io::read_label_image(view.mask);
-  axial::io::check_mask_shape(view.mask, labels.size(), view.file_size);
+  check.add(labels);
+  axial::io::check_mask_shape(view.mask, labels.size(), view.file.size);
   const cv::Size size(view.camera.width, view.camera.height);
   cv::Mat1b mask;
   cv::compare(axial::resized_labels(labels, size), ignored_label, mask, cv::CMP_NE);
   return mask;
 }
 
-WorkImage load(const Project& project, const Options& options, std::size_t image) {
+// Hidden colours are averaged into the pixels at the edge, too: these are left out.
+void leave_out_transparent(const cv::Mat1b& opaque, cv::Size size, cv::Mat1b& mask) {
+  cv::Mat1b resized;
+  cv::resize(opaque, resized, size, 0, 0, cv::INTER_AREA);
+  cv::compare(resized, 255, resized, cv::CMP_EQ);
+  if (mask.empty())
+    mask = resized;
+  else
+    cv::bitwise_and(mask, resized, mask);
+}
+
+WorkImage load(const Project& project, const Options& options, std::size_t image,
+               LabelCheck& check) {
   const View& view = project.views[image];
   WorkImage result;
-  result.color = axial::resized_image(axial::io::read_color_image(project.scene.images[image].path),
-                                      {view.camera.width, view.camera.height});
+  const cv::Size size(view.camera.width, view.camera.height);
+  axial::io::Photograph photograph = axial::io::read_photograph(project.scene.images[image].path);
+  result.color =
+      axial::resized_image(axial::io::in_8_bits(photograph.pixels, project.bit_depth), size);
+  photograph.pixels.release();
   cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
   if (!needs_colors(options)) result.color.release();
-  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label);
+  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label, check);
+  if (!photograph.opaque.empty()) leave_out_transparent(photograph.opaque, size, result.mask);
   return result;
 }
 
@@ -35,19 +53,23 @@ WorkImage load(const Project& project, const Options& options, std::size_t image
 
 ImageStore::ImageStore(const Project& project, const Options& options, std::size_t capacity)
     : project_(project),
-      cache_([&](std::size_t image) { return load(project, options, image); }, capacity) {}
+      labels_(options.ignore_mask_label),
+      cache_([&](std::size_t image) { return load(project, options, image, labels_); }, capacity) {}
 
 void ImageStore::check_all(std::size_t at_once) {
   const std::size_t count = project_.views.size();
   const axial::ProgressSink progress = axial::console_progress("Read images");
   std::mutex reporting;
+  axial::FirstError error;
   std::size_t done = 0;
   axial::for_each_in_flight(count, at_once, [&](std::size_t i) {
     const std::size_t image = count - 1 - i;
-    if (project_.scene.images[image].calibrated) get(image);
+    if (project_.scene.images[image].calibrated) error.run(image, [&] { get(image); });
     const std::lock_guard lock(reporting);
     progress(++done, count);
   });
+  error.rethrow();
+  labels_.warn_if_absent(project_);
 }
 
 }  // namespace densify

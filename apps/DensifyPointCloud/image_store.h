@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "base/shared_cache.h"
+#include "masks.h"
 #include "project.h"
 
 namespace densify {
@@ -13,7 +14,7 @@ namespace densify {
 struct WorkImage {
   cv::Mat1b grey;
   cv::Mat3b color;  // B G R; empty if the options need no colours
-  cv::Mat1b mask;   // empty, or non-zero: match
+  cv::Mat1b mask;   // empty, or non-zero: match; of the labels and of the pixels' own alpha
 };
 
 // Keeps the `capacity` images that were used last. Thread-safe; an image is read once however many
@@ -26,11 +27,13 @@ class ImageStore {
   std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
 
   // Reads every calibrated image once, `at_once` at a time, so that errors show before hours of
-  // work. The first images stay, which are needed first.
+  // work: that of the first bad image in the scene. The first images stay, which are needed first.
+  // A warning if no mask has the label to leave out.
   void check_all(std::size_t at_once);
 
  private:
   const Project& project_;
+  LabelCheck labels_;
   axial::SharedCache<WorkImage> cache_;
 };
 

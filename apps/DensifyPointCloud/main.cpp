@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <optional>
+
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "cloud_exports.h"
 #include "depth_stage.h"
+#include "existing_maps.h"
 #include "fusion_stage.h"
 #include "image_store.h"
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "memory_plan.h"
+#include "neighbour_lists.h"
 #include "options.h"
+#include "outputs.h"
 #include "project.h"
 
 namespace {
@@ -17,21 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
-std::size_t write_sparse_cloud(const axial::Scene& scene, const fs::path& ply) {
-  axial::PointCloud cloud;
-  cloud.view_begin.push_back(0);
-  for (const axial::SparsePoint& point : scene.points) {
-    cloud.positions.push_back(point.position);
-    for (const axial::SparseView& view : point.views) {
-      cloud.view_images.push_back(view.image);
-      cloud.view_weights.push_back(view.confidence);
-    }
-    cloud.view_begin.push_back(cloud.view_images.size());
-  }
-  cloud.normals = scene.point_normals;
-  cloud.colors = scene.point_colors;
-  axial::io::write_cloud_ply(ply, cloud);
-  return cloud.size();
+std::size_t write_sparse_cloud(const densify::Project& project, const densify::Options& options,
+                               const fs::path& ply) {
+  axial::io::write_cloud_ply(ply, densify::cloud_of(project.scene), true,
+                             densify::placement_of(project, options));
+  return project.scene.points.size();
 }
 
 void remove_depth_maps(const densify::Project& project, const densify::Options& options) {
@@ -42,26 +39,63 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
   }
 }
 
+// As OpenMVS's programs do. What cannot be made, require_writable reports.
+void make_folder_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::create_directories(file.parent_path(), ignored);
+}
+
+// OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
+void say_who_may_read(const densify::Project& project, const fs::path& scene) {
+  const bool pinholes = std::ranges::none_of(project.views, [](const densify::View& view) {
+    return view.camera.port || view.camera.distortion;
+  });
+  if (pinholes) return;
+  const fs::path name = scene.filename();
+  axial::log_info(
+      "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
+      "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
+      "depth maps give wrong results there",
+      name.string(), name.string());
+}
+
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   axial::share_one_heap();
   const axial::ThreadLimit threads(options.parsed.common.max_threads);
 
-  axial::require_writable(options.output);
-  axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
-  axial::remove_abandoned(options.parsed.common.working_folder, "depth");
-  const densify::Project project = densify::load_project(options);
+  make_folder_of(options.output);
+  densify::check_outputs(options);
+  if (densify::only_exports(options)) {
+    densify::export_cloud(densify::load_scene(options).scene, options);
+    return 0;
+  }
+  if (!options.neighbour_lists_output.empty()) {
+    densify::write_neighbour_lists(options.neighbour_lists_output,
+                                   densify::load_project(options).scene);
+    return 0;
+  }
+  densify::Project loaded = densify::load_project(options);
+  const densify::ExistingMaps existing = densify::find_existing_maps(loaded, options);
+  if (options.make_maps)
+    densify::check_overwriting(loaded, options, existing);
+  else
+    densify::keep_images_with_maps(loaded, options, existing);
+  const densify::Project& project = loaded;
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
-  densify::ImageStore images(project, options, plan.cached_images);
-  images.check_all(plan.decodes);
-  densify::make_depth_maps(project, options, plan, images);
+  densify::check_outputs(project, options);
+  std::optional<densify::ImageStore> images(std::in_place, project, options, plan.cached_images);
+  images->check_all(plan.decodes);
+  if (options.make_maps) densify::make_depth_maps(project, options, plan, existing, *images);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");
-  const std::size_t points = options.fuse
-                                 ? densify::write_cloud(project, options, plan, images, ply)
-                                 : write_sparse_cloud(project.scene, ply);
+  const std::size_t points =
+      options.fuse ? densify::write_cloud(project, options, plan, existing, *images, ply)
+                   : write_sparse_cloud(project, options, ply);
+  images.reset();  // the scene's bytes take its place
+  axial::return_freed_memory();
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);
   axial::log_info("{}: {} points", ply.string(), points);
@@ -71,6 +105,7 @@ int run(int argc, char** argv) {
         "masks and the region of interest leave nothing",
         options.fusion.min_views);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
+  say_who_may_read(project, options.output);
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "depth/filters.h"
 #include "depth/plane_map.h"
+#include "io/mvs_counts.h"
 
 namespace densify {
 namespace {
@@ -20,12 +21,52 @@ constexpr std::uint64_t kMegabyte = 1000 * 1000;
 // The program and its libraries, stacks, small blocks, and fusion's portions.
 constexpr std::uint64_t kOnTop = 96 * kMegabyte;
 
+std::uint64_t cap_of(const Options& options) {
+  return options.max_memory > 0 ? options.max_memory * kMegabyte
+                                : axial::available_memory() / 10 * 7;
+}
+
+// What a project keeps of each image besides the scene: its view, chosen neighbours, fingerprint.
+std::uint64_t kept_of_images(std::uint64_t images) {
+  constexpr std::uint64_t kChosen = 1024;
+  return images * (sizeof(View) + kChosen);
+}
+
+// What becomes of the text of the housing and of the lenses, while it is read.
+std::uint64_t side_files(const Options& options) {
+  constexpr std::uint64_t kPerByte = 12;
+  std::uint64_t bytes = 0;
+  for (const std::filesystem::path& file :
+       {housing_file(options), axial::io::lenses_beside(options.input)}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error) bytes += size;
+  }
+  return kPerByte * bytes;
+}
+
+// What there is of a scene before its views are scored.
+std::uint64_t kept_of(const axial::io::MvsCounts& counts, const Options& options) {
+  return counts.scene_bytes() + side_files(options) + kept_of_images(counts.images);
+}
+
+// `bytes`: at the most while the scene is read and its views are scored.
+void require_memory_for_scene(std::uint64_t bytes, const Options& options) {
+  const std::uint64_t cap = cap_of(options), least = bytes + kOnTop;
+  if (bytes > kOnTop && cap < least)
+    axial::fail(
+        "--max-memory {}: {} MB are too little, this scene needs at least {} to be read and its "
+        "views scored",
+        options.max_memory, cap / kMegabyte, least / kMegabyte + 1);
+}
+
 // Bytes of the large things, for the largest image.
 struct Sizes {
   std::uint64_t scene;
-  std::uint64_t decode;    // while an image is read: its file, that file's pixels, the result
-  std::uint64_t image;     // WorkImage
-  std::uint64_t map;       // DepthMap: depth, normal, confidence
+  std::uint64_t write_scene;  // besides it, while it is written
+  std::uint64_t decode;       // while an image is read: its file, that file's pixels, the result
+  std::uint64_t image;        // WorkImage
+  std::uint64_t map;          // DepthMap: depth, normal, confidence
   std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
   std::uint64_t match;     // matching, the results included
   std::uint64_t adjust;
@@ -54,21 +95,23 @@ Counts count(const Project& project, const Options& options) {
 }
 
 Sizes measure(const Project& project, const Options& options, const Counts& counts) {
-  std::uint64_t pixels = 0, file_pixels = 0;
+  std::uint64_t pixels = 0, decode = 0;
   bool masks = false;
   for (const View& view : project.views) {
     const auto area = [](std::int64_t width, std::int64_t height) {
       return static_cast<std::uint64_t>(width * height);
     };
     pixels = std::max(pixels, area(view.camera.width, view.camera.height));
-    file_pixels = std::max(file_pixels, area(view.file_size.width, view.file_size.height));
-    masks |= !view.mask.empty();
+    decode = std::max(decode,
+                      view.file.decode_bytes * area(view.file.size.width, view.file.size.height));
+    masks |= view.masked();
   }
   const std::uint64_t sources = counts.matched - 1;
   const std::uint64_t colors = needs_colors(options) ? 3 : 0;
   Sizes sizes{};
   sizes.scene = axial::allocated_memory();
-  sizes.decode = 4 * file_pixels + 4 * pixels;
+  sizes.write_scene = axial::io::count_scene(project.scene).writing_bytes();
+  sizes.decode = decode + 4 * pixels;
   sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
   sizes.map = 20 * pixels;
   sizes.read_map = 44 * pixels;
@@ -98,8 +141,8 @@ std::uint64_t fusing(const Sizes& sizes, std::size_t maps, std::size_t loads) {
 // What a run takes that works on `in_flight` images at a time and keeps nothing that is not in use.
 // The image store outlives matching.
 std::uint64_t least_for(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
-  return std::max(matching(sizes, counts, in_flight),
-                  in_flight * counts.matched * sizes.image + fusing(sizes, counts.fused, 1));
+  return std::max({matching(sizes, counts, in_flight), sizes.write_scene,
+                   in_flight * counts.matched * sizes.image + fusing(sizes, counts.fused, 1)});
 }
 
 // The most of up to `wanted` things whose `need` is within `bytes`, at least one.
@@ -140,11 +183,36 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
 
 }  // namespace
 
+void require_memory_to_read(const Options& options) {
+  const auto counts = axial::io::count_mvs(options.input);
+  if (!counts) return;
+  const axial::ScoringMemory scoring =
+      axial::scoring_memory({counts->images, counts->points, counts->observations, 0});
+  const std::uint64_t kept = kept_of(*counts, options);
+  require_memory_for_scene(std::max({counts->reading_bytes(), kept + scoring.work + scoring.kept,
+                                     kept + counts->writing_bytes()}),
+                           options);
+}
+
+void require_memory_to_score(const axial::Scene& scene, const Options& options) {
+  axial::ScoringSize size = axial::scoring_size(scene, options.selection);
+  const axial::io::MvsCounts counts = axial::io::count_scene(scene);
+  const auto needed = [&] {
+    const axial::ScoringMemory scoring = axial::scoring_memory(size);
+    axial::io::MvsCounts written = counts;
+    written.set_view_scores(size.neighbours);
+    return kept_of(counts, options) + scoring.kept +
+           std::max(scoring.work, written.writing_bytes());
+  };
+  if (needed() + kOnTop > cap_of(options))
+    size.neighbours = axial::count_neighbours(scene, options.selection);
+  require_memory_for_scene(needed(), options);
+}
+
 MemoryPlan plan_memory(const Project& project, const Options& options) {
   const Counts counts = count(project, options);
   const Sizes sizes = measure(project, options, counts);
-  const std::uint64_t cap =
-      options.max_memory > 0 ? options.max_memory * kMegabyte : axial::available_memory() / 10 * 7;
+  const std::uint64_t cap = cap_of(options);
   const std::uint64_t fixed = sizes.scene + kOnTop;
   const std::uint64_t least = fixed + least_for(sizes, counts, 1);
   if (cap < least)

@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "dense_config.h"
+#include "io/bit_depth.h"
 
 namespace densify {
 using axial::fail;
@@ -14,8 +17,9 @@ namespace {
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
   std::string input, output, housing, mask_path;
-  std::string camera_model = "auto", projection = "exact", warp = "affine";
-  int fusion_mode = 0, estimate_roi = 2;
+  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config;
+  std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
+  int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
 
 // An OpenMVS option that scripts pass and that is not built: accepted at these values only.
@@ -26,15 +30,8 @@ struct NotBuilt {
 };
 
 std::vector<NotBuilt> not_built() {
-  return {{"pointcloud-file,p", "", {""}},
-          {"view-neighbors-file", "", {""}},
-          {"output-view-neighbors-file", "", {""}},
-          {"estimate-scale", "0", {"0", "0.0"}},
-          {"sub-scene-area", "0", {"0", "0.0"}},
+  return {{"sub-scene-area", "0", {"0", "0.0"}},
           {"sample-mesh", "0", {"0", "0.0"}},
-          {"filter-point-cloud", "0", {"0"}},
-          {"export-number-views", "0", {"0"}},
-          {"tower-mode", "0", {"0"}},
           {"cuda-device", "-1", {"-1", "-2"}}};
 }
 
@@ -42,7 +39,6 @@ std::vector<NotBuilt> not_built_hidden() {
   return {{"mesh-file", "", {""}},
           {"export-roi-file", "", {""}},
           {"import-roi-file", "", {""}},
-          {"dense-config-file", "", {""}},
           {"export-depth-maps-name", "", {""}}};
 }
 
@@ -54,10 +50,17 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("max-resolution", &options.resolution.max, "cap on the longest side [px]")
       .add_with_default("min-resolution", &options.resolution.min,
                         "the longest side is not halved below this [px]")
-      .add("mask-path", &raw.mask_path, "folder with <image>.mask.png for every image")
+      .add("mask-path", &raw.mask_path,
+           "folder of masks, one for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in subfolders as the images are")
       .add_with_default("ignore-mask-label", &options.ignore_mask_label,
-                        "mask value to leave out; below 0: no masks")
+                        "mask value to leave out; below 0: no masks (default with --mask-path: 0)")
+      .add_with_default("output-precision", &raw.precision,
+                        "of the cloud's positions: float, counting from the scene's offset where "
+                        "it has one (<scene>.geo.json), or double, in world coordinates")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
+      .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
+                        "overwrite depth maps of other programs in the working folder")
       .add_with_default("max-memory", &options.max_memory,
                         "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
                         "and --estimate-normals 1 keep the whole cloud on top of it");
@@ -78,7 +81,8 @@ void declare_matching(axial::OptionList& list, Options& options) {
 
 void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
   list.add_with_default("fusion-mode", &raw.fusion_mode,
-                        "0 depth maps and fusion, 1 depth maps only")
+                        "0 depth maps and fusion, 1 depth maps only, -1 fuse the depth maps in the "
+                        "working folder, whoever wrote them, and write none")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement)")
       .add_with_default("estimate-colors", &options.estimate_colors,
@@ -91,6 +95,29 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
       .add_with_default("crop-to-roi", &options.crop_to_roi,
                         "crop the cloud to the region of interest");
+}
+
+void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
+  list.add("pointcloud-file,p", &raw.point_cloud,
+           "PLY cloud with views, in place of the scene's sparse points")
+      .add("view-neighbors-file", &raw.neighbour_lists,
+           "text file of neighbours: a line an image, its index and theirs, best first")
+      .add("output-view-neighbors-file", &raw.neighbour_lists_output, "write such a file and quit")
+      .add_with_default("filter-point-cloud", &options.filter_point_cloud,
+                        "below 0: write the scene's or -p's points whose visibility is above it "
+                        "to <output>_filtered.ply and .mvs, and quit; above 0 does nothing")
+      .add_with_default("export-number-views", &options.export_number_views,
+                        "N: write the points that N images or more see to <output>_<N>views.ply, "
+                        "and quit; -N: .mvs, too")
+      .add_with_default("estimate-scale", &options.estimate_scale,
+                        "above 0: write the points with their sizes, so many pixels of their "
+                        "views, to <output>_scale.ply, and quit")
+      .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect");
+}
+
+void declare_hidden(axial::OptionList& list, Raw& raw) {
+  list.add("dense-config-file", &raw.dense_config,
+           "OpenMVS's Densify.ini: settings that have no option; written if it is not there");
 }
 
 void declare_camera(axial::OptionList& list, Raw& raw, Options& options) {
@@ -149,12 +176,32 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("geometric-iters", options.geometric_iterations, 0, 20);
   check_range("postprocess-dmaps", options.postprocess, 0u, 7u);
   check_range("number-views-fuse", options.fusion.min_views, std::size_t{0}, std::size_t{255});
-  check_range("fusion-mode", raw.fusion_mode, 0, 1);
+  if (raw.fusion_mode == -2)
+    fail("--fusion-mode -2: disparity maps are not built; -1 fuses the depth maps that exist");
+  check_range("fusion-mode", raw.fusion_mode, -1, 1);
   check_range("estimate-colors", options.estimate_colors, 0u, 2u);
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
   check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  axial::io::check_bit_depth(options.bit_depth);
   check_range("roi-border", options.roi_border, -1e6, 1e6);
+  check_range("export-number-views", options.export_number_views, -255, 255);
+  check_range("estimate-scale", options.estimate_scale, 0.0, 1e6);
+  check_range("filter-point-cloud", options.filter_point_cloud, -(1 << 30), 1 << 30);
+  check_range("tower-mode", raw.tower_mode, -4, 4);
+}
+
+// Options whose values are taken and change nothing.
+void warn_of_no_effect(const Options& options, const Raw& raw) {
+  if (raw.tower_mode != 0)
+    axial::log_warning(
+        "--tower-mode {}: not built: no points are added around a line of cameras, as with 0",
+        raw.tower_mode);
+  if (options.filter_point_cloud > 0)
+    axial::log_warning(
+        "--filter-point-cloud {}: does nothing, as in OpenMVS: only values below 0 filter, and "
+        "only clouds that are there already (-p)",
+        options.filter_point_cloud);
 }
 
 }  // namespace
@@ -167,9 +214,12 @@ Options parse_command_line(int argc, const char* const* argv) {
       axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
       ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
   declare_io(program.visible, raw, options);
+  axial::io::declare_bit_depth(program.visible, options.bit_depth);
   declare_camera(program.visible, raw, options);
   declare_matching(program.visible, options);
   declare_fusion(program.visible, raw, options);
+  declare_points(program.visible, raw, options);
+  declare_hidden(program.hidden, raw);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);
@@ -180,17 +230,27 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(visible);
   refuse_not_built(hidden);
   check_values(options, raw);
+  warn_of_no_effect(options, raw);
+  if (!raw.dense_config.empty())
+    apply_dense_config(axial::in_working_folder(common, raw.dense_config), options);
   options.input = axial::in_working_folder(common, raw.input);
   options.output = axial::in_working_folder(common, raw.output);
   if (options.output.empty())
     options.output = options.input.parent_path() / (options.input.stem().string() + "_dense.mvs");
   options.output.replace_extension(".mvs");
   options.housing = axial::in_working_folder(common, raw.housing);
+  options.point_cloud = axial::in_working_folder(common, raw.point_cloud);
+  options.neighbour_lists = axial::in_working_folder(common, raw.neighbour_lists);
+  options.neighbour_lists_output = axial::in_working_folder(common, raw.neighbour_lists_output);
   options.mask_folder = axial::in_working_folder(common, raw.mask_path);
+  if (!options.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
+    options.ignore_mask_label = 0;
   options.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
                                         {{"auto", CameraChoice::automatic},
                                          {"pinhole", CameraChoice::pinhole},
                                          {"flatport", CameraChoice::flat_port}});
+  options.double_precision =
+      one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
   options.projection =
       one_of<axial::ProjectionMethod>("projection", raw.projection,
                                       {{"exact", axial::ProjectionMethod::exact},
@@ -200,7 +260,8 @@ Options parse_command_line(int argc, const char* const* argv) {
       {{"affine", axial::depth::Warp::affine}, {"homography", axial::depth::Warp::homography}});
   if (options.refractive && options.camera == CameraChoice::pinhole)
     fail("--refractive contradicts --camera-model pinhole");
-  options.fuse = raw.fusion_mode == 0;
+  options.make_maps = raw.fusion_mode >= 0;
+  options.fuse = raw.fusion_mode <= 0;
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
   return options;

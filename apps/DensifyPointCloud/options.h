@@ -9,6 +9,7 @@
 
 #include "base/program.h"
 #include "cloud/fuse.h"
+#include "depth/filters.h"
 #include "depth/options.h"
 #include "scene/camera_list.h"
 #include "scene/region.h"
@@ -24,10 +25,13 @@ inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
 
 struct Options {
   axial::ParsedOptions parsed;
-  std::filesystem::path input, output;  // scene files
-  std::filesystem::path housing;        // empty: beside the scene
+  std::filesystem::path input, output;                            // scene files
+  std::filesystem::path housing;                                  // empty: beside the scene
+  std::filesystem::path point_cloud;                              // empty: the scene's own points
+  std::filesystem::path neighbour_lists, neighbour_lists_output;  // empty: none
   std::filesystem::path mask_folder;
   int ignore_mask_label = -1;  // below 0: no masks
+  int bit_depth = 0;           // of 16-bit images; 0: found
 
   CameraChoice camera = CameraChoice::automatic;
   bool refractive = false;  // demand a housing
@@ -36,19 +40,28 @@ struct Options {
   axial::ResolutionOptions resolution;
   axial::ViewSelectionOptions selection;
   axial::depth::PatchMatchOptions matching;
+  axial::depth::SpeckleOptions speckles;
+  axial::depth::GapOptions gaps;
+  std::string map_settings;  // of --dense-config-file, as text: depth maps depend on them
   unsigned number_views = 5;
   int geometric_iterations = 2;
   unsigned postprocess = kSpeckles | kGaps;
 
   axial::cloud::FuseOptions fusion;
-  bool fuse = true;  // --fusion-mode 0
+  bool make_maps = true;  // --fusion-mode 0 and 1; otherwise those that exist are fused
+  bool fuse = true;       // --fusion-mode 0 and -1
+  bool overwrite_dmaps = false;
   unsigned estimate_colors = 2;
   unsigned estimate_normals = 2;
   axial::RegionMode region = axial::RegionMode::adaptive;
   double roi_border = 0;
   bool crop_to_roi = true;
   bool remove_dmaps = false;
-  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of what is free
+  // What is done instead of densifying (cloud_exports.h).
+  int filter_point_cloud = 0, export_number_views = 0;
+  double estimate_scale = 0;
+  bool double_precision = false;  // of the cloud, which is then in world coordinates
+  std::uint64_t max_memory = 0;   // [MB of 10^6 bytes]; 0: 70 % of what is free
 };
 
 // Whether the cloud takes colours from the images.

@@ -6,13 +6,21 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/first_error.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "io/bit_depth.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "io/rival_ports.h"
+#include "masks.h"
+#include "memory_plan.h"
+#include "neighbour_lists.h"
+#include "point_source.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -23,21 +31,26 @@ namespace {
 // Image paths in a scene count from the working folder; a scene that was moved whole is found
 // beside its own file.
 void find_images(axial::Scene& scene, const Options& options) {
-  for (axial::SceneImage& image : scene.images) {
+  const auto find = [&](std::string& path) {
     std::error_code error;
-    if (fs::exists(image.path, error)) continue;
+    if (path.empty() || fs::exists(path, error)) return;
     const fs::path relative =
-        fs::path(image.path).lexically_relative(options.parsed.common.working_folder);
+        fs::path(path).lexically_relative(options.parsed.common.working_folder);
     const fs::path beside = options.input.parent_path() / relative;
-    if (fs::exists(beside, error)) image.path = beside.string();
+    if (fs::exists(beside, error)) path = beside.string();
+  };
+  for (axial::SceneImage& image : scene.images) {
+    find(image.path);
+    find(image.mask_path);
   }
 }
 
-std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Options& options) {
+std::optional<axial::io::Housing> attach_housing(axial::Scene& scene,
+                                                 const axial::LocalFrame& frame,
+                                                 const Options& options) {
   if (options.camera == CameraChoice::pinhole) return {};
   const bool demanded = options.refractive || options.camera == CameraChoice::flat_port;
-  const fs::path file =
-      options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
+  const fs::path file = housing_file(options);
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (demanded || !options.housing.empty())
@@ -45,7 +58,8 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene, const Opti
     return {};
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
-  axial::io::attach_ports(scene, housing);
+  axial::io::warn_of_housing_beside(scene, options.input, housing, file);
+  axial::io::attach_ports(scene, axial::io::in_frame(frame, housing));
   std::size_t images = 0, wet = 0, flat = 0;
   for (const axial::SceneImage& image : scene.images) {
     const auto& port = image.camera.port;
@@ -71,44 +85,38 @@ cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_si
   return axial::working_size(file_size.width, file_size.height, options.resolution);
 }
 
-fs::path mask_path(const axial::SceneImage& image, const Options& options) {
-  const fs::path name = axial::io::mask_beside(image.path).filename();
-  if (!options.mask_folder.empty()) {
-    if (!image.mask_path.empty())
-      fail("--mask-path {}: image {} names a mask of its own, {}", options.mask_folder.string(),
-           image.path, image.mask_path);
-    const fs::path path = options.mask_folder / name;
-    std::error_code error;
-    if (!fs::exists(path, error)) fail("{}: no such mask for image {}", path.string(), image.path);
-    return path;
-  }
-  return image.mask_path.empty() ? axial::io::mask_beside(image.path) : fs::path(image.mask_path);
+View load_view(const axial::SceneImage& image, std::size_t index, const Options& options) {
+  View view;
+  view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(index) : image.id;
+  view.file = axial::io::read_image_header(image.path);
+  const cv::Size size = size_to_work_on(image, view.file.size, options);
+  view.camera = image.camera.resized(size.width, size.height);
+  view.pose = image.pose;
+  return view;
 }
 
-// Where the labels of an image are that masks are asked for.
-fs::path find_mask(const axial::SceneImage& image, const Options& options) {
-  const fs::path path = mask_path(image, options);
-  if (options.ignore_mask_label < 0) return {};
-  std::error_code error;
-  if (fs::exists(path, error)) return path;
-  axial::log_warning("{}: no mask", image.path);
-  return {};
+void find_bit_depth(Project& project, const Options& options) {
+  std::vector<fs::path> photographs;
+  std::vector<axial::io::ImageHeader> headers;
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    if (!project.scene.images[i].calibrated) continue;
+    photographs.emplace_back(project.scene.images[i].path);
+    headers.push_back(project.views[i].file);
+  }
+  project.bit_depth = axial::io::common_bit_depth(photographs, headers, options.bit_depth);
 }
 
 void load_views(Project& project, const Options& options) {
   const std::size_t count = project.scene.images.size();
   project.views.resize(count);
+  axial::FirstError error;
   axial::parallel_for(count, [&](std::size_t i) {
-    const axial::SceneImage& image = project.scene.images[i];
-    if (!image.calibrated) return;
-    View& view = project.views[i];
-    view.id = image.id == axial::kNoId ? static_cast<std::uint32_t>(i) : image.id;
-    view.file_size = axial::io::read_image_size(image.path);
-    const cv::Size size = size_to_work_on(image, view.file_size, options);
-    view.camera = image.camera.resized(size.width, size.height);
-    view.pose = image.pose;
-    view.mask = find_mask(image, options);
+    if (project.scene.images[i].calibrated)
+      error.run(i, [&] { project.views[i] = load_view(project.scene.images[i], i, options); });
   });
+  error.rethrow();
+  choose_masks(project, options);
+  find_bit_depth(project, options);
 }
 
 void check_ids(const Project& project) {
@@ -119,12 +127,24 @@ void check_ids(const Project& project) {
            project.scene.images[i].path, project.views[i].id);
 }
 
+// An image whose neighbours are given needs points of its own for its depth range only.
+void use_neighbour_lists(Project& project, const Options& options) {
+  const std::vector<bool> named = read_neighbour_lists(options.neighbour_lists, project.scene);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    axial::ViewPreparation& preparation = project.preparations[i];
+    if (named[i] && preparation.init_points.size() >= options.selection.min_init_points)
+      preparation.problem.clear();
+  }
+}
+
 void select_views(Project& project, const Options& options) {
   axial::Scene& scene = project.scene;
   if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
   if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
+  require_memory_to_score(scene, options);
   project.preparations = axial::score_neighbours(scene, options.selection,
                                                  axial::console_progress("Scored neighbours"));
+  if (!options.neighbour_lists.empty()) use_neighbour_lists(project, options);
   project.neighbours.resize(scene.images.size());
   project.sources.resize(scene.images.size());
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
@@ -137,7 +157,8 @@ void select_views(Project& project, const Options& options) {
     project.sources[i] =
         axial::choose_source_views(project.neighbours[i], options.number_views, options.selection);
     if (project.sources[i].empty())
-      axial::log_warning("{}: left out: no good images in view", scene.images[i].path);
+      axial::log_warning("{}: left out: {}", scene.images[i].path,
+                         axial::why_no_source_view(scene.images[i].neighbours, options.selection));
     else
       project.references.push_back(i);
   }
@@ -206,6 +227,7 @@ std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
   print.add("AxialMVS depth maps 8");  // the number: of the matching method
   add_options(print, options);
+  if (!options.map_settings.empty()) print.add(options.map_settings);
   const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     const View& view = project.views[i];
@@ -214,6 +236,8 @@ std::string fingerprint(const Project& project, const Options& options) {
     for (const double value : view.pose.rotation.reshaped()) print.add(value);
     for (const double value : view.pose.centre) print.add(value);
     print.add(contents[i]);
+    if (view.file.bits > 8) print.add(static_cast<std::uint64_t>(project.bit_depth));
+    if (view.file.alpha) print.add("transparent pixels are masked");
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
       print.add(static_cast<std::uint64_t>(list->size()));
       for (const axial::ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});
@@ -243,16 +267,28 @@ void warn_of_missing_lenses(const Options& options) {
 
 }  // namespace
 
-Project load_project(const Options& options) {
+fs::path housing_file(const Options& options) {
+  return options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
+}
+
+Project load_scene(const Options& options) {
+  require_memory_to_read(options);
   Project project;
   project.scene = axial::io::read_mvs(options.input, options.parsed.common.working_folder);
+  project.frame = axial::io::enter_local_frame(project.scene, options.input);
   find_images(project.scene, options);
   attach_lenses(project.scene, options);
   project.lenses = axial::io::lenses_of(project.scene, options.output);
-  project.housing = attach_housing(project.scene, options);
+  project.housing = attach_housing(project.scene, project.frame, options);
   if (project.housing) warn_of_missing_lenses(options);
   axial::log_info("Scene {}: {} images, {} points", options.input.filename().string(),
                   project.scene.images.size(), project.scene.points.size());
+  if (!options.point_cloud.empty()) use_point_cloud(project.scene, options.point_cloud);
+  return project;
+}
+
+Project load_project(const Options& options) {
+  Project project = load_scene(options);
   load_views(project, options);
   check_ids(project);
   select_views(project, options);
@@ -261,11 +297,13 @@ Project load_project(const Options& options) {
 }
 
 void write_cameras_beside_output(const Project& project, const Options& options) {
+  if (!project.frame.is_world() || options.output != options.input)
+    axial::io::write_geo_offset_beside(options.output, project.frame);
   axial::io::write_lenses_beside(options.output, project.lenses, project.housing.has_value());
   const fs::path file = axial::io::housing_beside(options.output);
-  if (project.housing) return axial::io::write_housing(file, *project.housing);
-  if (file == axial::io::housing_beside(options.input)) return;
   std::error_code error;
+  if (fs::equivalent(file, housing_file(options), error)) return;
+  if (project.housing) return axial::io::write_housing(file, *project.housing);
   if (fs::remove(file, error)) axial::log_info("{} removed: the scene has no ports", file.string());
 }
 

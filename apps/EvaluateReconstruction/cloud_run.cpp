@@ -13,8 +13,10 @@
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
 #include "io/colmap_scene.h"
+#include "io/geo_offset.h"
 #include "io/image.h"
 #include "io/ply.h"
+#include "io/rival_ports.h"
 #include "runs.h"
 
 namespace fs = std::filesystem;
@@ -49,35 +51,79 @@ struct Input {
   }
 };
 
-Input read_input(const fs::path& path) {
+// What coordinates count from while they are float: those of the truth and its cameras, and those
+// of the input before it is aligned.
+struct Frames {
+  LocalFrame truth, input;
+};
+
+// Where the file's vertices are. A warning for floats that are far from what they count from: they
+// have lost digits before they came here.
+LocalFrame checked_frame(const fs::path& path) {
+  constexpr double kFar = 1e4;  // float tells 1 mm apart there
+  const io::PlyPlace place = io::ply_place(path);
+  const double far = place.frame.to_local(place.first_vertex).cwiseAbs().maxCoeff();
+  if (place.is_float && far > kFar)
+    log_warning(
+        "{}: its coordinates are float32 of {:.0f} m: they are known to {:.2g} m only (write "
+        "double, or local ones with a comment geo_offset)",
+        path.string(), far, far * 0x1p-24);
+  return frame_near(place.first_vertex);
+}
+
+// The models that are given, and the frame of each: the reference's is the truth's, too.
+struct Models {
+  io::ColmapModel reference, estimated;
+  Frames frames;
+};
+
+Models read_models(const Options& options) {
+  Models models;
+  checked_frame(options.input);
+  models.frames.truth = checked_frame(options.truth);
+  if (!options.cameras.empty()) {
+    models.reference = io::read_colmap_model(io::find_colmap_model(options.cameras));
+    models.frames.truth = io::enter_local_frame(models.reference);
+  }
+  models.frames.input = models.frames.truth;
+  if (options.align == "centres") {
+    models.estimated = io::read_colmap_model(io::find_colmap_model(options.estimated));
+    models.frames.input = io::enter_local_frame(models.estimated);
+  }
+  return models;
+}
+
+Input read_input(const fs::path& path, const LocalFrame& frame) {
   Input input;
   if (io::ply_has_faces(path))
-    input.mesh = io::read_mesh_ply(path);
+    input.mesh = io::read_mesh_ply(path, frame);
   else
-    input.cloud = io::read_cloud_ply(path);
+    input.cloud = io::read_cloud_ply(path, frame);
   if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
   return input;
 }
 
-std::vector<evaluate::View> read_views(const Options& options) {
+std::vector<evaluate::View> read_views(const Options& options, const Models& models) {
   if (options.cameras.empty()) return {};
-  const fs::path folder = io::find_colmap_model(options.cameras);
-  const io::ColmapModel model = io::read_colmap_model(folder);
   std::optional<io::Housing> housing;
   if (!options.housing.empty()) {
-    housing = io::read_housing(options.housing);
-    for (const std::string& entry : io::unused_entries(*housing, model))
+    housing = io::in_frame(models.frames.truth, io::read_housing(options.housing));
+    for (const std::string& entry : io::unused_entries(*housing, models.reference))
       log_warning("{}: no image goes by {}", options.housing.string(), entry);
+    io::warn_of_other_ports(*housing, options.housing.string(),
+                            io::housing_of(models.reference.cameras),
+                            "the model in " + options.cameras.string(), models.reference);
   }
-  return naming(folder,
-                [&] { return evaluate::views_of_model(model, housing ? &*housing : nullptr); });
+  return naming(io::find_colmap_model(options.cameras), [&] {
+    return evaluate::views_of_model(models.reference, housing ? &*housing : nullptr);
+  });
 }
 
-Similarity align_by_centres(const Options& options, nlohmann::ordered_json& report) {
-  const auto estimated = io::read_colmap_model(io::find_colmap_model(options.estimated));
-  const auto reference = io::read_colmap_model(io::find_colmap_model(options.cameras));
-  const auto result =
-      naming(options.estimated, [&] { return evaluate::align_centres(estimated, reference); });
+Similarity align_by_centres(const Options& options, const Models& models,
+                            nlohmann::ordered_json& report) {
+  const auto result = naming(options.estimated, [&] {
+    return evaluate::align_centres(models.estimated, models.reference);
+  });
   log_info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
            result.names.size(), result.similarity.scale, result.rms * 1e3);
   report["centres"] = result.names.size();
@@ -102,18 +148,33 @@ Similarity align_by_icp(const Options& options, const Input& input,
   return result.transform;
 }
 
-nlohmann::ordered_json align(const Options& options, Input& input,
-                             const evaluate::Surface& surface) {
+// Of two places that have nothing to do with each other nothing can be said, and that slowly.
+void warn_if_far(const Options& options, const Input& input, const Mesh& truth) {
+  constexpr double kFar = 1e5;
+  const double apart = (input.positions().front() - truth.vertices.front()).cast<double>().norm();
+  if (apart > kFar)
+    log_warning("{}: is {:.0f} m away from {}: are both in the same coordinates?",
+                options.input.string(), apart, options.truth.string());
+}
+
+// The input goes from its own frame to the truth's.
+nlohmann::ordered_json align(const Options& options, Input& input, const evaluate::Surface& surface,
+                             const Models& models) {
+  const Frames& frames = models.frames;
   nlohmann::ordered_json report{{"method", options.align}};
   Similarity similarity;
-  if (options.align == "centres") similarity = align_by_centres(options, report);
+  if (options.align == "centres") similarity = align_by_centres(options, models, report);
   if (options.align == "icp") similarity = align_by_icp(options, input, surface, report);
-  report["transform"] = evaluate::to_json(similarity);
   if (options.align != "none") input.move(similarity);
+  similarity = evaluate::between_worlds(similarity, frames.input, frames.truth);
+  report["transform"] = evaluate::to_json(similarity);
   if (!options.transform.empty())
     write_atomically(options.transform, evaluate::matrix_text(similarity));
-  if (!options.aligned.empty() && input.mesh) io::write_mesh_ply(options.aligned, *input.mesh);
-  if (!options.aligned.empty() && !input.mesh) io::write_cloud_ply(options.aligned, input.cloud);
+  const io::PlyPlacement placement{frames.truth, false};
+  if (!options.aligned.empty() && input.mesh)
+    io::write_mesh_ply(options.aligned, *input.mesh, placement);
+  if (!options.aligned.empty() && !input.mesh)
+    io::write_cloud_ply(options.aligned, input.cloud, true, placement);
   return report;
 }
 
@@ -160,13 +221,16 @@ void draw(const Options& options, const PointCloud& cloud, std::span<const evalu
 }  // namespace
 
 nlohmann::ordered_json run_cloud(const Options& options) {
-  Input input = read_input(options.input);
-  const Mesh truth = io::read_mesh_ply(options.truth);
+  const Models models = read_models(options);
+  const Frames& frames = models.frames;
+  Input input = read_input(options.input, frames.input);
+  const Mesh truth = io::read_mesh_ply(options.truth, frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
-  const std::vector<evaluate::View> views = read_views(options);
+  const std::vector<evaluate::View> views = read_views(options, models);
   if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
-  report["align"] = align(options, input, surface);
+  report["align"] = align(options, input, surface, models);
+  warn_if_far(options, input, truth);
 
   evaluate::CloudOptions settings;
   settings.tolerances = options.tolerances;
@@ -183,7 +247,8 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   });
   fmt::print("{}", evaluate::table(result));
   colored.colors = evaluate::error_colors(result.distances, options.color_max);
-  if (!options.error_cloud.empty()) io::write_cloud_ply(options.error_cloud, colored);
+  if (!options.error_cloud.empty())
+    io::write_cloud_ply(options.error_cloud, colored, true, {frames.truth, false});
   if (!options.picture.empty()) draw(options, colored, views);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));

@@ -2,19 +2,48 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/files_in.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
+#include "io/colmap.h"
 #include "io/json.h"
 #include "options.h"
 #include "runs.h"
 
+namespace fs = std::filesystem;
 using namespace axial;
 
 namespace {
+
+std::vector<fs::path> inputs_of(const Options& options) {
+  std::vector<fs::path> inputs{options.input, options.truth, options.housing};
+  for (const fs::path& model : {options.cameras, options.estimated})
+    if (!model.empty())
+      for (const fs::path& file : files_in(io::find_colmap_model(model))) inputs.push_back(file);
+  return inputs;
+}
+
+// Before the work.
+void check_outputs(const Options& options) {
+  const std::vector<fs::path> inputs = inputs_of(options);
+  const std::pair<const char*, const fs::path&> outputs[] = {
+      {"--json", options.json},
+      {"--error-cloud", options.error_cloud},
+      {"--picture", options.picture},
+      {"--aligned", options.aligned},
+      {"--transform-out", options.transform}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    require_not_an_input(path, inputs, option);
+    require_writable(path);
+  }
+}
 
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
+  check_outputs(options);
   const bool is_depth_map = options.input.extension() == ".dmap";
   nlohmann::ordered_json report{{"input", options.input.string()},
                                 {"truth", options.truth.string()}};

@@ -2,11 +2,16 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/progress.h"
+#include "base/same_file.h"
 #include "io/colmap.h"
+#include "io/colmap_export.h"
 #include "io/colmap_scene.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
 #include "io/lenses.h"
 #include "io/mvs.h"
+#include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
 
@@ -30,8 +35,13 @@ std::size_t count_distorted(const Scene& scene) {
 // Of the file, or else what the model's cameras carry. COLMAP-Underwater writes ports into models
 // whose poses it solved without refraction, too, and the files do not say so: the tracks do.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
-  if (!options.housing_file.empty()) return io::read_housing(options.housing_file);
   const io::Housing carried = io::housing_of(model.cameras);
+  if (!options.housing_file.empty()) {
+    io::Housing housing = io::read_housing(options.housing_file);
+    io::warn_of_other_ports(housing, options.housing_file.string(), carried,
+                            "the model in " + options.colmap_folder.string(), model);
+    return housing;
+  }
   if (carried.ports.empty()) return carried;
   const pose::PortFit fit = pose::port_fit(model);
   log_info("The model's cameras carry ports: its points are {:.3f} px off behind them",
@@ -44,17 +54,80 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   return carried;
 }
 
+// Neither the model nor the photographs nor the housing file is written over.
+void check_outputs(const Options& options, const fs::path& model_folder,
+                   const io::ColmapModel& model) {
+  std::vector<fs::path> inputs{options.housing_file};
+  for (const char* part : {"cameras", "images", "points3D", "rigs", "frames"})
+    for (const char* extension : {".txt", ".bin"})
+      inputs.push_back(model_folder / (std::string(part) + extension));
+  for (const io::ColmapImage& image : model.images)
+    inputs.push_back(options.image_folder / image.name);
+  const std::vector<fs::path> outputs{options.scene_file, io::housing_beside(options.scene_file),
+                                      io::lenses_beside(options.scene_file)};
+  require_no_inputs(outputs, inputs, "--output-file");
+}
+
+// One line where the images could as well be those of another folder.
+void say_image_folder(const Options& options, const io::ColmapModel& model) {
+  std::error_code error;
+  const fs::path& other = options.other_image_folder;
+  const bool rival = !other.empty() && !model.images.empty() &&
+                     fs::exists(other / model.images.front().name, error) &&
+                     !fs::equivalent(other, options.image_folder, error);
+  log_info("Images in {}{}", options.image_folder.string(),
+           rival ? ", not in " + other.string() + ", which holds images of these names, too" : "");
+}
+
+// Few cameras are ready at once, and no line tells so.
+ProgressSink progress_of_many(const std::string& title) {
+  constexpr std::size_t kMany = 100;
+  return [show = console_progress(title)](std::size_t done, std::size_t total) {
+    if (total >= kMany) show(done, total);
+  };
+}
+
+// A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
+int export_scene(const Options& options) {
+  Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
+  io::attach_lenses_beside(scene, options.scene_file);
+  const fs::path housing_file = io::housing_beside(options.scene_file);
+  std::error_code error;
+  if (fs::exists(housing_file, error)) io::attach_ports(scene, io::read_housing(housing_file));
+  const fs::path images =
+      options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
+  const io::ColmapModel model = io::export_colmap_model(scene, images);
+  const fs::path folder = options.export_folder / "sparse";
+  make_folder(folder);
+  const std::size_t behind_ports = count_behind_ports(scene);
+  if (behind_ports > 0) {
+    log_warning(
+        "{} of {} images are behind ports, which are written behind their cameras as "
+        "COLMAP-Underwater reads them: COLMAP itself does not",
+        behind_ports, scene.images.size());
+    io::write_underwater_text(folder, model);
+  } else {
+    io::write_colmap_text(folder, model);
+  }
+  log_info("{}: {} images below {}, {} cameras, {} points", folder.string(), model.images.size(),
+           images.string(), model.cameras.size(), model.points.size());
+  return 0;
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
 
+  if (!options.export_folder.empty()) return export_scene(options);
   const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
-  const io::ColmapModel model = io::read_colmap_model(model_folder);
+  io::ColmapModel model = io::read_colmap_model(model_folder);
   log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
+  const LocalFrame frame = io::enter_local_frame(model);
   const io::Housing housing = load_housing(options, model);
-  log_info("Images in {}", options.image_folder.string());
+  say_image_folder(options, model);
+  check_outputs(options, model_folder, model);
 
   const fs::path folder = options.scene_file.parent_path();
   make_folder(folder);
@@ -64,7 +137,8 @@ int run(int argc, char** argv) {
   const bool undistort = options.undistort.value_or(!behind_ports);
   const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted",
                                 undistort};
-  Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"));
+  Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"),
+                                        progress_of_many("Prepared cameras"));
 
   const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing goes first: a scene without the one it was made with would count as dry.
@@ -75,7 +149,10 @@ int run(int argc, char** argv) {
     const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
     for (const std::string& entry : io::unused_entries(housing, model))
       log_warning("{}: no image goes by {}", options.housing_file.string(), entry);
-    io::attach_ports(scene, by_image);
+    io::warn_of_housing_beside(
+        scene, options.scene_file, by_image,
+        options.housing_file.empty() ? options.colmap_folder : options.housing_file);
+    io::attach_ports(scene, io::in_frame(frame, by_image));
     io::write_housing(housing_file, by_image);
     log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
              scene.images.size());
@@ -84,7 +161,13 @@ int run(int argc, char** argv) {
   if (const std::size_t distorted = count_distorted(scene))
     log_info("{}: {} of {} images keep their distorted lens",
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
-  io::write_mvs(options.scene_file, scene, folder);
+  io::write_geo_offset_beside(options.scene_file, frame);
+  if (!frame.is_world())
+    log_info("{}: coordinates count from ({}, {}, {})",
+             io::geo_offset_beside(options.scene_file).string(), frame.origin.x(), frame.origin.y(),
+             frame.origin.z());
+  io::write_mvs(options.scene_file, scene, folder,
+                options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
   return 0;

@@ -12,14 +12,17 @@ namespace {
 
 // A folder that was asked for counts from the working folder, as in OpenMVS. The default belongs to
 // the COLMAP folder: whatever images/ the program is started beside must not win over the model's.
-fs::path find_image_folder(const axial::ParsedOptions& parsed, const fs::path& colmap_folder,
-                           const std::string& name) {
+void find_image_folder(const std::string& name, Options& options) {
+  const axial::ParsedOptions& parsed = options.parsed;
   fs::path candidates[] = {axial::in_working_folder(parsed.common, name),
-                           (colmap_folder / name).lexically_normal()};
+                           (options.colmap_folder / name).lexically_normal()};
   if (!axial::given(parsed, "image-folder")) std::swap(candidates[0], candidates[1]);
   std::error_code error;
-  for (const fs::path& candidate : candidates)
-    if (fs::is_directory(candidate, error)) return candidate;
+  for (const fs::path& candidate : candidates) {
+    if (!fs::is_directory(candidate, error)) continue;
+    (options.image_folder.empty() ? options.image_folder : options.other_image_folder) = candidate;
+  }
+  if (!options.image_folder.empty()) return;
   const std::string also = candidates[0] == candidates[1] ? "" : " and " + candidates[1].string();
   fail("--image-folder {}: no such folder (looked for {}{})", name, candidates[0].string(), also);
 }
@@ -30,9 +33,14 @@ Options parse_command_line(int argc, const char* const* argv) {
   std::string input, output, image_folder = "images/", housing, point_cloud;
   bool normalize = false, force_points = false, undistort = false;
   axial::ProgramOptions program{
-      "InterfaceCOLMAP", "turns a COLMAP model and its images into a scene (.mvs)", {}, {}};
+      "InterfaceCOLMAP",
+      "turns a COLMAP model and its images into a scene (.mvs), and a scene into a model",
+      {},
+      {}};
   program.visible
-      .add("input-file,i", &input, "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR")
+      .add("input-file,i", &input,
+           "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "
+           "export to DIR/sparse, DIR being -o or the scene's folder")
       .add("output-file,o", &output, "scene to write (default: DIR/scene.mvs)")
       .add_with_default("image-folder", &image_folder,
                         "folder of the images, in the working folder or else in DIR (the default: "
@@ -44,9 +52,10 @@ Options parse_command_line(int argc, const char* const* argv) {
            "1: resample images of distorted lenses into a pinhole's, which all programs can read; "
            "0: keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind "
            "ports, 1 in air)")
-      .add("pointcloud-file,p", &point_cloud, "only to export a scene: not built yet")
+      .add("pointcloud-file,p", &point_cloud, "not built: a scene is exported with its own points")
       .add_with_default("normalize,f", &normalize,
-                        "only 0: intrinsics are always written in pixels")
+                        "1: write intrinsics divided by the image's longer side, without its "
+                        "resolution; 0: in pixels")
       .add_with_default("force-points,e", &force_points,
                         "accepted and without effect: sparse points are always written");
 
@@ -56,11 +65,18 @@ Options parse_command_line(int argc, const char* const* argv) {
   const axial::CommonOptions& common = options.parsed.common;
 
   options.colmap_folder = axial::in_working_folder(common, input);
-  if (options.colmap_folder.extension() == ".mvs")
-    fail("{}: exporting a scene to COLMAP is not built yet", options.colmap_folder.string());
-  if (normalize) fail("--normalize is 1: only 0 is supported (intrinsics are written in pixels)");
-  if (!point_cloud.empty())
-    fail("--pointcloud-file {}: is for exporting a scene, which is not built yet", point_cloud);
+  if (options.colmap_folder.extension() == ".mvs") {
+    options.scene_file = std::exchange(options.colmap_folder, {});
+    options.export_folder = output.empty() ? options.scene_file.parent_path()
+                                           : axial::in_working_folder(common, output);
+    if (!point_cloud.empty() || !housing.empty())
+      fail("--pointcloud-file and --housing: are not for exporting a scene");
+    if (axial::given(options.parsed, "image-folder"))
+      options.image_folder = axial::in_working_folder(common, image_folder) / "";
+    return options;
+  }
+  options.normalize = normalize;
+  if (!point_cloud.empty()) fail("--pointcloud-file {}: is not built", point_cloud);
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
     fail("{}: is not a folder", options.colmap_folder.string());
@@ -68,6 +84,6 @@ Options parse_command_line(int argc, const char* const* argv) {
                                       : axial::in_working_folder(common, output);
   if (axial::given(options.parsed, "undistort")) options.undistort = undistort;
   options.housing_file = axial::in_working_folder(common, housing);
-  options.image_folder = find_image_folder(options.parsed, options.colmap_folder, image_folder);
+  find_image_folder(image_folder, options);
   return options;
 }

@@ -9,10 +9,13 @@
 struct Options {
   axial::ParsedOptions parsed;
   std::filesystem::path colmap_folder;
-  std::filesystem::path scene_file;    // output
-  std::filesystem::path image_folder;  // exists
-  std::filesystem::path housing_file;  // empty: no housing
-  std::optional<bool> undistort;       // nothing: in air
+  std::filesystem::path scene_file;          // output, and the input of an export
+  std::filesystem::path export_folder;       // empty: import
+  std::filesystem::path image_folder;        // exists; empty in an export: that of the images
+  std::filesystem::path other_image_folder;  // of the same name, and passed over; may be empty
+  std::filesystem::path housing_file;        // empty: no housing
+  bool normalize = false;
+  std::optional<bool> undistort;  // nothing: in air
 };
 
 // Parses and checks the command line; what is left to do is in `parsed.run`.

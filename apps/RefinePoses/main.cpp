@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files_in.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
 #include "io/colmap.h"
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
+#include "io/geo_offset.h"
 #include "io/housing.h"
+#include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
 #include "report.h"
@@ -52,27 +57,85 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
   return carried;
 }
 
-// Of the file, or else what is carried.
+// Of the file, or else what is carried. A warning where what is passed over differs.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
                          const Lenses& lenses) {
+  const io::Housing carried = carried_housing(model, lenses);
+  const std::string of_model = "the model in " + options.model.string();
+  const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
   if (!options.housing.empty()) {
     io::Housing housing = io::read_housing(options.housing);
     io::refuse_water_surfaces(housing, options.housing);
+    io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model);
     return housing;
   }
-  const io::Housing carried = carried_housing(model, lenses);
   if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
+  io::warn_of_other_ports(carried, of_lens, io::housing_of(model.cameras), of_model, model);
   return carried;
+}
+
+// The files that are read, as far as the model's folder is not their only place.
+std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
+  std::vector<fs::path> inputs{options.housing};
+  constexpr std::string_view kPositions = "positions:";
+  if (options.scale_from.starts_with(kPositions))
+    inputs.push_back(options.parsed.common.working_folder /
+                     options.scale_from.substr(kPositions.size()));
+  for (const fs::path& folder : {model, options.lens})
+    for (const fs::path& file : files_in(folder)) inputs.push_back(file);
+  return inputs;
+}
+
+std::vector<fs::path> outputs_of(const Options& options) {
+  std::vector<fs::path> outputs{options.output / "housing.json", options.output / "report.json"};
+  for (const char* name : {"cameras", "images", "points3D"}) {
+    const fs::path sparse = options.output / "sparse", other = options.output / "colmap-underwater";
+    outputs.push_back(sparse / name += ".txt");
+    for (const char* extension : {".txt", ".bin"})
+      if (options.underwater) outputs.push_back(other / name += extension);
+  }
+  return outputs;
+}
+
+bool same_lens(const io::ColmapCamera& a, const io::ColmapCamera& b) {
+  return a.model == b.model && std::ranges::equal(a.params, b.params, [](double x, double y) {
+           return std::abs(x - y) <= 1e-9 * std::max(1.0, std::abs(x));
+         });
+}
+
+// A model's camera behind a port has its lens in air, too.
+void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
+                          const Lenses& lenses) {
+  for (const io::ColmapCamera& camera : model.cameras) {
+    const auto lens = std::ranges::find_if(lenses, [&](const io::ColmapCamera& candidate) {
+      return lenses.size() == 1 || candidate.id == camera.id;
+    });
+    if (!camera.port || lens == lenses.end() || same_lens(*lens, camera)) continue;
+    return log_warning(
+        "The lenses are those of {}, and not those of {}, which differ, first for "
+        "camera {}",
+        options.lens.string(), options.model.string(), camera.id);
+  }
 }
 
 // Before the work: that the output can be written, and is not the input.
 void check_output(const Options& options, const fs::path& model) {
-  make_folder(options.output);
   std::error_code error;
   if (fs::equivalent(options.output / "sparse", model, error) ||
       fs::equivalent(options.output / "sparse", model.parent_path(), error))
     fail("--output-folder {}: its sparse/ is the model that is read", options.output.string());
-  require_writable(options.output / "report.json");
+  require_no_inputs(outputs_of(options), inputs_of(options, model), "--output-folder");
+  require_writable_folder(options.output);
+}
+
+// Known positions place the model: it then counts from near them, whatever it counted from before.
+LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
+  std::vector<Eigen::Vector3d> centres;
+  for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
+  const LocalFrame frame = frame_of(centres, {});
+  if (frame.is_world()) return frame;
+  for (pose::KnownPosition& known : positions) known.metres = frame.to_local(known.metres);
+  return frame;
 }
 
 // What is left of `images`, said where it is not all.
@@ -81,26 +144,33 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
       log_warning("{}: too few observations fit; it is left out", bundle.images[i].name);
-  if (4 * report.observations_after < 3 * report.observations_before)
+  if (report.repeated > 0)
+    log_info("{} observations are of an image that sees the point already, and do not count",
+             report.repeated);
+  const std::size_t distinct = report.observations_before - report.repeated;
+  if (4 * report.observations_after < 3 * distinct)
     log_warning("{} of {} observations do not fit: is this the housing, and the lens in air?",
-                report.observations_before - report.observations_after, report.observations_before);
+                distinct - report.observations_after, distinct);
   if (!report.last.converged)
     log_warning("Not converged after {} iterations", report.last.iterations);
 }
 
-// The model last: it is not there without the housing it belongs to.
+// All files or none.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
-           const io::Housing& housing, const std::string& report) {
-  const io::ColmapModel result = to_model(refined, model);
-  io::write_housing(options.output / "housing.json", housing);
-  write_atomically(options.output / "report.json", report);
-  if (options.underwater) {
-    make_folder(options.output / "colmap-underwater");
-    io::write_underwater_text(options.output / "colmap-underwater", result);
-    io::write_underwater_binary(options.output / "colmap-underwater", result);
-  }
-  make_folder(options.output / "sparse");
-  io::write_colmap_text(options.output / "sparse", result);
+           const LocalFrame& frame, const io::Housing& housing, const std::string& report) {
+  io::ColmapModel result = to_model(refined, model);
+  io::leave(frame, result);
+  write_folder(options.output, [&](const fs::path& folder) {
+    io::write_housing(folder / "housing.json", housing);
+    write_atomically(folder / "report.json", report);
+    if (options.underwater) {
+      make_folder(folder / "colmap-underwater");
+      io::write_underwater_text(folder / "colmap-underwater", result);
+      io::write_underwater_binary(folder / "colmap-underwater", result);
+    }
+    make_folder(folder / "sparse");
+    io::write_colmap_text(folder / "sparse", result);
+  });
 }
 
 int run(int argc, char** argv) {
@@ -108,8 +178,12 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
   const fs::path folder = io::find_colmap_model(options.model);
-  const io::ColmapModel model = io::read_colmap_model(folder);
+  io::ColmapModel model = io::read_colmap_model(folder);
+  // Adjusting in the world, the solver would take steps for small that are not, against coordinates
+  // of millions.
+  LocalFrame frame = io::enter_local_frame(model);
   const Lenses lenses = load_lenses(options, model);
+  warn_of_other_lenses(options, model, lenses);
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
@@ -118,6 +192,7 @@ int run(int argc, char** argv) {
   pose::AdjustOptions& adjust = options.refine.adjust;
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
             refined.bundle, adjust);
+  if (!adjust.positions.empty()) frame = enter_local_frame(adjust.positions);
   if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
         return camera.measured.port.has_value();
       }))
@@ -145,7 +220,7 @@ int run(int argc, char** argv) {
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(report, refined.bundle);
-  write(options, refined, model, result,
+  write(options, refined, model, frame, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   log_info("Refined model in {}", options.output.string());
   return 0;

@@ -56,9 +56,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   axial::pose::declare_sigmas(program.visible, options.sigmas);
   program.visible.add_with_default("focal-sigma", &options.sigmas.focal, "focal lengths, relative")
       .add("scale-from", &options.scale_from,
-           "what is known in metres: images:NAME,NAME,METRES or points:ID,ID,METRES or "
-           "positions:FILE with a line NAME X Y Z for each image; without it refraction alone "
-           "tells the scale, weakly")
+           "what is known in metres: images:NAME,NAME,METRES (names with commas in double quotes) "
+           "or "
+           "points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for each image (names may "
+           "hold blanks); without it refraction alone tells the scale, weakly")
       .add_with_default("scale-sigma", &options.scale_sigma, "how well that is known [m]")
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")

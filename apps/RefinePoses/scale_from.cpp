@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <type_traits>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "io/position_file.h"
 #include "scene/decompositions.h"
 
 namespace {
@@ -44,11 +44,32 @@ std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
   return *image;
 }
 
+// NAME, NAME, METRES of a list that commas in the names have split further.
+std::vector<std::string> names_with_commas(const std::vector<std::string>& words,
+                                           const pose::Bundle& bundle, const std::string& where) {
+  const auto joined = [&](std::size_t begin, std::size_t end) {
+    return fmt::format("{}", fmt::join(words.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       words.begin() + static_cast<std::ptrdiff_t>(end), ","));
+  };
+  std::vector<std::string> found;
+  const std::size_t last = words.size() - 1;
+  for (std::size_t i = 1; i < last; ++i) {
+    const std::string first = joined(0, i), second = joined(i, last);
+    if (!find_image(bundle, first) || !find_image(bundle, second)) continue;
+    if (!found.empty()) fail("{}: put names with commas in double quotes", where);
+    found = {first, second, words.back()};
+  }
+  if (found.empty())
+    fail("{}: the model has no two images of these names; put names with commas in double quotes",
+         where);
+  return found;
+}
+
 KnownDistance known_distance(KnownDistance::Between between, const std::string& list, double sigma,
                              const pose::Bundle& bundle, const std::string& where) {
-  std::vector<std::string> words;
-  std::istringstream in(list);
-  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  std::vector<std::string> words = io::split_list(list, where);
+  if (words.size() > 3 && between == KnownDistance::Between::images)
+    words = names_with_commas(words, bundle, where);
   if (words.size() != 3) fail("{}: must name two ends and the metres between them", where);
   KnownDistance known;
   known.between = between;
@@ -86,22 +107,16 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
 // over.
 void read_positions(const std::filesystem::path& file, double sigma, const pose::Bundle& bundle,
                     pose::AdjustOptions& adjust) {
-  std::istringstream lines(read_file(file));
+  std::map<std::string, std::size_t> images;
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) images.emplace(bundle.images[i].name, i);
+  const auto is_image = [&](const std::string& name) { return images.contains(name); };
   std::vector<std::string> without_pose;
-  int line_number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string where = fmt::format("{}:{}", file.string(), ++line_number);
-    std::istringstream words(line.substr(0, line.find('#')));
-    std::string name, x, y, z;
-    if (!(words >> name)) continue;
-    std::string more;
-    if (!(words >> x >> y >> z) || words >> more) fail("{}: must be NAME X Y Z", where);
-    const Eigen::Vector3d metres(number<double>(x, where), number<double>(y, where),
-                                 number<double>(z, where));
-    if (const auto image = find_image(bundle, name))
-      adjust.positions.push_back({*image, metres, sigma});
+  for (const io::NamedPosition& known : io::read_positions(file, is_image)) {
+    if (known.known)
+      adjust.positions.push_back({images.at(known.name), known.position, sigma});
     else
-      without_pose.push_back(fmt::format("{}: the model has no image '{}'", where, name));
+      without_pose.push_back(
+          fmt::format("{}:{}: the model has no image '{}'", file.string(), known.line, known.name));
   }
   if (adjust.positions.size() < 3)
     fail("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),

@@ -10,9 +10,11 @@
 //
 //     images:NAME,NAME,METRES   the distance of two camera centres
 //     points:ID,ID,METRES       of two points of the model
-//     positions:FILE            camera centres, "NAME X Y Z" a line, # begins a comment; at least
-//                               three, and not all on one line
+//     positions:FILE            camera centres, a file of io::read_positions; at least three, and
+//                               not all on one line
 //
+// A NAME with commas stands in double quotes, with "" for a quote; without them it is understood
+// where the model's names leave one way to read it.
 // Error that names the option or file, and what is wrong with it.
 void add_known(const std::string& scale_from, double sigma,
                const std::filesystem::path& working_folder, const axial::pose::Bundle& bundle,

@@ -22,8 +22,7 @@ namespace fs = std::filesystem;
 
 // Small enough to be kept among the numbers.
 std::string small_picture(const fs::path& file, int width) {
-  cv::Mat picture = cv::imread(file.string(), cv::IMREAD_COLOR);
-  if (picture.empty()) fail("{}: cannot be read", file.string());
+  cv::Mat picture = io::read_color_image(file);
   const double factor = std::min(1.0, static_cast<double>(width) / picture.cols);
   cv::resize(picture, picture, {}, factor, factor, cv::INTER_AREA);
   return io::png_in_base64(picture);

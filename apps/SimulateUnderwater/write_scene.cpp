@@ -80,8 +80,8 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
     }
     model.points.push_back(std::move(point));
   }
-  make_folder(folder);
-  io::write_colmap_text(folder, model);
+  write_folder(
+      folder, [&](const std::filesystem::path& staging) { io::write_colmap_text(staging, model); });
 }
 
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset) {

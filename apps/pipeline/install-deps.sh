@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   # to build
   g++ cmake ninja-build
-  libeigen3-dev libopencv-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+  libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libxxhash-dev libboost-dev libboost-program-options-dev
   # to test
   libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev

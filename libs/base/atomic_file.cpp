@@ -5,10 +5,15 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
 #include <optional>
 
 #include "base/error.h"
@@ -24,17 +29,81 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return path.parent_path() / name;
 }
 
-// The number of the process in a name that temporary_beside made; none in any other name.
-std::optional<pid_t> process_of_temporary(std::string_view name) {
+// What a name that temporary_beside made says; nothing of any other name.
+struct TemporaryName {
+  std::string target;
+  pid_t process = 0;
+};
+
+std::optional<TemporaryName> parse_temporary(std::string_view name) {
   const std::size_t mark = name.rfind(".tmp");
   if (mark == std::string_view::npos || mark == 0) return std::nullopt;
+  const std::string_view extension = name.substr(mark + 4);
+  if (!extension.empty() && extension.rfind('.') != 0) return std::nullopt;
   const std::size_t dot = name.rfind('.', mark - 1);
-  if (dot == std::string_view::npos) return std::nullopt;
+  if (dot == std::string_view::npos || dot == 0) return std::nullopt;
   pid_t process = 0;
   const char* const end = name.data() + mark;
   const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, process);
   if (error != std::errc() || stop != end || process <= 0) return std::nullopt;
-  return process;
+  return TemporaryName{std::string(name.substr(0, dot)).append(extension), process};
+}
+
+// The file or folder that a temporary, or a temporary's temporary, of a dead process was to become.
+std::optional<std::string> abandoned_by(const std::string& name) {
+  std::optional<TemporaryName> temporary = parse_temporary(name);
+  if (!temporary) return std::nullopt;
+  const bool dead = ::kill(temporary->process, 0) != 0 && errno == ESRCH;
+  if (!dead) return std::nullopt;
+  while (const auto inner = parse_temporary(temporary->target)) temporary = inner;
+  return temporary->target;
+}
+
+// What killed processes left in a folder, by the names it was to get.
+std::multimap<std::string, std::filesystem::path> abandoned_in(
+    const std::filesystem::path& folder) {
+  std::multimap<std::string, std::filesystem::path> found;
+  std::error_code ignored;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(folder.empty() ? "." : folder, ignored))
+    if (auto target = abandoned_by(entry.path().filename().string()))
+      found.emplace(std::move(*target), entry.path());
+  return found;
+}
+
+void remove_quietly(const std::filesystem::path& file_or_folder) {
+  std::error_code ignored;
+  std::filesystem::remove_all(file_or_folder, ignored);
+}
+
+void remove_abandoned_of(const std::filesystem::path& path) {
+  const auto found = abandoned_in(path.parent_path());
+  const auto [begin, end] = found.equal_range(path.filename().string());
+  for (auto i = begin; i != end; ++i) remove_quietly(i->second);
+}
+
+// The same for every file that this process writes. Each folder is looked through once, when the
+// first file is written there: there may be thousands of them.
+class AbandonedOnce {
+ public:
+  void remove_of(const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex_);
+    const std::filesystem::path folder = path.parent_path();
+    if (!folders_.contains(folder)) folders_.emplace(folder, abandoned_in(folder));
+    auto& abandoned = folders_.at(folder);
+    const auto [begin, end] = abandoned.equal_range(path.filename().string());
+    for (auto i = begin; i != end; ++i) remove_quietly(i->second);
+    abandoned.erase(begin, end);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::filesystem::path, std::multimap<std::string, std::filesystem::path>> folders_;
+};
+
+AbandonedOnce& abandoned_once() {
+  static AbandonedOnce once;
+  return once;
 }
 
 // Libraries that write files by name do not all report a full disk at close; asking the kernel to
@@ -51,7 +120,9 @@ void flush_to_disk(const std::filesystem::path& temporary) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(temporary_beside(path_)) {}
+    : path_(std::move(path)), temporary_(temporary_beside(path_)) {
+  abandoned_once().remove_of(path_);
+}
 
 // Nothing is left of it after a commit.
 AtomicFile::~AtomicFile() {
@@ -75,12 +146,131 @@ void write_atomically(const std::filesystem::path& path,
   AtomicFile file(path);
   try {
     write(file.temporary());
+  } catch (const std::bad_alloc&) {
+    throw;  // it is not the file that is wrong
   } catch (const std::filesystem::filesystem_error& error) {
     fail("{}: cannot be written: {}", path.string(), error.code().message());
   } catch (const std::exception& error) {
     fail("{}: cannot be written: {}", path.string(), error.what());
   }
   file.commit();
+}
+
+namespace {
+
+// Calls `write`, whose Errors name `named` where they name `temporary`.
+template <class Write>
+void write_under_name(const std::filesystem::path& temporary, const std::filesystem::path& named,
+                      const Write& write) {
+  try {
+    write();
+  } catch (const Error& error) {
+    std::string text = error.what();
+    const std::string from = temporary.string(), to = named.string();
+    for (std::size_t at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    throw Error(text);
+  }
+}
+
+}  // namespace
+
+void write_together(
+    const std::vector<std::filesystem::path>& paths,
+    const std::function<void(const std::vector<std::filesystem::path>& temporaries)>& write) {
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  std::vector<std::filesystem::path> temporaries;
+  std::function<void()> work = [&] { write(temporaries); };
+  for (const std::filesystem::path& path : paths) {
+    const auto& file = files.emplace_back(std::make_unique<AtomicFile>(path));
+    temporaries.push_back(file->temporary());
+    work = [inner = work, path, temporary = file->temporary()] {
+      write_under_name(temporary, path, inner);
+    };
+  }
+  work();
+  for (const auto& file : files) flush_to_disk(file->temporary());
+  for (const auto& file : files) file->commit();
+}
+
+namespace {
+
+// "out/" is the folder "out", which temporaries are to lie beside.
+std::filesystem::path without_slash(const std::filesystem::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+// Where the files of a folder lie until it is complete; it goes with this object.
+class Staging {
+ public:
+  explicit Staging(const std::filesystem::path& folder)
+      : folder_(folder),
+        replaces_(!std::filesystem::exists(folder)),
+        path_(temporary_beside(replaces_ ? folder : folder / "staging")) {
+    remove_abandoned_of(replaces_ ? folder : folder / "staging");
+    make_folder(path_);
+  }
+  ~Staging() { remove_quietly(path_); }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  void commit() const {
+    if (replaces_)
+      std::filesystem::rename(path_, folder_);
+    else
+      move_files();
+  }
+
+ private:
+  std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
+      if (!entry.is_directory()) found.push_back(entry.path().lexically_relative(path_));
+    std::ranges::sort(found);
+    return found;
+  }
+
+  void move_files() const {
+    const std::vector<std::filesystem::path> found = files();
+    for (const std::filesystem::path& file : found) {
+      make_folder((folder_ / file).parent_path());
+      if (std::filesystem::is_directory(folder_ / file))
+        fail("{}: is a folder, where a file is to be written", (folder_ / file).string());
+    }
+    for (const std::filesystem::path& file : found) std::filesystem::remove(folder_ / file);
+    for (const std::filesystem::path& file : found) move(path_ / file, folder_ / file);
+  }
+
+  // A folder within `folder_` may be a link to another disk.
+  static void move(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::error_code error;
+    std::filesystem::rename(from, to, error);
+    if (!error) return;
+    write_atomically(to, [&](const std::filesystem::path& temporary) {
+      std::filesystem::copy_file(from, temporary);
+    });
+  }
+
+  std::filesystem::path folder_;
+  bool replaces_;
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+void write_folder(const std::filesystem::path& folder,
+                  const std::function<void(const std::filesystem::path& staging)>& write) {
+  const std::filesystem::path target = without_slash(folder);
+  const Staging staging(target);
+  try {
+    write_under_name(staging.path(), target, [&] { write(staging.path()); });
+    staging.commit();
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail("{}: cannot be written: {}", target.string(), error.code().message());
+  }
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view bytes) {
@@ -93,14 +283,33 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
   });
 }
 
-void require_writable(const std::filesystem::path& path) {
-  const std::filesystem::path temporary = temporary_beside(path);
+namespace {
+
+void try_temporary(const std::filesystem::path& temporary, const std::filesystem::path& named) {
   errno = 0;
   const bool opened = std::ofstream(temporary, std::ios::binary).is_open();
   const int error = errno;
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
-  if (!opened) fail("{}: cannot be written: {}", path.string(), std::strerror(error));
+  if (!opened) fail("{}: cannot be written: {}", named.string(), std::strerror(error));
+}
+
+}  // namespace
+
+void require_writable(const std::filesystem::path& path) {
+  remove_abandoned_of(path);
+  try_temporary(temporary_beside(path), path);
+}
+
+void require_writable_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path target = without_slash(folder);
+  remove_abandoned_of(target);
+  remove_abandoned_of(target / "staging");
+  std::filesystem::path deepest = target;
+  std::error_code ignored;
+  while (!std::filesystem::exists(deepest, ignored) && deepest.has_relative_path())
+    deepest = deepest.parent_path();
+  try_temporary(temporary_beside(deepest / "staging"), target);
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -131,14 +340,8 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
 }
 
 void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const std::optional<pid_t> process = process_of_temporary(name);
-    if (!name.starts_with(prefix) || !process) continue;
-    const bool dead = ::kill(*process, 0) != 0 && errno == ESRCH;
-    if (dead) std::filesystem::remove(entry.path(), ignored);
-  }
+  for (const auto& [target, temporary] : abandoned_in(folder))
+    if (target.starts_with(prefix)) remove_quietly(temporary);
 }
 
 }  // namespace axial

@@ -2,6 +2,7 @@
 #include "base/log.h"
 
 #include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -10,6 +11,10 @@
 #include <array>
 #include <memory>
 #include <sstream>
+
+#include "base/error.h"
+#include "base/log_file.h"
+#include "base/message.h"
 
 namespace axial {
 namespace {
@@ -22,7 +27,32 @@ spdlog::level::level_enum level_of(LogLevel level) {
   return kLevels[static_cast<std::size_t>(level)];
 }
 
+std::shared_ptr<spdlog::sinks::sink>& file_sink() {
+  static std::shared_ptr<spdlog::sinks::sink> sink;
+  return sink;
+}
+
 }  // namespace
+
+void log_to_file_too(const std::filesystem::path& file) {
+  try {
+    const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
+    sink->set_pattern("%Y-%m-%d %H:%M:%S [%n] %v");
+    spdlog::default_logger()->sinks().push_back(sink);
+    file_sink() = sink;
+  } catch (const spdlog::spdlog_ex& error) {
+    fail("--log-file {}: cannot be written: {}", file.string(), error.what());
+  }
+}
+
+void log_to_file_only(std::string_view line) {
+  if (!file_sink()) return;
+  const std::string& name = spdlog::default_logger_raw()->name();
+  file_sink()->log(spdlog::details::log_msg(spdlog::string_view_t(name.data(), name.size()),
+                                            spdlog::level::err,
+                                            spdlog::string_view_t(line.data(), line.size())));
+  file_sink()->flush();
+}
 
 void set_log_level(LogLevel level) {
   spdlog::set_level(level_of(level));
@@ -50,7 +80,9 @@ void log_line(LogLevel level, std::string_view line) {
 }
 
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments) {
-  if (logs(level)) log_line(level, fmt::vformat(format, arguments));
+  if (!logs(level)) return;
+  const std::string line = fmt::vformat(format, arguments);
+  log_line(level, level == LogLevel::warning ? as_message(line) : line);
 }
 
 struct LogCapture::State {

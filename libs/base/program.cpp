@@ -7,13 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <boost/program_options.hpp>
+#include <cctype>
 #include <fstream>
 #include <iostream>
-#include <new>
+#include <set>
 #include <typeinfo>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/log_file.h"
+#include "base/message.h"
+#include "base/out_of_memory.h"
+#include "base/standard_streams.h"
 
 namespace axial {
 namespace po = boost::program_options;
@@ -34,7 +39,8 @@ po::options_description common_options(CommonOptions& common, const ProgramOptio
       "config-file,c", po::value(&common.config_file)->default_value(program.name + ".cfg"),
       "file with option values, 'name = value' a line")(
       "archive-type", po::value(&common.archive_type)->default_value(-1),
-      "scene format; only -1 (interchange .mvs) is supported")(
+      "scene format: -1 (interchange .mvs), which also 0 to 3 fall back to")(
+      "log-file", po::value(&common.log_file), "file to add the log's lines to, errors included")(
       "process-priority", po::value(&common.process_priority)->default_value(-1),
       "below zero lowers the process's priority")(
       "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
@@ -75,11 +81,6 @@ po::options_description described(const OptionList& list) {
   return description;
 }
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 // boost reads "-1" as an unsigned number, and as a huge one.
 void refuse_negative(const po::parsed_options& parsed, const po::options_description& known) {
   for (const po::option& option : parsed.options) {
@@ -108,9 +109,52 @@ void refuse_stray_arguments(const po::parsed_options& parsed) {
   }
 }
 
-void apply(const CommonOptions& common) {
+bool is_boolean(std::string word) {
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
+  constexpr std::array kWords{"0", "1", "false", "true", "no", "yes", "off", "on"};
+  return std::ranges::find(kWords, word) != kWords.end();
+}
+
+// Nothing for a name that is unknown or ambiguous: boost reports these.
+const po::option_description* find_option(const po::options_description& known,
+                                          const std::string& name) {
+  try {
+    return known.find_nothrow(name, true);
+  } catch (const po::error&) {
+    return nullptr;
+  }
+}
+
+// The words of the command line. A switch gets a value if the next word is none: boost would take
+// that word for the value, whatever it is.
+std::vector<std::string> words_of(int argc, const char* const* argv,
+                                  const po::options_description& known, const OptionList& visible) {
+  std::set<std::string> switches;
+  for (const Option& option : visible.options())
+    if (option.is_switch) switches.insert(option.name.substr(0, option.name.find(',')));
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    std::string word = argv[i];
+    const bool bare =
+        word.size() > 2 && word.starts_with("--") && word.find('=') == std::string::npos;
+    const auto* option = bare ? find_option(known, word.substr(2)) : nullptr;
+    const bool has_value = i + 1 < argc && is_boolean(argv[i + 1]);
+    if (option && switches.contains(option->long_name()) && !has_value) word += "=1";
+    words.push_back(std::move(word));
+  }
+  return words;
+}
+
+void apply(CommonOptions& common) {
+  if (!common.log_file.empty()) log_to_file_too(in_working_folder(common, common.log_file));
+  if (common.archive_type < -1 || common.archive_type > 3)
+    fail("--archive-type {}: must be from -1 to 3", common.archive_type);
   if (common.archive_type != -1)
-    fail("--archive-type is {}: only -1 (interchange .mvs) is supported", common.archive_type);
+    log_warning(
+        "--archive-type {}: OpenMVS's own projects are not written, scenes are interchange .mvs "
+        "(-1)",
+        common.archive_type);
+  common.archive_type = -1;
   if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
   constexpr std::array kLevels{LogLevel::warning, LogLevel::info, LogLevel::debug, LogLevel::trace};
@@ -147,7 +191,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
   positional.add("input-file", -1);
 
   try {
-    po::command_line_parser parser(argc, argv);
+    po::command_line_parser parser(words_of(argc, argv, command_line, program.visible));
     parser.options(command_line);
     const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
     if (has_input) parser.positional(positional);
@@ -169,7 +213,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
         refuse_negative(in_file, config);
         po::store(in_file, values);
       } catch (const po::error& cfg_error) {
-        fail("{}: {}", cfg.string(), one_line(cfg_error.what()));
+        fail("{}: {}", cfg.string(), as_message(cfg_error.what()));
       }
     } else if (given_in(values, "config-file")) {
       fail("{}: cannot be opened", cfg.string());
@@ -191,7 +235,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
       return parsed;
     }
   } catch (const po::error& error) {
-    fail("command line: {}", one_line(error.what()));
+    fail("command line: {}", as_message(error.what()));
   }
   apply(parsed.common);
   parsed.run = true;
@@ -200,21 +244,34 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 
 namespace {
 
+// The loader calls it before it initialises the libraries: one of them might open files, or run out
+// of memory.
+void prepare_process(int, char**, char**) {
+  open_standard_streams();
+  report_uncaught_exceptions();
+}
+
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const prepare_process_first)(int, char**, char**) = prepare_process;
+
 // On a terminal a line of progress may be under way: what is written next takes its place.
 std::string line_start(int descriptor) {
   return ::isatty(descriptor) != 0 ? "\r\033[K" : "";
 }
 
+void say_error(const std::string& name, std::string_view what) {
+  std::cerr << line_start(STDERR_FILENO) << name << ": " << what << "\n";
+  log_to_file_only(what);
+}
+
 }  // namespace
 
 int run_program(const std::string& name, const std::function<int()>& body) {
-  start_log(name, line_start(STDOUT_FILENO));
   try {
+    start_log(name, line_start(STDOUT_FILENO));
     return body();
-  } catch (const std::bad_alloc&) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": out of memory\n";
   } catch (const std::exception& error) {
-    std::cerr << line_start(STDERR_FILENO) << name << ": " << one_line(error.what()) << "\n";
+    say_error(name, is_out_of_memory(error) ? "out of memory" : as_message(error.what()));
   }
   return 1;
 }

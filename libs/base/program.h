@@ -16,6 +16,7 @@ namespace axial {
 struct CommonOptions {
   std::filesystem::path working_folder;  // absolute; base of every relative path
   std::string config_file;
+  std::string log_file;  // empty: none
   int archive_type = -1;
   int process_priority = -1;
   unsigned max_threads = 0;
@@ -33,8 +34,8 @@ struct ProgramOptions {
 };
 
 // Parses the command line the way OpenMVS's programs do: long names may be abbreviated, booleans
-// take a value (0/1, true/false, yes/no, on/off), positional arguments are `--input-file`, and
-// refused by a program that has none. The cfg
+// take a value (0/1, true/false, yes/no, on/off), which a switch may go without, positional
+// arguments are `--input-file`, and refused by a program that has none. The cfg
 // file (default `<name>.cfg` in the working folder) gives values for options absent from the
 // command line. Prints the help and returns false if there is nothing to run: exit with 0 after
 // `-h`, and with 1 when `--input-file` is declared by the program but absent (OpenMVS exits with 1
@@ -55,7 +56,9 @@ bool given(const ParsedOptions& parsed, const std::string& name);
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
 
 // Sets up the log ("HH:MM:SS [App] text" on standard output), runs `body`, and turns any exception
-// into one line on standard error and exit code 1.
+// into one line on standard error (base/message.h) and exit code 1. A program that calls it has
+// standard streams from its start (base/standard_streams.h), and an exception that nothing catches
+// is such a line, too (base/out_of_memory.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 
 }  // namespace axial

@@ -80,6 +80,14 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
   return result;
 }
 
+Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
+                          const LocalFrame& to) {
+  if (from.is_world() && to.is_world()) return similarity;
+  Similarity worlds = similarity;
+  worlds.translation = to.to_world(similarity(-from.origin));
+  return worlds;
+}
+
 void apply(const Similarity& similarity, io::ColmapModel& model) {
   for (io::ColmapImage& image : model.images) {
     image.pose.centre = similarity(image.pose.centre);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/colmap.h"
+#include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
 
@@ -44,6 +45,11 @@ struct CentreAlignment {
 // The similarity that takes the camera centres of `model` to those of `reference`, images matched
 // by name. Error as fit_similarity.
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
+
+// The similarity of world to world that `similarity` is from coordinates in `from` to those in
+// `to`.
+Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
+                          const LocalFrame& to);
 
 // Poses, points and normals under the similarity. Reprojections do not change.
 void apply(const Similarity& similarity, io::ColmapModel& model);

@@ -128,6 +128,11 @@ refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file
   return port_from(word, numbers, file + ": non_svp_parameters");
 }
 
+bool without_port(const YamlKeys& yaml) {
+  const Words& words = yaml.words("non_svp_model");
+  return words.empty() || (words.size() == 1 && words.front() == "NONE");
+}
+
 template <class Numbers>
 std::string listed(const Numbers& numbers) {
   return fmt::format("[{}]", fmt::join(numbers, ", "));
@@ -149,10 +154,13 @@ ColmapCamera read_calibmar(const std::filesystem::path& path) {
   camera.height = yaml.number<std::uint64_t>("height");
   camera.params = yaml.numbers<double>("parameters");
   check_colmap_camera(camera, path.string());
-  const bool dry = !yaml.has("non_svp_model") || yaml.words("non_svp_model").empty() ||
-                   yaml.word("non_svp_model") == "NONE";
-  if (!dry) camera.port = read_port(yaml, path.string());
+  if (yaml.has("non_svp_model") && !without_port(yaml)) camera.port = read_port(yaml, path.string());
   return camera;
+}
+
+bool says_no_port(const std::filesystem::path& path) {
+  const YamlKeys yaml(path);
+  return yaml.has("non_svp_model") && without_port(yaml);
 }
 
 void write_calibmar(const std::filesystem::path& path, const ColmapCamera& camera,

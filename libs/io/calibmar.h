@@ -19,6 +19,10 @@ bool is_calibmar(const std::filesystem::path& path);
 // a model COLMAP does not have, a wrong count of parameters, a port that cannot be.
 ColmapCamera read_calibmar(const std::filesystem::path& path);
 
+// Whether the file says that the camera has no port, "non_svp_model: NONE" or an empty one. False
+// where that key is missing. Error as for read_calibmar.
+bool says_no_port(const std::filesystem::path& path);
+
 // `comments`: lines to put in front.
 void write_calibmar(const std::filesystem::path& path, const ColmapCamera& camera,
                     std::span<const std::string> comments = {});

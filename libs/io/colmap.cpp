@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/colmap.h"
 
+#include <algorithm>
+#include <array>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "io/calibmar.h"
+#include "io/colmap_folder.h"
 #include "io/colmap_parts.h"
 
 namespace axial::io {
@@ -18,14 +23,34 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// One part of a model by the reader of the form it is stored in.
 template <class T>
-std::vector<T> read_part(const fs::path& folder, const std::string& name,
+std::vector<T> read_part(const fs::path& folder, const std::string& name, ModelForm form,
                          std::vector<T> (*text)(const fs::path&),
                          std::vector<T> (*binary)(const fs::path&)) {
-  if (is_file(folder / (name + ".txt"))) return text(folder / (name + ".txt"));
-  if (is_file(folder / (name + ".bin"))) return binary(folder / (name + ".bin"));
-  fail("{}: has neither {}.txt nor {}.bin", folder.string(), name, name);
+  return (form == ModelForm::text ? text : binary)(part_file(folder, name, form));
+}
+
+bool has_cameras(const fs::path& folder) {
+  return is_file(part_file(folder, "cameras", ModelForm::text)) ||
+         is_file(part_file(folder, "cameras", ModelForm::binary));
+}
+
+bool holds_any_model(const fs::path& folder) {
+  return holds_model(folder, ModelForm::text) || holds_model(folder, ModelForm::binary);
+}
+
+// Models that a user of `folder` may have meant instead of the one in `taken`: in the other places,
+// and those beside DIR/sparse/0 that COLMAP could not join to it.
+std::vector<std::string> other_models(std::span<const fs::path> places, const fs::path& taken) {
+  std::vector<std::string> others;
+  for (const fs::path& place : places)
+    if (place != taken && holds_any_model(place)) others.push_back(place.string());
+  for (int i = 1; taken.filename() == "0"; ++i) {
+    const fs::path next = taken.parent_path() / std::to_string(i);
+    if (!holds_any_model(next)) break;
+    others.push_back(next.string());
+  }
+  return others;
 }
 
 template <class T>
@@ -33,6 +58,17 @@ void require_unique_ids(const std::vector<T>& items, const char* what, const std
   std::unordered_set<std::uint64_t> seen;
   for (const T& item : items)
     if (!seen.insert(item.id).second) fail("{}: {} {} occurs twice", model, what, item.id);
+}
+
+// An image is known by its path relative to the folder of the images.
+void require_unique_names(const ColmapModel& model, const std::string& where) {
+  std::unordered_map<std::string, std::uint32_t> seen;
+  for (const ColmapImage& image : model.images) {
+    const std::string path = fs::path(image.name).lexically_normal().generic_string();
+    const auto [other, added] = seen.emplace(path, image.id);
+    if (!added)
+      fail("{}: images {} and {} have one name, {}", where, other->second, image.id, image.name);
+  }
 }
 
 void check_references(const ColmapModel& model, const std::string& where) {
@@ -67,34 +103,45 @@ void check_references(const ColmapModel& model, const std::string& where) {
 
 fs::path find_colmap_model(const fs::path& folder) {
   const std::array<fs::path, 3> places{folder / "sparse", folder / "sparse" / "0", folder};
-  for (const fs::path& place : places)
-    if (is_file(place / "cameras.txt") || is_file(place / "cameras.bin")) return place;
-  fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),
-       places[0].string(), places[1].string(), places[2].string());
+  auto taken = std::ranges::find_if(places, holds_any_model);
+  // Without a whole model the reader's message says what is missing.
+  if (taken == places.end()) taken = std::ranges::find_if(places, has_cameras);
+  if (taken == places.end())
+    fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),
+         places[0].string(), places[1].string(), places[2].string());
+  if (const auto others = other_models(places, *taken); !others.empty())
+    log_info("{}: is the model that is read, and not {}", taken->string(), fmt::join(others, ", "));
+  return *taken;
 }
 
 ColmapModel read_colmap_model(const fs::path& folder) {
+  const ModelForm form = model_form(folder);
   ColmapModel model;
-  model.cameras = read_part(folder, "cameras", read_cameras_text, read_cameras_binary);
-  model.images = read_part(folder, "images", read_images_text, read_images_binary);
-  model.points = read_part(folder, "points3D", read_points_text, read_points_binary);
+  model.cameras = read_part(folder, "cameras", form, read_cameras_text, read_cameras_binary);
+  model.images = read_part(folder, "images", form, read_images_text, read_images_binary);
+  model.points = read_part(folder, "points3D", form, read_points_text, read_points_binary);
   const std::string where = folder.string();
   require_unique_ids(model.cameras, "camera", where);
   require_unique_ids(model.images, "image", where);
   require_unique_ids(model.points, "3D point", where);
+  require_unique_names(model, where);
   check_references(model, where);
+  warn_of_rivals(folder, form, model);
   return model;
 }
 
 std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
   if (is_calibmar(path)) return {read_calibmar(path)};
-  std::vector<ColmapCamera> cameras;
   std::error_code error;
-  if (fs::is_directory(path, error))
-    cameras = read_part(path, "cameras", read_cameras_text, read_cameras_binary);
-  else
-    cameras = path.extension() == ".bin" ? read_cameras_binary(path) : read_cameras_text(path);
+  const bool is_folder = fs::is_directory(path, error);
+  const ModelForm form = is_folder                    ? cameras_form(path)
+                         : path.extension() == ".bin" ? ModelForm::binary
+                                                      : ModelForm::text;
+  const fs::path file = is_folder ? part_file(path, "cameras", form) : path;
+  const std::vector<ColmapCamera> cameras =
+      form == ModelForm::binary ? read_cameras_binary(file) : read_cameras_text(file);
   require_unique_ids(cameras, "camera", path.string());
+  if (is_folder) warn_of_rival_cameras(path, form, cameras);
   return cameras;
 }
 

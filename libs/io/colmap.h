@@ -60,21 +60,25 @@ struct ColmapModel {
   std::vector<ColmapPoint3D> points;
 };
 
-// The folder that holds the model: DIR/sparse, DIR/sparse/0 or DIR itself, the first with a cameras
-// file. Error listing the places looked in.
+// The folder that holds the model: DIR/sparse, DIR/sparse/0 or DIR itself, the first with a whole
+// model, or else with a cameras file. A line names other models there. Error listing the places
+// looked in.
 std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 
-// Reads cameras, images, points3D, each from .txt or .bin (text preferred where both exist),
-// COLMAP's and COLMAP-Underwater's: binary cameras of the two differ in length. All of COLMAP's
-// camera models are parsed; Error for an unknown model, a wrong number of parameters, a NaN, a
-// reference to a camera, image or point that does not exist, a truncated file.
+// Reads cameras, images and points3D, COLMAP's and COLMAP-Underwater's: binary cameras of the two
+// differ in length. As in COLMAP the folder's binary model is read if it is whole, else its text
+// model; a warning names the files of the other form that differ. All of COLMAP's camera models are
+// parsed; Error for an unknown model, a wrong number of parameters, a NaN, a reference to a camera,
+// image or point that does not exist, two images of one name, a truncated file, a folder without a
+// whole model.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
 // The cameras alone: of a model's folder, or a file cameras.txt or cameras.bin by any name with
 // that extension, or Calibmar's, with its port (calibmar.h).
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
-// For COLMAP: ports are left out, which its readers cannot read.
+// For COLMAP: ports are left out, which its readers cannot read. Error if a text model would go
+// into a folder that holds a binary one, which readers take first.
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
 

@@ -10,11 +10,15 @@
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/same_file.h"
 #include "io/colmap_lens.h"
+#include "io/colmap_undistort.h"
 #include "io/image.h"
 #include "io/image_names.h"
+#include "io/masks.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
@@ -28,10 +32,10 @@ bool is_jpeg(const fs::path& path) {
   return extension == ".jpg" || extension == ".jpeg";
 }
 
-// What replaces one camera of the model. Images are resampled where `map` is not empty.
+// What replaces one camera of the model.
 struct ImportedCamera {
   CameraModel camera;
-  cv::Mat2f map;
+  bool resampled = false;  // its images
 };
 
 // The lens as it is. A warning where it does not show its whole image.
@@ -71,18 +75,22 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   if (const auto& l = imported.camera.lens; !(l.fx > 0 && l.fy > 0))
     fail("{}: camera {}: focal length ({}, {}) is not positive", model_folder.string(), camera.id,
          l.fx, l.fy);
-  if (resampled) imported.map = undistortion_map(camera, imported.camera.lens);
+  imported.resampled = resampled;
   if (!lens && !resampled) keep_lens(camera, *distortion, model_folder, imported.camera);
   return imported;
 }
 
 std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
-                                                       const ColmapImport& import) {
+                                                       const ColmapImport& import,
+                                                       const ProgressSink& progress) {
   std::set<std::uint32_t> used;
   for (const ColmapImage& image : model.images) used.insert(image.camera);
   std::map<std::uint32_t, ImportedCamera> imported;
-  for (const ColmapCamera& camera : model.cameras)
-    if (used.contains(camera.id)) imported.emplace(camera.id, import_camera(camera, import));
+  for (const ColmapCamera& camera : model.cameras) {
+    if (!used.contains(camera.id)) continue;
+    imported.emplace(camera.id, import_camera(camera, import));
+    if (progress) progress(imported.size(), used.size());
+  }
   return imported;
 }
 
@@ -94,16 +102,29 @@ void check_size(const fs::path& path, const CameraModel& camera) {
 }
 
 // The mask of an image that is to be undistorted, which has `camera`'s size.
-void check_mask(const fs::path& image, const CameraModel& camera) {
-  const fs::path mask = mask_beside(image);
-  std::error_code error;
-  if (fs::exists(mask, error))
-    check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+void check_mask(const fs::path& mask, const CameraModel& camera) {
+  if (!mask.empty()) check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
+}
+
+// Where the masks of images are that are to be undistorted; empty for the others.
+std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<bool>& resampled) {
+  std::vector<MaskRequest> requests;
+  for (const SceneImage& image : scene.images) requests.push_back({image.path, {}});
+  const std::vector<FoundMask> found = find_masks(requests);
+  const RivalMasks rivals = rival_masks(found);
+  if (rivals.count > 0)
+    log_warning("{}: is used, and {}, which differs, is not ({} images have such masks)",
+                rivals.used.string(), rivals.other.string(), rivals.count);
+  std::vector<fs::path> masks(found.size());
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    if (resampled[i]) masks[i] = found[i].path;
+  return masks;
 }
 
 // Names come from a file: none may lead out of the folder that is written to, or back to the
-// photographs.
-void check_undistorted_names(const ColmapModel& model, const ColmapImport& import) {
+// photographs, and no two to one file. `resampled`: the images to undistort, as indices.
+void check_undistorted_names(const ColmapModel& model, std::span<const std::size_t> resampled,
+                             const ColmapImport& import) {
   std::error_code error;
   if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
     fail("{}: holds the images to undistort, and would be overwritten",
@@ -114,62 +135,104 @@ void check_undistorted_names(const ColmapModel& model, const ColmapImport& impor
       fail("{}: image {}: name '{}' is not below the image folder", import.model_folder.string(),
            image.id, image.name);
   }
+  std::vector<std::string> names;
+  std::vector<fs::path> photographs, undistorted;
+  for (const std::size_t i : resampled) {
+    names.push_back(model.images[i].name);
+    undistorted.push_back(import.undistorted_folder / undistorted_name(names.back()));
+  }
+  require_apart(names, import.model_folder);
+  for (const ColmapImage& image : model.images)
+    photographs.push_back(import.image_folder / image.name);
+  require_no_inputs(undistorted, photographs, "The undistorted image");
 }
 
-// The mask beside `source`, if there is one, goes beside `target`. Labels are copied, never mixed.
-void undistort_mask(const fs::path& source, const fs::path& target, const cv::Mat2f& map) {
-  const fs::path mask = mask_beside(source);
-  std::error_code error;
-  if (!fs::exists(mask, error)) return;
+// The images to undistort, those of one camera one after another.
+std::vector<std::size_t> images_to_undistort(
+    const ColmapModel& model, const std::map<std::uint32_t, ImportedCamera>& cameras) {
+  std::vector<std::size_t> images;
+  for (std::size_t i = 0; i < model.images.size(); ++i)
+    if (cameras.at(model.images[i].camera).resampled) images.push_back(i);
+  std::ranges::stable_sort(images, {}, [&](std::size_t i) { return model.images[i].camera; });
+  return images;
+}
+
+// `mask`, unless it is empty, goes beside `target`. Labels are copied, never mixed.
+void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2f& map) {
+  if (mask.empty()) return;
   const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
   cv::Mat1w straight;
   cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
   write_png(mask_beside(target), straight);
 }
 
-// Writes the undistorted image, and its mask, and returns the image's path.
-fs::path undistort(const fs::path& source, const std::string& name, const ImportedCamera& camera,
-                   const fs::path& folder) {
-  const cv::Mat3b distorted = read_color_image(source);
-  cv::Mat3b straight;
-  cv::remap(distorted, straight, camera.map, cv::noArray(), cv::INTER_LANCZOS4,
+// A photograph as `map` sees it: B G R of its own depth, and alpha if some of it is transparent.
+// Hidden colours are mixed into no pixel that is not.
+cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
+  cv::Mat straight;
+  cv::remap(photograph.pixels, straight, map, cv::noArray(), cv::INTER_LANCZOS4,
             cv::BORDER_REPLICATE);
-  fs::path target = folder / name;
+  if (straight.depth() == CV_16U) {
+    // Where the interpolation overshoots, it must not take more bits than the camera has.
+    cv::Mat values = straight.reshape(1);
+    cv::min(values, (1 << bits_used(photograph.pixels)) - 1, values);
+  }
+  if (photograph.opaque.empty()) return straight;
+  cv::Mat alpha;
+  cv::remap(photograph.opaque, alpha, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // what the kernel of 8 x 8 reaches
+  alpha.convertTo(alpha, straight.depth(), straight.depth() == CV_16U ? 257 : 1);
+  std::vector<cv::Mat> channels;
+  cv::split(straight, channels);
+  channels.push_back(alpha);
+  cv::merge(channels, straight);
+  return straight;
+}
+
+// Writes the undistorted image, and its mask, and returns the image's path.
+fs::path undistort(const fs::path& source, const fs::path& mask, const std::string& name,
+                   const cv::Mat2f& map, const fs::path& folder) {
+  const cv::Mat straight = resampled(read_photograph(source), map);
+  const fs::path target = folder / undistorted_name(name);
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
   constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target)) {
+  if (is_jpeg(target) && straight.type() == CV_8UC3)
     write_jpeg(target, straight, kQuality);
-  } else {
-    if (target.extension() != ".png") target += ".png";  // a.tif and a.bmp may lie side by side
+  else
     write_png(target, straight);
-  }
-  undistort_mask(source, target, camera.map);
+  undistort_mask(mask, target, map);
   return target;
 }
 
-void import_points(const ColmapModel& model, Scene& scene) {
+void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene) {
   std::unordered_map<std::uint32_t, std::uint32_t> index_of;
   for (std::size_t i = 0; i < model.images.size(); ++i)
     index_of.emplace(model.images[i].id, static_cast<std::uint32_t>(i));
+  std::size_t repetitions = 0;
   for (const ColmapPoint3D& point : model.points) {
     SparsePoint sparse;
     sparse.position = point.position.cast<float>();
     for (const ColmapTrackElement& element : point.track)
       sparse.views.push_back({index_of.at(element.image), 0.0f});
-    std::sort(sparse.views.begin(), sparse.views.end(),
-              [](const SparseView& a, const SparseView& b) { return a.image < b.image; });
+    std::ranges::sort(sparse.views, {}, &SparseView::image);
+    const auto repeated = std::ranges::unique(sparse.views, {}, &SparseView::image);
+    repetitions += repeated.size();
+    sparse.views.erase(repeated.begin(), repeated.end());
     scene.points.push_back(std::move(sparse));
     scene.point_colors.push_back(point.color);
   }
+  if (repetitions > 0)
+    log_info("{}: {} observations are of an image that sees the point already, and do not count",
+             import.model_folder.string(), repetitions);
 }
 
 // The name that `image`, imported as `path`, goes by in the scene's housing.
 std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
   const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
-  fs::path name = fs::path(image.name).lexically_normal();
-  if (undistorted) name.replace_extension(path.extension());
+  const fs::path name =
+      undistorted ? undistorted_name(image.name) : fs::path(image.name).lexically_normal();
   return name.generic_string();
 }
 
@@ -190,11 +253,11 @@ void check_ports(const Housing& resolved, const Scene& scene,
 }  // namespace
 
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
-                          const ProgressSink& progress) {
+                          const ProgressSink& undistorting, const ProgressSink& preparing_cameras) {
   if (model.images.size() < 2)
     fail("{}: the model has {} registered images, at least 2 are needed",
          import.model_folder.string(), model.images.size());
-  const auto cameras = import_cameras(model, import);
+  const auto cameras = import_cameras(model, import, preparing_cameras);
   const bool from_zero = std::any_of(model.images.begin(), model.images.end(),
                                      [](const ColmapImage& image) { return image.id == 0; });
 
@@ -209,26 +272,44 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   }
 
   // Everything is checked before the first file is written.
+  std::vector<bool> resampled;
+  for (const ColmapImage& image : model.images)
+    resampled.push_back(cameras.at(image.camera).resampled);
+  const bool all_straight = std::ranges::count(resampled, true) == 0;
+  const std::vector<fs::path> masks =
+      all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
+  FirstError error;
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
-    check_size(image.path, image.camera);
-    if (!cameras.at(model.images[i].camera).map.empty()) check_mask(image.path, image.camera);
+    error.run(i, [&] {
+      check_size(image.path, image.camera);
+      check_mask(masks[i], image.camera);
+    });
   });
-  const bool all_straight = std::all_of(
-      cameras.begin(), cameras.end(), [](const auto& camera) { return camera.second.map.empty(); });
-  if (!all_straight) check_undistorted_names(model, import);
+  error.rethrow();
+  const std::vector<std::size_t> undistorted = images_to_undistort(model, cameras);
+  if (!undistorted.empty()) check_undistorted_names(model, undistorted, import);
+  std::unordered_map<std::uint32_t, const ColmapCamera*> camera_of;
+  for (const ColmapCamera& camera : model.cameras) camera_of.emplace(camera.id, &camera);
+  UndistortionMaps maps;
+  for (const std::size_t i : undistorted)
+    maps.expect(*camera_of.at(model.images[i].camera), scene.images[i].camera.lens);
   std::mutex mutex;
   std::size_t done = 0;
-  parallel_for(scene.images.size(), [&](std::size_t i) {
-    const ImportedCamera& camera = cameras.at(model.images[i].camera);
-    if (camera.map.empty()) return;
-    SceneImage& image = scene.images[i];
-    image.path =
-        undistort(image.path, model.images[i].name, camera, import.undistorted_folder).string();
+  for_each_in_flight(undistorted.size(), thread_count(), [&](std::size_t k) {
+    const std::size_t i = undistorted[k];
+    const ColmapImage& from = model.images[i];
+    error.run(i, [&] {
+      const fs::path source = scene.images[i].path;
+      scene.images[i].path =
+          undistort(source, masks[i], from.name, maps.take(from.camera), import.undistorted_folder)
+              .string();
+    });
     const std::scoped_lock lock(mutex);
-    if (progress) progress(++done, scene.images.size());
+    if (undistorting) undistorting(++done, undistorted.size());
   });
-  import_points(model, scene);
+  error.rethrow();
+  import_points(model, import, scene);
   return scene;
 }
 

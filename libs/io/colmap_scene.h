@@ -24,11 +24,14 @@ struct ColmapImport {
 // The scene of `model`, images in the model's order, at least two. Every image file must exist and
 // have its camera's size. Cameras that are no pinholes keep their lens (lens_distortion), or are
 // replaced by a pinhole (pinhole_inside) and their images resampled into `undistorted_folder`, with
-// the masks beside them: JPEGs stay JPEGs, everything else becomes PNG. Image ids are COLMAP's less
-// one, or COLMAP's own if they start at 0. Views of sparse points are sorted by image and have no
-// confidence. Error that names file, field and value.
+// the masks beside them: JPEGs stay JPEGs, everything else becomes PNG. No two images may be
+// undistorted to one file, or to a photograph. Only the images at work, one a thread, have their
+// undistortion maps in memory. Image ids are COLMAP's less one, or COLMAP's own if they start at 0.
+// Views of sparse points are sorted by image, each image once (a line counts the others), and have
+// no confidence. Error that names file, field and value, before anything is written.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
-                          const ProgressSink& progress = {});
+                          const ProgressSink& undistorting = {},
+                          const ProgressSink& preparing_cameras = {});
 
 // The ports that cameras carry, as files of COLMAP-Underwater do: "camera_1" for camera 1, and so
 // on. No port if none does.

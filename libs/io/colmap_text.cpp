@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/atomic_file.h"
+#include "io/colmap_folder.h"
 #include "io/colmap_parts.h"
 #include "io/colmap_port.h"
 #include "io/text_reader.h"
@@ -190,6 +191,9 @@ void write_text(const fs::path& folder, const ColmapModel& model, Dialect dialec
 }  // namespace
 
 void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
+  if (holds_model(folder, ModelForm::binary))
+    fail("{}: holds a binary model, which would be read instead of the text model to write",
+         folder.string());
   write_text(folder, model, Dialect::colmap);
 }
 

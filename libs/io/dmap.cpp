@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numeric>
 
@@ -123,8 +124,23 @@ Pose read_pose(ByteReader& in) {
   return pose;
 }
 
+struct Header {
+  DepthMap map;  // without pixels, but with the camera of its own resolution
+  std::uint8_t content = 0;
+
+  std::uint64_t pixels() const {
+    return static_cast<std::uint64_t>(map.camera.width) *
+           static_cast<std::uint64_t>(map.camera.height);
+  }
+
+  std::uint64_t bytes_of_pixels() const {
+    const std::uint64_t floats = 1 + (content & kNormals ? 3 : 0) + (content & kConfidence ? 1 : 0);
+    return pixels() * (floats * sizeof(float) + (content & kViews ? 4 : 0));
+  }
+};
+
 // What the .dmap alone says: z-depth, a camera without a port.
-DepthMap parse_dmap(ByteReader& in) {
+Header parse_header(ByteReader& in) {
   if (in.take(2, "magic") != "DR") fail("{}: is no .dmap: it does not start with DR", in.file());
   const auto content = in.read<std::uint8_t>("content flags");
   if (!(content & kDepth) || content > (kDepth | kNormals | kConfidence | kViews))
@@ -135,7 +151,9 @@ DepthMap parse_dmap(ByteReader& in) {
   if (size.width > image_size.width || size.height > image_size.height)
     fail("{}: the depth map ({}x{}) is larger than the image ({}x{})", in.file(), size.width,
          size.height, image_size.width, image_size.height);
-  DepthMap map;
+  Header header;
+  header.content = content;
+  DepthMap& map = header.map;
   map.min_depth = in.read<float>("dMin");
   map.max_depth = in.read<float>("dMax");
   if (!std::isfinite(map.min_depth) || !std::isfinite(map.max_depth))
@@ -149,8 +167,15 @@ DepthMap parse_dmap(ByteReader& in) {
   map.camera = read_camera(in, image_size);
   if (image_size != size) map.camera = map.camera.resized(size.width, size.height);
   map.pose = read_pose(in);
-  const auto pixels =
-      static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
+  return header;
+}
+
+DepthMap parse_dmap(ByteReader& in) {
+  Header header = parse_header(in);
+  DepthMap& map = header.map;
+  const auto content = header.content;
+  const std::uint64_t pixels = header.pixels();
+  const cv::Size size(map.camera.width, map.camera.height);
   in.require_room(pixels, sizeof(float), "depth");
   map.depth.create(size);
   read_pixels(in, map.depth, "depth");
@@ -168,7 +193,18 @@ DepthMap parse_dmap(ByteReader& in) {
   }
   if (content & kViews) in.take(4 * pixels, "views");
   in.require_end();
-  return map;
+  return std::move(header.map);
+}
+
+// The beginning of a file, which holds every header.
+std::string read_beginning(const fs::path& path) {
+  constexpr std::streamsize kLongestHeader = 1 << 18;  // names have at most 65535 bytes
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(kLongestHeader, '\0');
+  in.read(bytes.data(), kLongestHeader);
+  if (in.bad() || (in.fail() && !in.eof())) fail("{}: cannot be read", path.string());
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
 }
 
 void use_side_file(const DmapSideFile& side, const std::string& file, StoredDepthMap& stored) {
@@ -249,21 +285,36 @@ void write_header(ByteWriter& out, const fs::path& path, const DepthMap& map,
   out.write(std::span(map.pose.centre.data(), 3));
 }
 
+// The counterpart of relative_image.
+std::string resolved_image(const std::string& name, const fs::path& dmap) {
+  return (fs::absolute(dmap).parent_path() / name).lexically_normal().string();
+}
+
+bool is_whole(const std::string& bytes, const std::string& file) {
+  try {
+    ByteReader in(bytes, file);
+    parse_dmap(in);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
-StoredDepthMap read_dmap(const fs::path& path) {
+StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
   const std::string file = path.string();
   const std::string bytes = read_file(path);
   ByteReader in(bytes, file);
   StoredDepthMap stored{parse_dmap(in), {}};
   DepthMap& map = stored.map;
-  const auto side = read_dmap_side_file(path);
+  const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
   if (side) {
     if (side->content != fingerprint_of(bytes))
       fail("{}: is not the depth map that {} describes", file, dmap_side_path(path).string());
     use_side_file(*side, dmap_side_path(path).string(), stored);
   }
-  map.image_path = (fs::absolute(path).parent_path() / map.image_path).lexically_normal().string();
+  map.image_path = resolved_image(map.image_path, path);
   map.depth = converted(map.depth, map.camera, file,
                         [](const DepthAlongRay& ray, double z) { return ray.lambda(z); });
   if (side) {
@@ -276,6 +327,27 @@ StoredDepthMap read_dmap(const fs::path& path) {
                   ray.lambda(static_cast<double>(map.max_depth)), map.depth);
   }
   return stored;
+}
+
+DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
+  const std::string file = path.string();
+  const std::string bytes = read_beginning(path);
+  ByteReader in(bytes, file);
+  Header header = parse_header(in);
+  std::error_code error;
+  const std::uint64_t wanted = in.position() + header.bytes_of_pixels();
+  if (const std::uint64_t found = fs::file_size(path, error); error || found != wanted)
+    fail("{}: has {} bytes, but its header says {}", file, found, wanted);
+  StoredDepthMap stored{std::move(header.map), {}};
+  if (use == DmapSide::used)
+    if (const auto side = read_dmap_side_file(path))
+      use_side_file(*side, dmap_side_path(path).string(), stored);
+  DepthMap& map = stored.map;
+  map.image_path = resolved_image(map.image_path, path);
+  const DepthAlongRay ray = centre_ray(map.camera);
+  map.min_depth = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
+  map.max_depth = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
+  return std::move(stored.map);
 }
 
 void write_dmap(const fs::path& path, const DepthMap& map, const std::string& made_from) {
@@ -293,24 +365,35 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
   write_pixels(out, map.confidence);
   const DmapSideFile side{map.camera, map.min_depth, map.max_depth, made_from,
                           fingerprint_of(out.bytes())};
-  // The side file takes its name before the map does: whenever this is interrupted, a map of ours
-  // has a side file, and one beside an older map does not fit it.
+  // Whenever this is interrupted, a map of ours has its own side file: a map that does not fit the
+  // one beside it is another program's.
   write_atomically(path, [&](const fs::path& temporary) {
     write_atomically(temporary, out.bytes());
+    std::error_code ignored;
+    fs::remove(path, ignored);
     write_dmap_side_file(path, side);
   });
 }
 
-std::optional<std::string> dmap_made_from(const fs::path& path) {
+DmapStatus dmap_status(const fs::path& path) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return {};
+  if (!fs::exists(path, ignored)) return {};
+  if (!fs::is_regular_file(path, ignored) || !fs::exists(dmap_side_path(path), ignored))
+    return {DmapOrigin::foreign, {}};
   try {
+    const std::string bytes = read_file(path);
     const auto side = read_dmap_side_file(path);
-    if (side && side->content == fingerprint_of(read_file(path))) return side->made_from;
+    if (side && side->content == fingerprint_of(bytes)) return {DmapOrigin::ours, side->made_from};
+    return {side && is_whole(bytes, path.string()) ? DmapOrigin::foreign : DmapOrigin::damaged, {}};
   } catch (const Error&) {
-    // Damaged, so of no use; the map is computed again.
+    return {DmapOrigin::damaged, {}};
   }
-  return {};
+}
+
+std::optional<std::string> dmap_made_from(const fs::path& path) {
+  const DmapStatus status = dmap_status(path);
+  if (status.origin != DmapOrigin::ours) return {};
+  return status.made_from;
 }
 
 }  // namespace axial::io

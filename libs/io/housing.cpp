@@ -80,6 +80,7 @@ struct Check {
 
 Housing calibmar_housing(const fs::path& path) {
   const ColmapCamera camera = read_calibmar(path);
+  if (!camera.port && says_no_port(path)) return {};
   if (!camera.port) fail("{}: key 'non_svp_model' is missing", path.string());
   return housing_with(to_housing_port(*camera.port));
 }

@@ -1,100 +1,99 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "io/image_codecs.h"
 #include "scene/resolution.h"
 
 namespace axial::io {
+namespace fs = std::filesystem;
+
 namespace {
 
-unsigned byte_at(std::string_view bytes, std::size_t i) {
-  return static_cast<unsigned char>(bytes[i]);
-}
-
-unsigned big_endian(std::string_view bytes, std::size_t i, std::size_t size) {
-  unsigned value = 0;
-  for (std::size_t k = 0; k < size; ++k) value = value << 8 | byte_at(bytes, i + k);
-  return value;
-}
-
-bool is_jpeg(std::string_view bytes) {
-  return bytes.starts_with("\xFF\xD8\xFF");
-}
-bool is_png(std::string_view bytes) {
-  return bytes.starts_with("\x89PNG\r\n\x1A\n");
-}
-
-// What the marker segments of a JPEG file say (ISO 10918-1, annex B).
-struct JpegOutline {
-  cv::Size size;
-  bool complete = false;  // the end-of-image marker is there
-};
-
-// Position of the next marker's code byte at or after `i`, past the entropy-coded data.
-std::size_t next_marker(std::string_view bytes, std::size_t i) {
-  for (; i + 1 < bytes.size(); ++i) {
-    if (byte_at(bytes, i) != 0xFF) continue;
-    const unsigned code = byte_at(bytes, i + 1);
-    const bool restart = code >= 0xD0 && code <= 0xD7;
-    if (code != 0x00 && code != 0xFF && !restart) return i + 1;
+// OpenCV's own lines would come before ours: those of its log, and others that it writes to
+// std::cerr besides throwing them. While a Silence lives, nothing of its thread comes out there.
+class Silence {
+ public:
+  Silence() {
+    [[maybe_unused]] static const bool installed = install();
+    silent_ = true;
   }
-  return bytes.size();
-}
+  ~Silence() { silent_ = false; }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
 
-JpegOutline jpeg_outline(std::string_view bytes) {
-  JpegOutline outline;
-  std::size_t i = next_marker(bytes, 2);
-  while (i < bytes.size()) {
-    const unsigned code = byte_at(bytes, i);
-    if (code == 0xD9) {
-      outline.complete = true;
-      break;
+ private:
+  class Filter : public std::streambuf {
+   public:
+    explicit Filter(std::streambuf* to) : to_(to) {}
+
+   private:
+    int overflow(int c) override {
+      if (silent_ || c == traits_type::eof()) return traits_type::not_eof(c);
+      return to_->sputc(traits_type::to_char_type(c));
     }
-    if (i + 2 >= bytes.size()) break;
-    const std::size_t length = big_endian(bytes, i + 1, 2);
-    const bool frame = code >= 0xC0 && code <= 0xCF && code != 0xC4 && code != 0xC8 && code != 0xCC;
-    // code, length (2), precision (1), height (2), width (2)
-    if (frame && i + 7 < bytes.size())
-      outline.size = cv::Size(static_cast<int>(big_endian(bytes, i + 6, 2)),
-                              static_cast<int>(big_endian(bytes, i + 4, 2)));
-    i = next_marker(bytes, i + 1 + length);
-  }
-  return outline;
-}
+    std::streamsize xsputn(const char* text, std::streamsize size) override {
+      return silent_ ? size : to_->sputn(text, size);
+    }
+    int sync() override { return to_->pubsync(); }
 
-// Whether the chunks of a PNG file (length, type, data, checksum) go up to its end chunk.
-bool png_complete(std::string_view bytes) {
-  for (std::size_t i = 8; i + 12 <= bytes.size();) {
-    const std::size_t end = i + 12 + big_endian(bytes, i, 4);
-    if (bytes.substr(i + 4, 4) == "IEND") return end <= bytes.size();
-    i = end;
-  }
-  return false;
-}
+    std::streambuf* to_;
+  };
 
-std::string read_image_bytes(const std::filesystem::path& path) {
+  static bool install() {
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));  // as long-lived as std::cerr
+    return true;
+  }
+
+  static thread_local bool silent_;
+};
+thread_local bool Silence::silent_ = false;
+
+std::string read_image_bytes(const fs::path& path) {
   std::string bytes = read_file(path);
   if (bytes.empty()) fail("{}: is empty, not an image", path.string());
-  // OpenCV decodes what is there of a cut file and paints the rest grey.
-  if (is_jpeg(bytes) && !jpeg_outline(bytes).complete)
-    fail("{}: truncated: the JPEG data has no end marker", path.string());
-  if (is_png(bytes) && !png_complete(bytes))
-    fail("{}: truncated: the PNG data has no end chunk", path.string());
-  // libpng would add a line of its own to standard error.
-  if (is_png(bytes) && bytes.find("IEND\xAE\x42\x60\x82") == std::string::npos)
-    fail("{}: truncated: the PNG data has no end chunk", path.string());
+  if (is_jpeg(bytes)) refuse_truncated_jpeg(bytes, path);
+  if (is_png(bytes)) refuse_truncated_png(bytes, path);
   return bytes;
 }
 
-cv::Mat decode(const std::string& bytes, const std::filesystem::path& path, int flags) {
+// Formats that users of photographs meet, and that are not read.
+std::string_view unread_format(std::string_view bytes) {
+  if (bytes.starts_with("GIF8")) return "GIF";
+  if (bytes.substr(0, 12).ends_with("ftypheic") || bytes.substr(0, 12).ends_with("ftypmif1"))
+    return "HEIF";
+  if (bytes.substr(0, 12).ends_with("ftypavif")) return "AVIF";
+  if (bytes.substr(0, 12).ends_with("ftypcrx ")) return "camera raw (CR3)";
+  if (bytes.starts_with("%PDF")) return "PDF";
+  if (bytes.starts_with("8BPS")) return "Photoshop";
+  return {};
+}
+
+bool opencv_knows(const fs::path& path) {
+  try {
+    return cv::haveImageReader(path.string());
+  } catch (const cv::Exception&) {
+    return false;
+  }
+}
+
+// What other libraries than those of image_codecs.h read.
+cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int flags) {
+  const Silence silence;
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
   try {
@@ -102,16 +101,64 @@ cv::Mat decode(const std::string& bytes, const std::filesystem::path& path, int 
   } catch (const cv::Exception& error) {
     fail("{}: cannot be decoded: {}", path.string(), error.err);
   }
-  if (image.empty()) fail("{}: is no image that can be read, or is truncated", path.string());
-  return image;
+  if (!image.empty()) return image;
+  if (const auto format = unread_format(bytes); !format.empty())
+    fail("{}: is {}, a format that is not supported; JPEG, PNG and TIFF are", path.string(),
+         format);
+  if (!opencv_knows(path))
+    fail("{}: is in no image format that is supported, such as JPEG, PNG and TIFF", path.string());
+  fail("{}: cannot be decoded: truncated or damaged", path.string());
 }
 
-cv::Mat read_as_stored(const std::filesystem::path& path) {
-  return decode(read_image_bytes(path), path, cv::IMREAD_UNCHANGED);
+cv::Mat read_as_stored(const fs::path& path) {
+  const std::string bytes = read_image_bytes(path);
+  if (!is_tiff(bytes)) fail("{}: is no TIFF", path.string());
+  return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
-void write_encoded(const std::filesystem::path& path, const std::string& extension,
-                   const cv::Mat& image, const std::vector<int>& parameters) {
+// Three channels where there may be colours.
+cv::Mat decode_labels(const std::string& bytes, const fs::path& path) {
+  if (is_png(bytes)) return decode_png_labels(bytes, path);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, path).pixels;
+  return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
+}
+
+// WebP, JPEG 2000, BMP and so on.
+Photograph decode_rare(const std::string& bytes, const fs::path& path) {
+  // The fourth byte of a BMP's pixel is no alpha, whatever it is.
+  const int flags = bytes.starts_with("BM") ? cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION
+                                            : cv::IMREAD_UNCHANGED;
+  cv::Mat pixels = decode_by_opencv(bytes, path, flags);
+  if (pixels.depth() != CV_8U && pixels.depth() != CV_16U)
+    fail(
+        "{}: pixels are floating-point or signed numbers; photographs have unsigned ones of 8 or "
+        "16 bits",
+        path.string());
+  if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);
+  if (pixels.channels() < 3) fail("{}: has {} channels", path.string(), pixels.channels());
+  return without_alpha(pixels);
+}
+
+Photograph decode_photograph(const std::string& bytes, const fs::path& path) {
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, path);
+  if (is_png(bytes)) return decode_png(bytes, path);
+  if (is_tiff(bytes)) return decode_tiff(bytes, path);
+  return decode_rare(bytes, path);
+}
+
+// One channel of three that hold the same.
+cv::Mat without_copies(const cv::Mat& image) {
+  if (image.channels() != 3) return image;
+  std::array<cv::Mat, 3> channels;
+  cv::split(image, channels.data());
+  const bool same = cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+                    cv::norm(channels[0], channels[2], cv::NORM_INF) == 0;
+  return same ? channels[0] : image;
+}
+
+void write_encoded(const fs::path& path, const std::string& extension, const cv::Mat& image,
+                   const std::vector<int>& parameters) {
+  const Silence silence;
   std::vector<unsigned char> bytes;
   bool encoded = false;
   try {
@@ -125,25 +172,77 @@ void write_encoded(const std::filesystem::path& path, const std::string& extensi
 
 }  // namespace
 
-cv::Mat3b read_color_image(const std::filesystem::path& path) {
-  return decode(read_image_bytes(path), path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+void check_image_size(cv::Size size, const fs::path& path) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 30;
+  if (size.width < 0 || size.height < 0 || std::int64_t{size.width} * size.height > kMost)
+    fail("{}: {} x {} pixels are too many", path.string(), size.width, size.height);
 }
 
-cv::Size read_image_size(const std::filesystem::path& path) {
+unsigned bytes_as_a_whole(const ImageHeader& header) {
+  return 3 * static_cast<unsigned>(header.bits) / 8 * (header.alpha ? 4 : 3) + 4;
+}
+
+Photograph without_alpha(const cv::Mat& pixels) {
+  if (pixels.channels() == 3) return {pixels, {}};
+  Photograph photograph;
+  cv::cvtColor(pixels, photograph.pixels, cv::COLOR_BGRA2BGR);
+  cv::Mat alpha;
+  cv::extractChannel(pixels, alpha, 3);
+  cv::Mat1b opaque;
+  cv::compare(alpha, 0, opaque, cv::CMP_GT);
+  if (cv::countNonZero(opaque) < static_cast<int>(opaque.total())) photograph.opaque = opaque;
+  return photograph;
+}
+
+Photograph read_photograph(const fs::path& path) {
+  return decode_photograph(read_image_bytes(path), path);
+}
+
+cv::Mat3b read_color_image(const fs::path& path) {
+  return in_8_bits(read_photograph(path).pixels, 16);
+}
+
+ImageHeader read_image_header(const fs::path& path) {
   const std::string bytes = read_image_bytes(path);
-  cv::Size size;
-  if (is_jpeg(bytes)) {
-    size = jpeg_outline(bytes).size;
-  } else if (is_png(bytes) && bytes.size() >= 24) {
-    size = cv::Size(static_cast<int>(big_endian(bytes, 16, 4)),
-                    static_cast<int>(big_endian(bytes, 20, 4)));
-  }
-  if (size.width > 0 && size.height > 0) return size;
-  return decode(bytes, path, cv::IMREAD_UNCHANGED).size();
+  if (is_jpeg(bytes)) return jpeg_header(bytes, path);
+  if (is_png(bytes)) return png_header(bytes, path);
+  if (is_tiff(bytes)) return tiff_header(bytes, path);
+  const Photograph photograph = decode_rare(bytes, path);
+  ImageHeader header{photograph.pixels.size(), photograph.pixels.depth() == CV_8U ? 8 : 16,
+                     !photograph.opaque.empty()};
+  header.decode_bytes = bytes_as_a_whole(header);
+  return header;
 }
 
-cv::Mat1w read_label_image(const std::filesystem::path& path) {
-  const cv::Mat image = read_as_stored(path);
+cv::Size read_image_size(const fs::path& path) {
+  return read_image_header(path).size;
+}
+
+int bits_used(const cv::Mat& pixels) {
+  if (pixels.depth() == CV_8U) return 8;
+  double largest = 0;
+  cv::minMaxLoc(pixels.reshape(1), nullptr, &largest);
+  int bits = 8;
+  while (largest >= std::ldexp(1.0, bits)) ++bits;
+  return bits;
+}
+
+cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits) {
+  if (pixels.depth() == CV_8U) return pixels;
+  const cv::Mat3w wide = pixels;
+  cv::Mat3b narrow(wide.size());
+  const int shift = bits - 8;
+  const auto level = [&](std::uint16_t value) {
+    return static_cast<std::uint8_t>(std::min(value >> shift, 255));
+  };
+  std::transform(wide.begin(), wide.end(), narrow.begin(), [&](const cv::Vec3w& value) {
+    return cv::Vec3b(level(value[0]), level(value[1]), level(value[2]));
+  });
+  return narrow;
+}
+
+cv::Mat1w read_label_image(const fs::path& path) {
+  const cv::Mat image = without_copies(decode_labels(read_image_bytes(path), path));
   if (image.channels() != 1 || (image.depth() != CV_8U && image.depth() != CV_16U))
     fail("{}: is no label image: {} channels of {} bytes, expected one of 1 or 2 bytes",
          path.string(), image.channels(), image.elemSize1());
@@ -152,17 +251,13 @@ cv::Mat1w read_label_image(const std::filesystem::path& path) {
   return labels;
 }
 
-std::filesystem::path mask_beside(const std::filesystem::path& image) {
-  return image.parent_path() / (image.stem().string() + ".mask.png");
-}
-
-void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image) {
+void check_mask_shape(const fs::path& mask, cv::Size size, cv::Size image) {
   if (!same_shape(size, image))
     fail("{}: is {}x{}, but its image is {}x{}", mask.string(), size.width, size.height,
          image.width, image.height);
 }
 
-cv::Mat1f read_float_tiff(const std::filesystem::path& path) {
+cv::Mat1f read_float_tiff(const fs::path& path) {
   const cv::Mat image = read_as_stored(path);
   if (image.type() != CV_32FC1)
     fail("{}: is no image of one float channel ({} channels of {} bytes)", path.string(),
@@ -170,7 +265,7 @@ cv::Mat1f read_float_tiff(const std::filesystem::path& path) {
   return image;
 }
 
-cv::Mat3f read_float3_tiff(const std::filesystem::path& path) {
+cv::Mat3f read_float3_tiff(const fs::path& path) {
   const cv::Mat image = read_as_stored(path);
   if (image.type() != CV_32FC3)
     fail("{}: is no image of three float channels ({} channels of {} bytes)", path.string(),
@@ -180,7 +275,7 @@ cv::Mat3f read_float3_tiff(const std::filesystem::path& path) {
   return channels_in_order;
 }
 
-void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image) {
+void write_float_tiff(const fs::path& path, const cv::Mat& image) {
   if (image.depth() != CV_32F) fail("{}: only float images are written as TIFF", path.string());
   // The file's first channel is the first of ours, not the last as OpenCV has it.
   cv::Mat stored;
@@ -193,11 +288,11 @@ void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image) {
   write_encoded(path, ".tiff", stored, {cv::IMWRITE_TIFF_COMPRESSION, kNoCompression});
 }
 
-void write_jpeg(const std::filesystem::path& path, const cv::Mat3b& image, int quality) {
+void write_jpeg(const fs::path& path, const cv::Mat3b& image, int quality) {
   write_encoded(path, ".jpg", image, {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
-void write_png(const std::filesystem::path& path, const cv::Mat& image) {
+void write_png(const fs::path& path, const cv::Mat& image) {
   write_encoded(path, ".png", image, {});
 }
 

@@ -211,7 +211,24 @@ bool same_camera(const MvsCamera& a, const MvsCamera& b) {
   return a.width == b.width && a.height == b.height && a.k == b.k;
 }
 
-MvsCamera camera_record(const CameraModel& model) {
+// The principal point counts from the centre of the square of side S around the image: what
+// `denormalised` undoes.
+MvsCamera normalised_record(const CameraModel& model) {
+  const double S = std::max(model.width, model.height);
+  const refractive::PinholeLens<double>& lens = model.lens;
+  MvsCamera camera;
+  camera.k << lens.fx / S, 0, (lens.cx + 0.5) / S - 0.5, 0, lens.fy / S, (lens.cy + 0.5) / S - 0.5,
+      0, 0, 1;
+  const refractive::PinholeLens<double> read =
+      denormalised(camera.k, {model.width, model.height}).lens;
+  if (std::hypot(read.cx - lens.cx, read.cy - lens.cy) > 1e-6)
+    fail("--normalize 1: a principal point at ({}, {}) of {}x{} pixels would be read as another one",
+         lens.cx, lens.cy, model.width, model.height);
+  return camera;
+}
+
+MvsCamera camera_record(const CameraModel& model, MvsIntrinsics intrinsics) {
+  if (intrinsics == MvsIntrinsics::normalised) return normalised_record(model);
   MvsCamera camera;
   camera.width = static_cast<std::uint32_t>(model.width);
   camera.height = static_cast<std::uint32_t>(model.height);
@@ -220,9 +237,10 @@ MvsCamera camera_record(const CameraModel& model) {
 }
 
 // One platform a distinct camera, the camera at its origin.
-void add_camera_and_pose(const SceneImage& image, MvsFile& mvs, MvsImage& record) {
+void add_camera_and_pose(const SceneImage& image, MvsIntrinsics intrinsics, MvsFile& mvs,
+                         MvsImage& record) {
   if (!image.calibrated) return;
-  const MvsCamera camera = camera_record(image.camera);
+  const MvsCamera camera = camera_record(image.camera, intrinsics);
   auto platform = std::ranges::find_if(mvs.platforms, [&](const MvsPlatform& known) {
     return same_camera(known.cameras[0], camera);
   });
@@ -234,12 +252,13 @@ void add_camera_and_pose(const SceneImage& image, MvsFile& mvs, MvsImage& record
   platform->poses.push_back({image.pose.rotation, image.pose.centre});
 }
 
-MvsImage image_record(const SceneImage& image, const fs::path& working_folder, MvsFile& mvs) {
+MvsImage image_record(const SceneImage& image, const fs::path& working_folder,
+                      MvsIntrinsics intrinsics, MvsFile& mvs) {
   MvsImage record;
   record.name = stored_path(image.path, working_folder);
   record.mask_name = stored_path(image.mask_path, working_folder);
   record.id = image.id;
-  add_camera_and_pose(image, mvs, record);
+  add_camera_and_pose(image, intrinsics, mvs, record);
   record.min_depth = image.min_depth;
   record.average_depth = image.average_depth;
   record.max_depth = image.max_depth;
@@ -273,11 +292,13 @@ Scene read_mvs(const fs::path& path, const fs::path& working_folder) {
   return scene;
 }
 
-void write_mvs(const fs::path& path, const Scene& scene, const fs::path& working_folder) {
+void write_mvs(const fs::path& path, const Scene& scene, const fs::path& working_folder,
+               MvsIntrinsics intrinsics) {
   const std::string file = path.string();
   MvsFile mvs;
   const fs::path base = absolute_folder(working_folder) / "";
-  for (const SceneImage& image : scene.images) mvs.images.push_back(image_record(image, base, mvs));
+  for (const SceneImage& image : scene.images)
+    mvs.images.push_back(image_record(image, base, intrinsics, mvs));
   if (mvs.images.size() < 2 || mvs.platforms.empty())
     fail("{}: a scene needs two images and a calibrated camera, this one has {} images", file,
          mvs.images.size());

@@ -15,8 +15,12 @@ namespace axial::io {
 // the image file.
 Scene read_mvs(const std::filesystem::path& path, const std::filesystem::path& working_folder);
 
+// `normalised`: K divided by the longer side, and no resolution, as OpenMVS's --normalize.
+enum class MvsIntrinsics { pixels, normalised };
+
 // Writes version 7; image paths relative to `working_folder` where they lie below it.
 void write_mvs(const std::filesystem::path& path, const Scene& scene,
-               const std::filesystem::path& working_folder);
+               const std::filesystem::path& working_folder,
+               MvsIntrinsics intrinsics = MvsIntrinsics::pixels);
 
 }  // namespace axial::io

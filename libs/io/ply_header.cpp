@@ -76,6 +76,15 @@ void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
   properties.push_back(std::move(property));
 }
 
+// Of a comment "geo_offset X Y Z"; other comments mean nothing.
+void parse_comment(TextLine line, PlyHeader& header) {
+  if (line.empty() || line.word("comment") != "geo_offset") return;
+  if (header.geo_offset) fail("{}: second geo_offset", line.where());
+  Eigen::Vector3d& offset = header.geo_offset.emplace();
+  for (double& coordinate : offset) coordinate = line.number<double>("geo_offset");
+  if (!line.rest().empty()) fail("{}: unexpected '{}'", line.where(), line.rest());
+}
+
 // Smallest number of bytes of one row.
 std::uint64_t min_row_bytes(const PlyElement& element, PlyFormat format) {
   std::uint64_t bytes = 0;
@@ -105,7 +114,8 @@ std::size_t ply_size(PlyType type) {
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
-  if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r\n"))
+  const std::string_view text = without_byte_order_mark(bytes);
+  if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n"))
     fail("{}: is no PLY file (does not start with 'ply')", file);
   TextReader reader(bytes, file);
   PlyHeader header;
@@ -113,6 +123,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
   reader.line();
   while (std::optional<TextLine> line = reader.line()) {
     const std::string_view keyword = line->word("header keyword");
+    if (keyword == "comment") parse_comment(*line, header);
     if (keyword == "comment" || keyword == "obj_info") continue;
     if (keyword == "format") {
       if (has_format) fail("{}: second format line", line->where());

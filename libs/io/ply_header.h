@@ -2,7 +2,9 @@
 // Private to libs/io: what a PLY header declares, and the scalars that follow it.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +34,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t body = 0;  // where the data begin
+  std::optional<Eigen::Vector3d> geo_offset;  // of "comment geo_offset X Y Z"
+  std::size_t body = 0;                       // where the data begin
 };
 
 // Error that names `file` for anything that is not a well-formed header.

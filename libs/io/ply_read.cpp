@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -62,9 +63,10 @@ class VertexRow {
     }
   }
 
-  Eigen::Vector3f vector(Slot first) const {
-    return Eigen::Vector3d(values_[first], values_[first + 1], values_[first + 2]).cast<float>();
+  Eigen::Vector3d numbers(Slot first) const {
+    return {values_[first], values_[first + 1], values_[first + 2]};
   }
+  Eigen::Vector3f vector(Slot first) const { return numbers(first).cast<float>(); }
 
   // Integer colours are 0..255; some writers store floats in [0, 255].
   Rgb color() const {
@@ -130,7 +132,16 @@ void skip_rows(PlyBody& body, const PlyElement& element) {
         body.scalar(property.type, property.name);
 }
 
-PointCloud read_vertices(PlyBody& body, const PlyElement& element, const std::string& file) {
+// By how much stored positions move into `frame`; nothing where they are to stay.
+std::optional<Eigen::Vector3d> shift_into(const LocalFrame* frame, const PlyHeader& header) {
+  if (!frame) return {};
+  const Eigen::Vector3d shift = header.geo_offset.value_or(Eigen::Vector3d::Zero()) - frame->origin;
+  if (shift.isZero(0)) return {};
+  return shift;
+}
+
+PointCloud read_vertices(PlyBody& body, const PlyElement& element, const std::string& file,
+                         const std::optional<Eigen::Vector3d>& shift) {
   body.require_rows(element);
   VertexRow row(element);
   if (!row.has(kX)) fail("{}: element vertex lacks x, y or z", file);
@@ -139,7 +150,7 @@ PointCloud read_vertices(PlyBody& body, const PlyElement& element, const std::st
   if (row.has_views()) cloud.view_begin.push_back(0);
   for (std::size_t i = 0; i < element.count; ++i) {
     row.read(body);
-    cloud.positions.push_back(row.vector(kX));
+    cloud.positions.push_back(shift ? (row.numbers(kX) + *shift).cast<float>() : row.vector(kX));
     require_finite(cloud.positions.back(), "position", i, file);
     if (row.has(kNx)) {
       cloud.normals.push_back(row.vector(kNx));
@@ -184,9 +195,7 @@ void check_faces(const Mesh& mesh, const std::string& file) {
              mesh.vertices.size());
 }
 
-}  // namespace
-
-PointCloud read_cloud_ply(const std::filesystem::path& path) {
+PointCloud read_cloud(const std::filesystem::path& path, const LocalFrame* frame) {
   const std::string file = path.string();
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
@@ -195,7 +204,7 @@ PointCloud read_cloud_ply(const std::filesystem::path& path) {
   PointCloud cloud;
   for (const PlyElement& element : header.elements) {
     if (&element == find_element(header, "vertex"))
-      cloud = read_vertices(body, element, file);
+      cloud = read_vertices(body, element, file, shift_into(frame, header));
     else
       skip_rows(body, element);
   }
@@ -203,7 +212,7 @@ PointCloud read_cloud_ply(const std::filesystem::path& path) {
   return cloud;
 }
 
-Mesh read_mesh_ply(const std::filesystem::path& path) {
+Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
   const std::string file = path.string();
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
@@ -213,7 +222,7 @@ Mesh read_mesh_ply(const std::filesystem::path& path) {
   Mesh mesh;
   for (const PlyElement& element : header.elements) {
     if (&element == find_element(header, "vertex")) {
-      PointCloud cloud = read_vertices(body, element, file);
+      PointCloud cloud = read_vertices(body, element, file, shift_into(frame, header));
       mesh.vertices = std::move(cloud.positions);
       mesh.colors = std::move(cloud.colors);
     } else if (&element == find_element(header, "face")) {
@@ -225,6 +234,54 @@ Mesh read_mesh_ply(const std::filesystem::path& path) {
   body.require_end();
   check_faces(mesh, file);
   return mesh;
+}
+
+// The first row, elements before it skipped.
+Eigen::Vector3d first_vertex(std::string_view bytes, const std::string& file,
+                             const PlyHeader& header, const PlyElement& vertices) {
+  PlyBody body(bytes, file, header);
+  for (const PlyElement& element : header.elements) {
+    if (&element == &vertices) break;
+    skip_rows(body, element);
+  }
+  body.require_rows(vertices);
+  VertexRow row(vertices);
+  if (!row.has(kX)) fail("{}: element vertex lacks x, y or z", file);
+  row.read(body);
+  require_finite(row.vector(kX), "position", 0, file);
+  return row.numbers(kX);
+}
+
+}  // namespace
+
+PointCloud read_cloud_ply(const std::filesystem::path& path) {
+  return read_cloud(path, nullptr);
+}
+
+PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame) {
+  return read_cloud(path, &frame);
+}
+
+Mesh read_mesh_ply(const std::filesystem::path& path) {
+  return read_mesh(path, nullptr);
+}
+
+Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame) {
+  return read_mesh(path, &frame);
+}
+
+PlyPlace ply_place(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const PlyHeader header = parse_ply_header(bytes, path.string());
+  PlyPlace place;
+  if (header.geo_offset) place.frame.origin = *header.geo_offset;
+  const PlyElement* vertices = find_element(header, "vertex");
+  if (!vertices) fail("{}: has no element vertex", path.string());
+  if (vertices->count == 0) return place;
+  place.first_vertex = place.frame.to_world(first_vertex(bytes, path.string(), header, *vertices));
+  place.is_float =
+      vertices->properties[find_property(*vertices, "x", false)].type == PlyType::kFloat32;
+  return place;
 }
 
 bool ply_has_faces(const std::filesystem::path& path) {

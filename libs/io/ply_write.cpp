@@ -13,6 +13,8 @@ namespace {
 
 constexpr const char* kStart = "ply\nformat binary_little_endian 1.0\n";
 constexpr const char* kPosition = "property float32 x\nproperty float32 y\nproperty float32 z\n";
+constexpr const char* kWorldPosition =
+    "property float64 x\nproperty float64 y\nproperty float64 z\n";
 constexpr const char* kColor = "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
 constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
 
@@ -37,6 +39,23 @@ void write_vector(ByteWriter& out, const Eigen::Vector3f& v) {
   out.write(std::span(v.data(), 3));
 }
 
+const char* position_properties(const PlyPlacement& placement) {
+  return placement.world ? kWorldPosition : kPosition;
+}
+
+// The comment line that says where positions count from, where that is not the world's origin.
+std::string geo_comment(const PlyPlacement& placement) {
+  if (placement.world || placement.frame.is_world()) return {};
+  const Eigen::Vector3d& o = placement.frame.origin;
+  return fmt::format("comment geo_offset {} {} {}\n", o.x(), o.y(), o.z());
+}
+
+void write_position(ByteWriter& out, const Eigen::Vector3f& v, const PlyPlacement& placement) {
+  if (!placement.world) return write_vector(out, v);
+  const Eigen::Vector3d world = placement.frame.to_world(v.cast<double>());
+  out.write(std::span(world.data(), 3));
+}
+
 void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i, bool weights) {
   const std::span<const std::uint32_t> views = cloud.views_of(i);
   const auto size = static_cast<std::uint8_t>(views.size());
@@ -48,11 +67,13 @@ void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i, bool w
 }
 
 // The same length for any number of points.
-std::string cloud_header(const CloudLayout& layout, std::size_t points) {
+std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placement,
+                         std::size_t points) {
   constexpr std::size_t kMostDigits = 20;
   const std::string count = std::to_string(points);
-  std::string header = fmt::format("{}comment AxialMVS{}\nelement vertex {}\n{}", kStart,
-                                   std::string(kMostDigits - count.size(), ' '), count, kPosition);
+  std::string header = fmt::format("{}comment AxialMVS{}\n{}element vertex {}\n{}", kStart,
+                                   std::string(kMostDigits - count.size(), ' '),
+                                   geo_comment(placement), count, position_properties(placement));
   if (layout.colors) header += kColor;
   if (layout.normals) header += kNormal;
   if (layout.views) header += "property list uint8 uint32 view_indices\n";
@@ -65,6 +86,7 @@ std::string cloud_header(const CloudLayout& layout, std::size_t points) {
 struct CloudWriter::File {
   AtomicFile file;
   CloudLayout layout;
+  PlyPlacement placement;
   std::ofstream stream;
   std::size_t points = 0;
 
@@ -90,11 +112,12 @@ struct CloudWriter::File {
   }
 };
 
-CloudWriter::CloudWriter(const std::filesystem::path& path, const CloudLayout& layout)
-    : file_(new File{AtomicFile(path), layout, {}, 0}) {
+CloudWriter::CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
+                         const PlyPlacement& placement)
+    : file_(new File{AtomicFile(path), layout, placement, {}, 0}) {
   errno = 0;
   file_->stream.open(file_->file.temporary(), std::ios::binary);
-  file_->write(cloud_header(layout, 0));
+  file_->write(cloud_header(layout, placement, 0));
 }
 
 CloudWriter::~CloudWriter() = default;
@@ -108,7 +131,7 @@ void CloudWriter::add(const PointCloud& portion) {
   file_->check(portion);
   ByteWriter out;
   for (std::size_t i = 0; i < portion.size(); ++i) {
-    write_vector(out, portion.positions[i]);
+    write_position(out, portion.positions[i], file_->placement);
     if (layout.colors) out.write(std::span(portion.colors[i]));
     if (layout.normals) write_vector(out, portion.normals[i]);
     if (layout.views) write_views(out, portion, i, layout.view_weights);
@@ -119,30 +142,35 @@ void CloudWriter::add(const PointCloud& portion) {
 
 void CloudWriter::finish() {
   file_->stream.seekp(0);
-  file_->write(cloud_header(file_->layout, file_->points));
+  file_->write(cloud_header(file_->layout, file_->placement, file_->points));
   file_->stream.close();
   file_->require_good();
   file_->file.commit();
 }
 
-void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views) {
+void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views,
+                     const PlyPlacement& placement) {
   const bool views = with_views && !cloud.view_begin.empty();
-  CloudWriter out(path, {!cloud.colors.empty(), !cloud.normals.empty(), views,
-                         views && !cloud.view_weights.empty()});
+  CloudWriter out(
+      path,
+      {!cloud.colors.empty(), !cloud.normals.empty(), views, views && !cloud.view_weights.empty()},
+      placement);
   out.add(cloud);
   out.finish();
 }
 
-void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh) {
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const PlyPlacement& placement) {
   if (!mesh.colors.empty())
     require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
   ByteWriter out;
-  out.text(fmt::format("{}element vertex {}\n{}", kStart, mesh.vertices.size(), kPosition));
+  out.text(fmt::format("{}{}element vertex {}\n{}", kStart, geo_comment(placement),
+                       mesh.vertices.size(), position_properties(placement)));
   if (!mesh.colors.empty()) out.text(kColor);
   out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\nend_header\n",
                        mesh.faces.size()));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    write_vector(out, mesh.vertices[i]);
+    write_position(out, mesh.vertices[i], placement);
     if (!mesh.colors.empty()) out.write(std::span(mesh.colors[i]));
   }
   for (const auto& face : mesh.faces) {

@@ -65,12 +65,20 @@ class TextLine {
   std::size_t number_;
 };
 
-// The lines of a text file. The file must end with a newline: a last line without one is what a cut
-// file looks like, and is an Error.
+// What some editors put before the first character of a UTF-8 file.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
+
+// The lines of a text file, without a byte order mark before the first. The file must end with a
+// newline: a last line without one is what a cut file looks like, and is an Error.
 class TextReader {
  public:
   TextReader(std::string_view text, std::string file)
-      : text_(text), size_(text.size()), file_(std::move(file)) {}
+      : text_(without_byte_order_mark(text)), size_(text.size()), file_(std::move(file)) {}
 
   const std::string& file() const { return file_; }
   // Offset of the next line.

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
+#include "pose/tracks.h"
 
 namespace axial::pose {
 namespace {
@@ -169,7 +170,9 @@ void place_again(ColmapBundle& refined, const io::ColmapModel& model) {
 
 PortFit port_fit(const io::ColmapModel& model) {
   const auto rms = [&](const io::Housing& housing) {
-    return root_mean_square(reprojection_errors(to_bundle(model, model.cameras, housing).bundle));
+    Bundle bundle = to_bundle(model, model.cameras, housing).bundle;
+    drop_repeated(bundle);
+    return root_mean_square(reprojection_errors(bundle));
   };
   return {rms(io::housing_of(model.cameras)), rms({})};
 }

@@ -145,6 +145,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     report.last = adjust(bundle, adjusting);
     // Before errors are judged: what was placed for another lens is no outlier.
     if (options.between_rounds) options.between_rounds();
+    // Once adjusted, cameras predict which of several observations is meant.
+    if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
     if (progress)

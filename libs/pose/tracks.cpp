@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace axial::pose {
@@ -58,11 +59,17 @@ void drop_points(Bundle& bundle, const std::vector<bool>& kept) {
   bundle.points = std::move(points);
 }
 
+bool seen_by_two_images(std::span<const std::size_t> list, const Bundle& bundle) {
+  return std::ranges::any_of(list, [&](std::size_t observation) {
+    return bundle.observations[observation].image != bundle.observations[list.front()].image;
+  });
+}
+
 void drop_weak_points(Bundle& bundle, double min_angle) {
   const std::vector<Ray> rays = world_rays(bundle);
   std::vector<bool> kept;
   for (const auto& list : observations_by_point(bundle))
-    kept.push_back(list.size() >= 2 && widest_angle(list, rays) >= min_angle);
+    kept.push_back(seen_by_two_images(list, bundle) && widest_angle(list, rays) >= min_angle);
   drop_points(bundle, kept);
 }
 
@@ -102,6 +109,20 @@ void triangulate(Bundle& bundle) {
     for (const std::size_t observation : lists[i]) own.push_back(rays[observation]);
     if (const auto point = triangulate(own)) bundle.points[i].position = *point;
   }
+}
+
+std::size_t drop_repeated(Bundle& bundle) {
+  const std::vector<double> errors = reprojection_errors(bundle);
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> nearest;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Observation& observation = bundle.observations[i];
+    const auto [best, added] = nearest.try_emplace({observation.point, observation.image}, i);
+    if (!added && errors[i] < errors[best->second]) best->second = i;
+  }
+  std::size_t i = 0;
+  return std::erase_if(bundle.observations, [&](const Observation& observation) {
+    return nearest.at({observation.point, observation.image}) != i++;
+  });
 }
 
 std::size_t filter(Bundle& bundle, const TrackLimits& limits) {

@@ -17,14 +17,20 @@ std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<
 // All points anew from their observations' rays. Those that have none keep their place.
 void triangulate(Bundle& bundle);
 
+// Where a point has several observations in one image, as tracks of an engine may have, the one
+// with the least error stays, the first of equal ones; so each image counts once. The number
+// dropped.
+std::size_t drop_repeated(Bundle& bundle);
+
 struct TrackLimits {
   double max_error = 4;               // [px]
   double min_angle = 1.5;             // [degrees] between some two rays of a point
   std::size_t min_observations = 30;  // of an image: fewer may fit a wrong pose
 };
 
-// Drops observations with larger errors, then all those of images with too few, and of points with
-// fewer than two or too narrow an angle, until nothing is left to drop. The number dropped.
+// Drops observations with larger errors, then all those of images with too few, and of points seen
+// by fewer than two images or under too narrow an angle, until nothing is left to drop. The number
+// dropped.
 std::size_t filter(Bundle& bundle, const TrackLimits& limits);
 
 }  // namespace axial::pose

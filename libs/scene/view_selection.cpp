@@ -5,11 +5,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <bitset>
 #include <cmath>
 #include <mutex>
+#include <numeric>
+#include <span>
 
 #include "base/error.h"
+#include "base/heap_bytes.h"
 #include "base/parallel.h"
 
 namespace axial {
@@ -26,36 +30,63 @@ struct Observation {
   float depth = 0;                                      // z in the camera frame
   float lambda = 0;
   std::int16_t cell = -1;  // of the kGrid x kGrid cells; -1: outside the image
+  bool behind = false;     // the camera
 };
 
 // Observations point by point, and for each image which ones are its own (points ascending).
 struct Observations {
   std::vector<Observation> all;
   std::vector<std::size_t> point_begin;
-  std::vector<std::vector<std::size_t>> of_image;
+  std::vector<std::size_t> image_begin, by_image;
+
+  std::span<const std::size_t> of_image(std::size_t image) const {
+    return std::span(by_image).subspan(image_begin[image],
+                                       image_begin[image + 1] - image_begin[image]);
+  }
 };
 
+// Calls `visit` for each calibrated image that sees the point, once.
+template <class Visit>
+void each_image(const Scene& scene, std::size_t p, const Visit& visit) {
+  if (!scene.points[p].position.allFinite()) return;
+  std::uint32_t previous = kNoId;
+  for (const SparseView& view : scene.points[p].views) {
+    if (view.image >= scene.images.size()) {
+      fail("points[{}]: view of image {}, but there are {} images", p, view.image,
+           scene.images.size());
+    }
+    if (view.image == previous || !scene.images[view.image].calibrated) continue;
+    previous = view.image;
+    visit(view.image);
+  }
+}
+
+// Where each image's part of a list begins that is sorted by image, and where the last one ends.
+std::vector<std::size_t> image_begins(const Scene& scene) {
+  std::vector<std::size_t> begin(scene.images.size() + 1);
+  for (std::size_t p = 0; p < scene.points.size(); ++p)
+    each_image(scene, p, [&](std::uint32_t image) { ++begin[image + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  return begin;
+}
+
+// Nothing here grows step by step: a list that does lies in memory twice.
 Observations collect(const Scene& scene) {
   Observations result;
-  result.of_image.resize(scene.images.size());
+  result.image_begin = image_begins(scene);
+  result.by_image.resize(result.image_begin.back());
+  result.all.reserve(result.image_begin.back());
   result.point_begin.reserve(scene.points.size() + 1);
+  std::vector<std::size_t> next = result.image_begin;
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     result.point_begin.push_back(result.all.size());
-    if (!scene.points[p].position.allFinite()) continue;
-    std::uint32_t previous = kNoId;
-    for (const SparseView& view : scene.points[p].views) {
-      if (view.image >= scene.images.size()) {
-        fail("points[{}]: view of image {}, but there are {} images", p, view.image,
-             scene.images.size());
-      }
-      if (view.image == previous || !scene.images[view.image].calibrated) continue;
-      previous = view.image;
-      result.of_image[view.image].push_back(result.all.size());
+    each_image(scene, p, [&](std::uint32_t image) {
+      result.by_image[next[image]++] = result.all.size();
       Observation observation;
-      observation.image = view.image;
+      observation.image = image;
       observation.point = static_cast<std::uint32_t>(p);
       result.all.push_back(observation);
-    }
+    });
   }
   result.point_begin.push_back(result.all.size());
   return result;
@@ -86,6 +117,7 @@ void observe(const SceneImage& image, const Camera& camera, const Eigen::Vector3
              Observation& observation) {
   const Eigen::Vector3d X = image.pose.to_camera(position);
   refractive::Matrix23<double> jacobian;
+  observation.behind = !(X.z() > 0);
   const auto projection = camera.project(X, &jacobian);
   if (!projection.visible || !(X.z() > 0)) return;
   const auto ray = camera.ray(projection.pixel);
@@ -100,7 +132,7 @@ void observe_all(const Scene& scene, std::size_t image_index, Observations& obse
   const SceneImage& image = scene.images[image_index];
   std::visit(
       [&](const auto& camera) {
-        for (const std::size_t i : observations.of_image[image_index]) {
+        for (const std::size_t i : observations.of_image(image_index)) {
           Observation& observation = observations.all[i];
           observe(image, camera, scene.points[observation.point].position.cast<double>(),
                   observation);
@@ -156,7 +188,7 @@ std::vector<ViewScore> neighbours_of(const Scene& scene, std::size_t image,
                                      const Observations& observations,
                                      const ViewSelectionOptions& options) {
   std::vector<Pair> pairs(scene.images.size());
-  for (const std::size_t i : observations.of_image[image]) {
+  for (const std::size_t i : observations.of_image(image)) {
     const Observation& a = observations.all[i];
     if (!(a.depth > 0)) continue;
     const bool inside =
@@ -174,6 +206,7 @@ std::vector<ViewScore> neighbours_of(const Scene& scene, std::size_t image,
     if (pairs[b].points < std::max(1u, options.min_shared_points)) continue;
     neighbours.push_back(pairs[b].score(static_cast<std::uint32_t>(b)));
   }
+  neighbours.shrink_to_fit();
   std::stable_sort(neighbours.begin(), neighbours.end(),
                    [](const ViewScore& x, const ViewScore& y) { return x.score > y.score; });
   return neighbours;
@@ -184,9 +217,10 @@ ViewPreparation depths_and_points(SceneImage& image, std::size_t index,
                                   const Observations& observations,
                                   const ViewSelectionOptions& options) {
   ViewPreparation result;
+  result.init_points.reserve(observations.of_image(index).size());
   double sum = 0;
   std::size_t count = 0;
-  for (const std::size_t i : observations.of_image[index]) {
+  for (const std::size_t i : observations.of_image(index)) {
     const Observation& a = observations.all[i];
     if (!(a.depth > 0)) continue;
     image.min_depth = count == 0 ? a.depth : std::min(image.min_depth, a.depth);
@@ -211,6 +245,25 @@ ViewPreparation depths_and_points(SceneImage& image, std::size_t index,
   return result;
 }
 
+// Why observations of an image do not count, for a message; empty if it has none.
+std::string of_others(std::size_t image, std::size_t trusted, const Observations& observations) {
+  const std::span<const std::size_t> own = observations.of_image(image);
+  std::size_t behind = 0, outside = 0;
+  for (const std::size_t i : own) {
+    const Observation& observation = observations.all[i];
+    behind += observation.behind ? 1 : 0;
+    outside += !observation.behind && !(observation.depth > 0) ? 1 : 0;
+  }
+  std::string reasons;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, what);
+  };
+  add(behind, "behind it");
+  add(outside, "where it images nothing");
+  add(own.size() - behind - outside - trusted, "seen by no other image");
+  return reasons.empty() ? "" : fmt::format(" (of {} more, {})", own.size() - trusted, reasons);
+}
+
 ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observations& observations,
                               std::size_t enough_views, const ViewSelectionOptions& options) {
   SceneImage& image = scene.images[index];
@@ -222,7 +275,8 @@ ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observation
   ViewPreparation result = depths_and_points(image, index, observations, options);
   image.neighbours = neighbours_of(scene, index, observations, options);
   if (result.init_points.size() < options.min_init_points) {
-    result.problem = fmt::format("it sees only {} sparse points", result.init_points.size());
+    result.problem = fmt::format("it sees only {} sparse points{}", result.init_points.size(),
+                                 of_others(index, result.init_points.size(), observations));
   } else if (image.neighbours.empty() || image.neighbours.size() < enough_views) {
     result.problem =
         fmt::format("it shares sparse points with only {} other images", image.neighbours.size());
@@ -231,6 +285,56 @@ ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observation
 }
 
 }  // namespace
+
+ScoringMemory scoring_memory(const ScoringSize& size) {
+  constexpr std::uint64_t kIndex = sizeof(std::size_t);
+  const std::uint64_t lists = (size.points + size.observations + 3 * size.images) * kIndex;
+  const std::uint64_t working =
+      thread_count() * size.images * (sizeof(Pair) + 2 * sizeof(ViewScore));
+  ScoringMemory memory;
+  memory.work = size.observations * sizeof(Observation) + lists + working;
+  memory.kept = size.images * (sizeof(ViewPreparation) + 2 * heap_bytes(1)) +
+                size.observations * sizeof(std::uint32_t) + size.neighbours * sizeof(ViewScore);
+  return memory;
+}
+
+ScoringSize scoring_size(const Scene& scene, const ViewSelectionOptions& options) {
+  ScoringSize size{scene.images.size(), scene.points.size(), 0, 0};
+  std::uint64_t pairs = 0;
+  for (const SparsePoint& point : scene.points) {
+    const std::uint64_t views = point.views.size();
+    size.observations += views;
+    pairs += views > 0 ? views * (views - 1) : 0;
+  }
+  size.neighbours = most_neighbours(size.images, pairs, options);
+  return size;
+}
+
+std::uint64_t most_neighbours(std::uint64_t images, std::uint64_t pairs,
+                              const ViewSelectionOptions& options) {
+  const std::uint64_t all = images > 0 ? images * (images - 1) : 0;
+  return std::min(all, pairs / std::max(1u, options.min_shared_points));
+}
+
+std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& options) {
+  const std::vector<std::size_t> begin = image_begins(scene);
+  std::vector<std::uint32_t> seen(begin.back());
+  std::vector<std::size_t> next = begin;
+  for (std::size_t p = 0; p < scene.points.size(); ++p)
+    each_image(scene, p,
+               [&](std::uint32_t image) { seen[next[image]++] = static_cast<std::uint32_t>(p); });
+  std::atomic<std::uint64_t> total = 0;
+  parallel_for(scene.images.size(), [&](std::size_t image) {
+    std::vector<std::uint32_t> shared(scene.images.size());
+    for (std::size_t k = begin[image]; k < begin[image + 1]; ++k)
+      each_image(scene, seen[k], [&](std::uint32_t other) { ++shared[other]; });
+    shared[image] = 0;
+    const std::uint32_t enough = std::max(1u, options.min_shared_points);
+    total += static_cast<std::uint64_t>(
+        std::ranges::count_if(shared, [&](std::uint32_t points) { return points >= enough; }));
+  });
+  return total;
+}
 
 std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionOptions& options,
                                               const ProgressSink& progress) {
@@ -253,19 +357,49 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionO
   return result;
 }
 
+namespace {
+
+// Why an image does not suit as a source view; none if it does.
+const char* unsuitable_for(const ViewScore& view, const ViewSelectionOptions& options) {
+  const double scale = static_cast<double>(view.scale), angle = static_cast<double>(view.angle);
+  if (angle < options.min_angle) return "seen under too small an angle";
+  if (angle > options.max_angle) return "seen under too large an angle";
+  if (scale < options.min_scale || scale > options.max_scale) return "of too different a scale";
+  if (static_cast<double>(view.area) < options.min_area) return "sharing too small an area";
+  return nullptr;
+}
+
+}  // namespace
+
+std::string why_no_source_view(const std::vector<ViewScore>& neighbours,
+                               const ViewSelectionOptions& options) {
+  std::vector<std::pair<std::string, std::size_t>> reasons;
+  for (const ViewScore& view : neighbours) {
+    const char* unsuitable = unsuitable_for(view, options);
+    const std::string reason = unsuitable ? unsuitable : "sharing too few points";
+    const auto known = std::ranges::find(reasons, reason, &decltype(reasons)::value_type::first);
+    if (known == reasons.end())
+      reasons.emplace_back(reason, 1);
+    else
+      ++known->second;
+  }
+  std::string text =
+      fmt::format("no good images in view: {} with points in common", neighbours.size());
+  for (std::size_t i = 0; i < reasons.size(); ++i)
+    text += fmt::format("{}{} {}", i == 0 ? ", " : " and ", reasons[i].second, reasons[i].first);
+  return text;
+}
+
 std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbours,
                                          const ViewSelectionOptions& options) {
   std::vector<ViewScore> result = neighbours;
   const std::size_t keep = std::max<std::size_t>(4, options.max_views * 3 / 4);
-  const auto unsuitable = [&](const ViewScore& view) {
-    const double scale = static_cast<double>(view.scale), angle = static_cast<double>(view.angle);
-    return static_cast<double>(view.area) < options.min_area || scale < options.min_scale ||
-           scale > options.max_scale || angle < options.min_angle || angle > options.max_angle;
-  };
   for (std::size_t i = result.size(); i-- > 0 && result.size() > keep;) {
-    if (unsuitable(result[i])) result.erase(result.begin() + static_cast<std::ptrdiff_t>(i));
+    if (unsuitable_for(result[i], options))
+      result.erase(result.begin() + static_cast<std::ptrdiff_t>(i));
   }
   if (result.size() > options.max_views) result.resize(options.max_views);
+  result.shrink_to_fit();
   return result;
 }
 

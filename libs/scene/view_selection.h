@@ -55,6 +55,28 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene,
                                               const ViewSelectionOptions& options = {},
                                               const ProgressSink& progress = {});
 
+// What scoring takes in memory [bytes], at most.
+struct ScoringSize {
+  std::uint64_t images = 0, points = 0, observations = 0;
+  std::uint64_t neighbours = 0;  // entries in the lists of all images
+};
+struct ScoringMemory {
+  std::uint64_t work = 0;  // given back at its end
+  std::uint64_t kept = 0;  // the lists of neighbours and of points
+};
+ScoringMemory scoring_memory(const ScoringSize& size);
+
+// The size of a scene, with most_neighbours.
+ScoringSize scoring_size(const Scene& scene, const ViewSelectionOptions& options = {});
+
+// A bound on the neighbours of all images, from `pairs`, the ordered pairs of views of a point.
+std::uint64_t most_neighbours(std::uint64_t images, std::uint64_t pairs,
+                              const ViewSelectionOptions& options = {});
+
+// A closer bound: how many there are if each camera can have made its observations. Takes a part of
+// the time and of the memory that scoring takes. Error for views of images that do not exist.
+std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& options = {});
+
 // The working list of an image: from the worst on, entries with too small an area or scale or angle
 // out of range leave while more than max(4, 3/4 max_views) remain; then the best max_views.
 std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbours,
@@ -65,5 +87,9 @@ std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbour
 std::vector<ViewScore> choose_source_views(const std::vector<ViewScore>& filtered,
                                            std::size_t number_views,
                                            const ViewSelectionOptions& options = {});
+
+// Why choose_source_views found none, from an image's neighbours, for a message.
+std::string why_no_source_view(const std::vector<ViewScore>& neighbours,
+                               const ViewSelectionOptions& options = {});
 
 }  // namespace axial

@@ -90,6 +90,16 @@ class WithAnotherColmap(unittest.TestCase):
                             (b"1 OPENCV 640 480 a\n", "OPENCV")]:
             self.assertEqual(self.start_of(text, model), [])
 
+    def test_reads_positions_as_refine_poses_does(self):
+        """The same lines as in tests/io/position_file_test.cpp."""
+        images = {"a.jpg", "dive 1/a b.jpg", "#5 of 7.jpg", '"q" 1.jpg'}
+        for line, name in (("a.jpg 1 2 3", "a.jpg"), ("dive 1/a b.jpg 1 2 3\r", "dive 1/a b.jpg"),
+                           ("#5 of 7.jpg 1 2 3", "#5 of 7.jpg"), ("#a.jpg 1 2 3", None),
+                           ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
+                           ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
+                           ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
+            self.assertEqual(self.module.name_of_position(line, images.__contains__), name, line)
+
     def test_says_which_positions_are_of_no_photograph(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):
             (self.folder / name).touch()
@@ -123,12 +133,16 @@ class WithAnotherColmap(unittest.TestCase):
 
 # All programs of the pipeline in one, told apart by their names; to be run in the folder above `out`.
 # Each notes its command and makes what the next one takes. Where there is a pipe named like the
-# program, it holds that open for as long as it lives, and lives on.
+# program, it holds that open for as long as it lives, and lives on; with "child" in the pipe's name a
+# child of the program does.
 STAND_IN = """#!/bin/sh
 [ "$2" = --help ] && exit
 name=${0##*/}
 echo "$name $*" >> commands
 if [ -p "pipe-$name" ]; then exec > "pipe-$name"; echo begun; exec sleep 60; fi
+if [ -p "child-pipe-$name" ]; then
+  (exec > "child-pipe-$name"; echo begun; exec sleep 60); echo ended >> commands
+fi
 case "$name $1" in
   "colmap feature_extractor") touch out/features.db ;;
   "colmap mapper") mkdir out/colmap/0; printf '\\1\\0\\0\\0\\0\\0\\0\\0' > out/colmap/0/images.bin ;;
@@ -170,10 +184,10 @@ class WithStandIns(unittest.TestCase):
         said, complaint = process.communicate(timeout=60)
         return subprocess.CompletedProcess([], process.returncode, said, complaint)
 
-    def held_at(self, program):
+    def held_at(self, program, prefix="pipe"):
         """A run that stays in the step of this program, and the program's pipe."""
-        os.mkfifo(self.folder / f"pipe-{program}")
-        pipe = os.open(self.folder / f"pipe-{program}", os.O_RDONLY | os.O_NONBLOCK)
+        os.mkfifo(self.folder / f"{prefix}-{program}")
+        pipe = os.open(self.folder / f"{prefix}-{program}", os.O_RDONLY | os.O_NONBLOCK)
         self.addCleanup(os.close, pipe)
         process = self.start()
         self.assertEqual(self.next_of(pipe), b"begun\n")
@@ -192,6 +206,29 @@ class WithStandIns(unittest.TestCase):
         again = self.ended()
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual(again.stdout.count("done before"), 5, again.stdout)
+
+    def test_takes_a_wrappers_child_along_however_it_ends(self):
+        """Of every program, the first to the last."""
+        for program in ("colmap", "RefinePoses", "DensifyPointCloud"):
+            for end in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
+                process, pipe = self.held_at(program, "child-pipe")
+                process.send_signal(end)
+                self.assertEqual(self.next_of(pipe), b"", (program, end))
+                process.wait(timeout=30)
+                (self.folder / f"child-pipe-{program}").unlink()
+        self.assertNotIn("ended", (self.folder / "commands").read_text().splitlines())
+        again = self.ended()
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_prints_nothing_into_files_where_output_is_closed(self):
+        command = [sys.executable, str(SCRIPT), "--images", "images", "--lens", "lens",
+                   "--housing", "housing", "-o", "out", "--programs", "."]
+        ended = subprocess.run(["bash", "-c", 'exec "$@" 0>&- 1>&- 2>&-', "bash", *command],
+                               cwd=self.folder, timeout=60,
+                               env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertEqual(ended.returncode, 0)
+        self.assertEqual((self.folder / "out" / "lock").read_bytes(), b"")
+        self.assertTrue((self.folder / "out" / "report.md").read_text().startswith("# Recon"))
 
     def test_refuses_a_second_run_in_the_same_folder(self):
         self.held_at("DensifyPointCloud")

@@ -30,8 +30,7 @@ class InterfaceColmap(ProgramTest):
         self.refuses_import("'--no-such-option'", "--no-such-option", "1")
 
     def test_options_that_are_not_built(self):
-        self.refuses_import("--normalize", "--normalize", "1")
-        self.refuses("not built yet", "InterfaceCOLMAP", "-i", self.path("scene.mvs"))
+        self.refuses("not built", "InterfaceCOLMAP", "-i", self.path("colmap"), "-p", "a.ply")
 
     def test_no_model(self):
         for name in ("cameras", "images", "points3D"):
@@ -192,7 +191,8 @@ class Densify(ProgramTest):
     def test_command_line(self):
         self.refuses_scene("'--no-such-option'", "--no-such-option", "1")
         self.refuses_scene("iters", "--iters", "many")
-        self.refuses_scene("not built yet", "--tower-mode", "4")
+        self.refuses_scene("--tower-mode", "--tower-mode", "9")
+        self.refuses_scene("not built yet", "--sub-scene-area", "660000")
         self.refuses_scene("camera-model", "--camera-model", "fisheye")
         self.refuses_scene("housing", "--refractive")
         self.refuses("no-such.mvs", *DENSIFY, "-i", self.path("no-such.mvs"), "-w",

@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -185,6 +186,153 @@ TEST(ReadFile, ReadsBytesAsTheyAre) {
     }
   }
   EXPECT_THROW(read_file(folder / "a", 4), Error);
+  fs::remove_all(folder);
+}
+
+// The names and contents of all files below a folder.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      contents[entry.path().lexically_relative(folder)] = read_file(entry.path());
+  return contents;
+}
+
+TEST(AtomicFile, LosesWhatKilledProcessesLeftOfIt) {
+  const fs::path folder = test::empty_folder();
+  const pid_t dead = dead_process();
+  const std::string mine = fmt::format("cloud.{}.tmp.ply", dead);
+  const std::string twice = fmt::format("cloud.{0}.tmp.{0}.tmp.ply", dead);
+  const std::vector<std::string> kept = {
+      fmt::format("other.{}.tmp.ply", dead), fmt::format("cloud.{}.tmp.mvs", dead),
+      fmt::format("cloud2.{}.tmp.ply", dead), fmt::format("cloud.{}.tmp.ply", ::getppid())};
+  for (const std::string& name : kept) std::ofstream(folder / name) << "x";
+  // Before the work, and when it is written. A folder is looked through once for the latter.
+  for (const bool before : {false, true}) {
+    for (const std::string& name : {mine, twice}) std::ofstream(folder / name) << "x";
+    if (before)
+      require_writable(folder / "cloud.ply");
+    else
+      write_atomically(folder / "cloud.ply", "whole");
+    EXPECT_FALSE(fs::exists(folder / mine)) << before;
+    EXPECT_FALSE(fs::exists(folder / twice)) << before;
+    for (const std::string& name : kept) EXPECT_TRUE(fs::exists(folder / name)) << name;
+  }
+  fs::remove_all(folder);
+}
+
+TEST(WriteTogether, GivesAllFilesOrNone) {
+  const fs::path folder = test::empty_folder();
+  const std::vector<fs::path> paths{folder / "a.txt", folder / "b.json"};
+  write_atomically(paths[0], "old");
+  try {
+    write_together(paths, [](const std::vector<fs::path>& temporaries) {
+      write_atomically(temporaries[0], "new");
+      fail("{}: no more ink", temporaries[1].string());
+    });
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(), paths[1].string() + ": no more ink");
+  }
+  EXPECT_EQ(contents_of(folder), (std::map<std::string, std::string>{{"a.txt", "old"}}));
+  write_together(paths, [](const std::vector<fs::path>& temporaries) {
+    for (const fs::path& temporary : temporaries) write_atomically(temporary, "new");
+  });
+  EXPECT_EQ(contents_of(folder),
+            (std::map<std::string, std::string>{{"a.txt", "new"}, {"b.json", "new"}}));
+  fs::remove_all(folder);
+}
+
+void write_model(const fs::path& folder, const std::string& text) {
+  make_folder(folder / "sparse");
+  write_atomically(folder / "report.json", text);
+  write_atomically(folder / "sparse" / "images.txt", text + text);
+  write_atomically(folder / "sparse" / "points.txt", text + text + text);
+}
+
+// The disk is full after any number of bytes, in a folder that is there already or not.
+TEST(WriteFolder, GivesAllFilesOrNoneOnAFullDisk) {
+  const fs::path folder = test::empty_folder();
+  const std::string text(4000, 'n');
+  for (const bool there : {false, true}) {
+    const fs::path out = folder / (there ? "there" : "new");
+    std::map<std::string, std::string> before;
+    if (there) {
+      write_model(out, "old");
+      write_atomically(out / "sparse" / "other.txt", "mine");
+      before = contents_of(out);
+    }
+    // Within the first file, the second, the third.
+    for (const rlim_t limit : {1000, 5000, 11000}) {
+      {
+        const FileSizeLimit full(limit);
+        try {
+          write_folder(out, [&](const fs::path& staging) { write_model(staging, text); });
+          ADD_FAILURE() << limit;
+        } catch (const Error& error) {
+          EXPECT_THAT(error.what(), testing::StartsWith(out.string() + "/"));
+          EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr(".tmp")));
+        }
+      }
+      EXPECT_EQ(fs::exists(out), there);
+      EXPECT_EQ(there ? contents_of(out) : before, before) << limit;
+      EXPECT_EQ(files_in(folder), there ? 2u : 0u);
+    }
+    write_folder(out, [&](const fs::path& staging) { write_model(staging, text); });
+    before["report.json"] = text;
+    before["sparse/images.txt"] = text + text;
+    before["sparse/points.txt"] = text + text + text;
+    EXPECT_EQ(contents_of(out), before);
+  }
+  fs::remove_all(folder);
+}
+
+// A child that writes the folder is killed at any moment: the next reader finds no folder, or one
+// without old files among the new.
+TEST(WriteFolder, IsNeverHalfOldAndHalfNew) {
+  const fs::path folder = test::empty_folder(), out = folder / "out";
+  for (int moment = 0; moment < 40; ++moment) {
+    fs::remove_all(folder);
+    write_model(out, "old");
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (;;) write_folder(out, [](const fs::path& staging) { write_model(staging, "new"); });
+    }
+    ::usleep(static_cast<useconds_t>(100 * moment));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    std::size_t old = 0, fresh = 0;
+    for (const char* name : {"report.json", "sparse/images.txt", "sparse/points.txt"}) {
+      const std::string text = fs::exists(out / name) ? read_file(out / name) : "";
+      old += text.starts_with("old") ? 1 : 0;
+      fresh += text.starts_with("new") ? 1 : 0;
+    }
+    EXPECT_TRUE(old == 0 || fresh == 0) << moment;
+    // What was left goes when the folder is written again.
+    require_writable_folder(out);
+    for (const auto& entry : fs::directory_iterator(out))
+      EXPECT_THAT(entry.path().string(), testing::Not(testing::HasSubstr(".tmp")));
+  }
+  fs::remove_all(folder);
+}
+
+TEST(WriteFolder, TellsBeforeTheWorkThatAFolderCannotBeWritten) {
+  const fs::path folder = test::empty_folder();
+  write_atomically(folder / "file", "x");
+  for (const fs::path& out : {folder / "a" / "b" / "c", folder, folder / "new" / ""})
+    EXPECT_NO_THROW(require_writable_folder(out)) << out;
+  EXPECT_EQ(files_in(folder), 1u);
+  for (const fs::path& out : {folder / "file", folder / "file" / "a", fs::path("/proc/a")}) {
+    EXPECT_THROW(require_writable_folder(out), Error) << out;
+    EXPECT_THROW(write_folder(out, [](const fs::path& staging) { write_model(staging, "x"); }),
+                 Error)
+        << out;
+  }
+  EXPECT_EQ(files_in(folder), 1u);
+  // With a slash at the end, and where parents are missing.
+  write_folder(folder / "a" / "b" / "", [](const fs::path& staging) { write_model(staging, "x"); });
+  EXPECT_EQ(contents_of(folder / "a" / "b").size(), 3u);
+  EXPECT_EQ(files_in(folder / "a"), 1u);
   fs::remove_all(folder);
 }
 

@@ -32,6 +32,8 @@ class ProgramTest : public testing::Test {
     ProgramOptions program;
     program.name = "TestProgram";
     program.description = "tests";
+    quick_ = false;
+    program.visible.add_switch("quick", &quick_, "switch");
     if (takes_input_) program.visible.add("input-file,i", &input_, "input");
     program.visible.add_with_default("crop-to-roi", &crop_, "crop")
         .add_with_default("resolution-level", &level_, "level")
@@ -69,7 +71,7 @@ class ProgramTest : public testing::Test {
 
   fs::path folder_;
   std::string input_, out_, err_;
-  bool takes_input_ = true, crop_ = true;
+  bool takes_input_ = true, crop_ = true, quick_ = false;
   int level_ = 0, limit_ = 0, secret_ = 0;
 };
 
@@ -116,6 +118,27 @@ TEST_F(ProgramTest, TakesBooleansWithAValue) {
   EXPECT_THAT(error({"a.mvs", "--crop-to-roi"}), HasSubstr("crop-to-roi"));
 }
 
+TEST_F(ProgramTest, LeavesASwitchThatHasNoValueTheNextWord) {
+  const std::vector<std::vector<std::string>> on = {
+      {"--quick", "a.mvs"},       {"a.mvs", "--quick"},
+      {"--qui", "a.mvs"},         {"--quick", "1", "a.mvs"},
+      {"--quick=1", "a.mvs"},     {"--quick", "YES", "a.mvs"},
+      {"--quick", "-i", "a.mvs"}, {"--quick", "-v", "1", "a.mvs"},
+      {"-v1", "--quick", "a.mvs"}};
+  for (const std::vector<std::string>& arguments : on) {
+    EXPECT_TRUE(parse(arguments).run) << testing::PrintToString(arguments);
+    EXPECT_EQ(input_, "a.mvs") << testing::PrintToString(arguments);
+    EXPECT_TRUE(quick_) << testing::PrintToString(arguments);
+  }
+  for (const char* no : {"0", "false", "Off", "no"}) {
+    parse({"--quick", no, "a.mvs"});
+    EXPECT_EQ(input_, "a.mvs");
+    EXPECT_FALSE(quick_) << no;
+  }
+  EXPECT_THAT(error({"-i", "a.mvs", "--quick", "2"}), HasSubstr("'2' belongs to no option"));
+  EXPECT_THAT(error({"--quick=2", "a.mvs"}), HasSubstr("quick"));
+}
+
 TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--no-such-option", "1"}), HasSubstr("no-such-option"));
   EXPECT_THAT(error({"a.mvs", "-z"}), HasSubstr("-z"));
@@ -128,7 +151,7 @@ TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--max-threads", "-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads=-1"}), HasSubstr("--max-threads -1"));
   EXPECT_THAT(error({"a.mvs", "--max-threads", "5000"}), HasSubstr("at most 1024"));
-  EXPECT_THAT(error({"a.mvs", "--archive-type", "2"}), HasSubstr("archive-type is 2"));
+  EXPECT_THAT(error({"a.mvs", "--archive-type", "4"}), HasSubstr("--archive-type 4"));
 }
 
 TEST_F(ProgramTest, RefusesStrayArgumentsWhereThereIsNoInputFile) {

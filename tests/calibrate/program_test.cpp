@@ -165,6 +165,25 @@ TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
   EXPECT_GE(report["missing"].size(), 2u);
 }
 
+// The first of them in the order of names, whatever the threads.
+TEST_F(CalibrateHousing, RefusesADamagedPhotograph) {
+  take_photographs(flat_port(), {.views = 4});
+  for (const int view : {1, 3}) {
+    const auto photograph = folder_ / "photos" / fmt::format("view{}", view);
+    cv::Mat3b noise(480, 640);
+    cv::randu(noise, 0, 256);
+    io::write_jpeg(photograph.string() + ".jpg", noise, 90);
+    const std::string whole = read_file(photograph.string() + ".jpg");
+    write_atomically(photograph.string() + ".jpg", whole.substr(0, whole.size() / 2) + "\xFF\xD9");
+    std::filesystem::remove(photograph.string() + ".png");
+  }
+  for (const int threads : {1, 8, 8, 8})
+    expect_refusal("CalibrateHousing",
+                   kInput + "--lens lens.txt --housing flat.json -o out.json --max-threads " +
+                       std::to_string(threads),
+                   "view1.jpg: cannot be decoded: Corrupt JPEG data: premature end");
+}
+
 TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
   take_photographs(flat_port(), {.views = 1});
   const auto refuses = [&](const std::string& arguments, const std::string& expected) {

@@ -78,6 +78,18 @@ TEST_F(Calibmar, ReadsACameraInAir) {
   EXPECT_FALSE(read_calibmar(written(air + "non_svp_model: NONE\n")).port);
 }
 
+TEST_F(Calibmar, IsAHousingWithoutPortsWhereItSaysSo) {
+  const std::string air = "model: PINHOLE\nparameters: [9, 9, 4, 3]\nwidth: 8\nheight: 6\n";
+  for (const char* none : {"non_svp_model: NONE\n", "non_svp_model: NONE\nnon_svp_parameters: []\n",
+                           "non_svp_model: \"NONE\"\n", "non_svp_model:\n"}) {
+    const Housing housing = read_housing(written(air + none));
+    EXPECT_TRUE(housing.ports.empty()) << none;
+    EXPECT_EQ(housing.port_of("any.jpg", 1), "none") << none;
+  }
+  EXPECT_THROW(read_housing(written(air)), Error);
+  EXPECT_THROW(read_housing(written(air + "non_svp_model: CUBE\n")), Error);
+}
+
 TEST_F(Calibmar, ReadsWhatItWrites) {
   for (const bool dome : {false, true}) {
     ColmapCamera camera{

@@ -6,8 +6,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <set>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "io/colmap_lens.h"
 #include "io/image.h"
 #include "support/empty_folder.h"
@@ -80,7 +84,7 @@ TEST_F(ColmapScene, TakesImagesPosesAndPointsOver) {
   ASSERT_EQ(scene.points.size(), 1u);
   std::vector<std::uint32_t> views;
   for (const SparseView& view : scene.points[0].views) views.push_back(view.image);
-  EXPECT_THAT(views, ::testing::ElementsAre(0, 1, 2, 2));
+  EXPECT_THAT(views, ::testing::ElementsAre(0, 1, 2)) << "each image once";
   EXPECT_EQ(scene.point_colors[0], (Rgb{10, 20, 30}));
 }
 
@@ -151,6 +155,111 @@ TEST_F(ColmapScene, UndistortedImagesStayInTheirFolder) {
   model_.images[2].name = "c.png";
   import_.undistorted_folder = import_.image_folder;
   EXPECT_THAT(error(), HasSubstr("would be overwritten"));
+}
+
+// Any tracks: each image that is named counts once, and the rest is counted in one line.
+TEST_F(ColmapScene, ImagesCountOncePerPoint) {
+  std::mt19937 random(3);
+  model_.points.clear();
+  std::size_t repeated = 0;
+  std::vector<std::set<std::uint32_t>> expected;
+  for (std::uint64_t id = 0; id < 200; ++id) {
+    ColmapPoint3D point{id, {0, 0, 1}, {}, 0, {}};
+    std::set<std::uint32_t> images;
+    for (auto k = std::uint32_t(random() % 6); k-- > 0;) {
+      point.track.push_back({std::uint32_t(2 + random() % 3), k});
+      repeated += images.insert(point.track.back().image).second ? 0 : 1;
+    }
+    expected.push_back(images);
+    model_.points.push_back(point);
+  }
+  const LogCapture log;
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_THAT(log.text(), HasSubstr(fmt::format(": {} observations are of an image", repeated)));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    std::set<std::uint32_t> images;
+    for (const SparseView& view : scene.points[i].views)
+      images.insert(model_.images[view.image].id);
+    EXPECT_EQ(images, expected[i]);
+    EXPECT_EQ(scene.points[i].views.size(), expected[i].size());
+  }
+}
+
+// Names that would be one file, on some file system at least, and how those that stay apart come
+// out.
+TEST_F(ColmapScene, NoTwoImagesAreUndistortedToOneFile) {
+  const std::string two = folder_.string() + "/sparse: the images ";
+  model_.points.clear();
+  const auto error_of = [&](const std::string& first, const std::string& second) {
+    model_.images.clear();
+    add_image(1, 9, first);
+    add_image(2, 9, second);
+    return error();
+  };
+  fs::create_directories(folder_ / "images" / "left");
+  for (const auto& [first, second] : std::vector<std::pair<std::string, std::string>>{
+           {"a.tif", "a.tif.png"}, {"d.jpg", "d.JPG"}, {"left/e.bmp", "left/E.bmp.png"}}) {
+    EXPECT_THAT(error_of(first, second), HasSubstr(two + first + " and " + second + " would"));
+    EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
+  }
+  EXPECT_EQ(error_of("f.tif", "f.bmp"), "no error");
+  EXPECT_EQ(error_of("left/f.png", "f.png"), "no error");
+  EXPECT_TRUE(fs::exists(import_.undistorted_folder / "f.tif.png"));
+  EXPECT_TRUE(fs::exists(import_.undistorted_folder / "f.bmp.png"));
+  // Images that stay as they are may be called what they like.
+  model_.images.clear();
+  add_image(1, 5, "g.tif");
+  add_image(2, 5, "g.tif.png");
+  EXPECT_EQ(error(), "no error");
+}
+
+TEST_F(ColmapScene, PhotographsAreNotUndistortedOver) {
+  import_.undistorted_folder = folder_ / "images" / "undistorted";
+  fs::create_directories(import_.undistorted_folder);
+  add_image(8, 5, "undistorted/c.png");
+  EXPECT_THAT(error(), HasSubstr("undistorted/c.png: is an input"));
+}
+
+TEST_F(ColmapScene, PortsGoByTheUndistortedName) {
+  model_.points.clear();
+  model_.images.clear();
+  add_image(1, 9, "a.tif");
+  add_image(2, 9, "a.bmp");
+  Housing housing;
+  housing.ports["main"] = {};
+  housing.images = {{"a.tif", "main"}};
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_EQ(housing_by_image(housing, model_, scene, import_).images,
+            (std::map<std::string, std::string>{{"a.tif.png", "main"}}));
+}
+
+// Images of cameras in any order, each resampled by its own camera's map: as with one image alone.
+TEST_F(ColmapScene, EachImageIsUndistortedByItsOwnCamera) {
+  model_.images.clear();
+  model_.points.clear();
+  for (std::uint32_t id = 0; id < 6; ++id)
+    model_.cameras.push_back(
+        {20 + id, "SIMPLE_RADIAL", kWidth, kHeight, {150, 80, 60, -0.02 * (id + 1)}});
+  for (std::uint32_t i = 0; i < 18; ++i)
+    add_image(i + 1, 20 + i * 5 % 6, fmt::format("{:02}.png", i));
+  const Scene scene = import_colmap_scene(model_, import_);
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const ColmapCamera& camera = model_.cameras[2 + i * 5 % 6];
+    cv::Mat3b expected;
+    cv::remap(read_color_image(folder_ / "images" / model_.images[i].name), expected,
+              undistortion_map(camera, scene.images[i].camera.lens), cv::noArray(),
+              cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
+    EXPECT_EQ(cv::norm(read_color_image(scene.images[i].path), expected, cv::NORM_INF), 0) << i;
+  }
+}
+
+TEST_F(ColmapScene, SaysHowManyCamerasAreReady) {
+  std::vector<std::size_t> done;
+  import_colmap_scene(model_, import_, {}, [&](std::size_t n, std::size_t total) {
+    done.push_back(n);
+    EXPECT_EQ(total, 2u);
+  });
+  EXPECT_THAT(done, ::testing::ElementsAre(1, 2));
 }
 
 TEST_F(ColmapScene, OneImageIsNotEnough) {
@@ -257,6 +366,49 @@ TEST_F(ColmapScene, MasksOfAnotherShapeAreRefused) {
   write_png(mask, cv::Mat1b(kHeight, kHeight, 7));
   EXPECT_EQ(error(), mask.string() + ": is 120x120, but its image is 160x120");
   EXPECT_FALSE(fs::exists(import_.undistorted_folder)) << "checked before anything is written";
+}
+
+TEST_F(ColmapScene, MasksOfAllNamesAreUndistorted) {
+  for (const char* name : {"c.png.png", "c_mask.png", "c.mask.png"}) {
+    const fs::path mask = folder_ / "images" / name;
+    write_png(mask, cv::Mat1b(kHeight, kWidth, 7));
+    fs::remove_all(import_.undistorted_folder);
+    import_colmap_scene(model_, import_);
+    EXPECT_TRUE(fs::exists(import_.undistorted_folder / "c.mask.png")) << name;
+    fs::remove(mask);
+  }
+}
+
+// A camera of 12 bits stays one, however sharp its edges are.
+TEST_F(ColmapScene, WideValuesStayWideWhereImagesAreUndistorted) {
+  cv::Mat pixels(kHeight, kWidth, CV_16UC3, cv::Scalar::all(0));
+  for (int x = 0; x < kWidth; x += 8) pixels.colRange(x, x + 4).setTo(cv::Scalar::all(4095));
+  write_png(folder_ / "images" / "c.png", pixels);
+  const Scene scene = import_colmap_scene(model_, import_);
+  const Photograph straight = read_photograph(scene.images[2].path);
+  EXPECT_EQ(straight.pixels.type(), CV_16UC3);
+  EXPECT_EQ(bits_used(straight.pixels), 12);
+  EXPECT_TRUE(straight.opaque.empty());
+}
+
+TEST_F(ColmapScene, HiddenColorsStayHiddenWhereImagesAreUndistorted) {
+  cv::Mat pixels(kHeight, kWidth, CV_8UC4, cv::Scalar(90, 90, 90, 255));
+  pixels.colRange(0, kWidth / 2).setTo(cv::Scalar(255, 0, 255, 0));
+  fs::remove(folder_ / "images" / "c.png");
+  write_png(folder_ / "images" / "c.jpg", pixels);  // a name is no format
+  model_.images[2].name = "c.jpg";
+  const Scene scene = import_colmap_scene(model_, import_);
+  EXPECT_EQ(scene.images[2].path, (import_.undistorted_folder / "c.jpg.png").string());
+  const Photograph straight = read_photograph(scene.images[2].path);
+  ASSERT_EQ(straight.opaque.size(), cv::Size(kWidth, kHeight));
+  int shown = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      if (!straight.opaque(y, x)) continue;
+      ++shown;
+      EXPECT_EQ(straight.pixels.at<cv::Vec3b>(y, x), cv::Vec3b(90, 90, 90)) << x << " " << y;
+    }
+  EXPECT_NEAR(shown, kWidth * kHeight / 2, kWidth * kHeight / 10);
 }
 
 }  // namespace

@@ -179,13 +179,35 @@ TEST_F(ColmapTest, ReadsTextAsColmapWritesIt) {
   EXPECT_EQ(model.points[0].color, (Rgb{10, 20, 30}));
 }
 
-TEST_F(ColmapTest, PrefersTextFileByFile) {
-  write_colmap_binary(folder_, small_model());
-  std::string cameras = "3 PINHOLE 640 480 1 1 0 0\n1 PINHOLE 64 48 2 2 0 0\n";
-  test::put(folder_ / "cameras.txt", cameras);
-  const ColmapModel model = read_colmap_model(folder_);
-  EXPECT_EQ(model.cameras[1].params[0], 2);
-  EXPECT_EQ(model.images.size(), 3u);
+// The path is what an image is known by, however it is spelt.
+TEST_F(ColmapTest, RefusesTwoImagesOfOneName) {
+  ColmapModel model = small_model();
+  for (const char* name : {"c.jpg", "./c.jpg", "left/../c.jpg", ".//c.jpg"}) {
+    model.images[2].name = name;
+    write_colmap_text(folder_, model);
+    EXPECT_EQ(error(), folder_.string() + ": images 2 and 4 have one name, " + name);
+  }
+  for (const char* name : {"left/c.jpg", "C.jpg", "c.jpg.jpg"}) {
+    model.images[2].name = name;
+    write_colmap_text(folder_, model);
+    EXPECT_NO_THROW(read_colmap_model(folder_)) << name;
+  }
+}
+
+// Blanks, '#', quotes and commas anywhere but at the ends.
+RC_GTEST_PROP(Colmap, KeepsAnyName, ()) {
+  const auto name = *rc::gen::nonEmpty(
+      rc::gen::container<std::string>(rc::gen::element('a', ' ', '#', '"', ',', '7', '\t')));
+  RC_PRE(std::string(" \t").find(name.front()) == std::string::npos);
+  RC_PRE(std::string(" \t").find(name.back()) == std::string::npos);
+  ColmapModel model;
+  model.cameras = {{1, "PINHOLE", 64, 48, {50, 50, 32, 24}}};
+  model.images = {{1, 1, name, {}, {}}};
+  const fs::path folder = test::empty_folder();
+  write_colmap_text(folder, model);
+  const std::string read = read_colmap_model(folder).images[0].name;
+  fs::remove_all(folder);
+  RC_ASSERT(read == name);
 }
 
 TEST_F(ColmapTest, FindsTheModelWhereItMayBe) {

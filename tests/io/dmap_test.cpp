@@ -286,6 +286,65 @@ TEST_F(DmapTest, TellsWhatAMapWasMadeFrom) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
 }
 
+TEST_F(DmapTest, TellsWhoWroteAMap) {
+  const auto origin = [&] { return dmap_status(file_).origin; };
+  EXPECT_EQ(origin(), DmapOrigin::none);
+  DepthMap map = depth_map(folder_, Port::none);
+  write_dmap(file_, map, "x");
+  EXPECT_EQ(origin(), DmapOrigin::ours);
+  EXPECT_EQ(dmap_status(file_).made_from, "x");
+  const std::string ours = read_file(file_), side = read_file(side_);
+  map.depth(3, 3) *= 1.01f;
+  write_dmap(folder_ / "other.dmap", map, "y");
+  const std::string other = read_file(folder_ / "other.dmap");
+
+  test::put(file_, other);
+  EXPECT_EQ(origin(), DmapOrigin::foreign);
+  for (std::size_t length = 0; length < other.size(); length += 97) {
+    test::put(file_, other.substr(0, length));
+    EXPECT_EQ(origin(), DmapOrigin::damaged) << length;
+  }
+  test::put(file_, ours);
+  test::put(side_, side.substr(0, side.size() / 2));
+  EXPECT_EQ(origin(), DmapOrigin::damaged);
+  fs::remove(side_);
+  for (const std::string& bytes : {ours, other, std::string(), std::string("no map")}) {
+    test::put(file_, bytes);
+    EXPECT_EQ(origin(), DmapOrigin::foreign);
+  }
+}
+
+TEST_F(DmapTest, ReadsTheHeaderAloneAsTheWholeMap) {
+  for (const Port port : {Port::none, Port::flat, Port::dome}) {
+    write_dmap(file_, depth_map(folder_, port), "x");
+    const DepthMap whole = read_dmap(file_).map, header = read_dmap_header(file_);
+    EXPECT_TRUE(header.depth.empty());
+    EXPECT_EQ(header.ids, whole.ids);
+    EXPECT_EQ(header.image_path, whole.image_path);
+    EXPECT_EQ(header.camera.width, whole.camera.width);
+    EXPECT_EQ(header.camera.port.has_value(), port != Port::none);
+    EXPECT_FALSE(read_dmap_header(file_, DmapSide::ignored).camera.port.has_value());
+    EXPECT_EQ(header.pose.centre, whole.pose.centre);
+    const std::string bytes = read_file(file_);
+    for (const std::string& wrong : {bytes + "x", bytes.substr(0, bytes.size() - 1)}) {
+      test::put(file_, wrong);
+      EXPECT_THAT(error_of([&] { read_dmap_header(file_); }), HasSubstr("its header says"));
+    }
+  }
+}
+
+// A map without its side file is another program's, and one of ours never is: not even after a
+// kill.
+TEST_F(DmapTest, LeavesNoMapBesideTheSideFileOfAnother) {
+  write_dmap(file_, depth_map(folder_, Port::none), "first");
+  const std::string before = read_file(file_);
+  fs::remove(side_);
+  fs::create_directory(side_);  // the side file cannot take its name
+  EXPECT_THAT(error_of([&] { write_dmap(file_, depth_map(folder_, Port::none), "second"); }),
+              HasSubstr("dmap"));
+  EXPECT_FALSE(fs::exists(file_));
+}
+
 TEST_F(DmapTest, RefusesAMapThatItsSideFileDoesNotDescribe) {
   DepthMap map = depth_map(folder_, Port::flat);
   write_dmap(file_, map, "x");

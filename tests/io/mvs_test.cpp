@@ -241,6 +241,30 @@ TEST_F(MvsTest, ResolvesBothNormalisedConventions) {
   EXPECT_THAT(error_of([&] { read(d); }), HasSubstr("b.png"));
 }
 
+TEST_F(MvsTest, WritesNormalisedIntrinsicsThatAreReadBack) {
+  const fs::path copy = folder_ / "normalised.mvs";
+  for (const double cx : {319.5, 320.0, 250.25, 400.0})
+    for (const double cy : {239.5, 240.0, 180.75}) {
+      Description d;
+      d.k[2] = cx;
+      d.k[5] = cy;
+      const Scene scene = read(d);
+      write_mvs(copy, scene, folder_, MvsIntrinsics::normalised);
+      const CameraModel again = read_mvs(copy, folder_).images[0].camera;
+      EXPECT_EQ(again.width, 640);
+      EXPECT_EQ(again.height, 480);
+      EXPECT_NEAR(again.lens.fx, 500, 1e-9);
+      EXPECT_NEAR(again.lens.fy, 510, 1e-9);
+      EXPECT_NEAR(again.lens.cx, cx, 1e-9);
+      EXPECT_NEAR(again.lens.cy, cy, 1e-9);
+    }
+  Description d;
+  d.k[2] = 500;  // would be read in the other convention
+  const Scene scene = read(d);
+  EXPECT_THAT(error_of([&] { write_mvs(copy, scene, folder_, MvsIntrinsics::normalised); }),
+              HasSubstr("(500, 240)"));
+}
+
 TEST_F(MvsTest, ComposesCameraOnPlatform) {
   Description d;
   d.camera_r = {1, 0, 0, 0, 0, 1, 0, -1, 0};

@@ -181,6 +181,68 @@ TEST_F(PlyTest, NamesTheCloudThatCannotBeStreamed) {
   EXPECT_THAT(error_of([&] { writer.add(three_points()); }), HasSubstr("0 normals for 3 points"));
 }
 
+const LocalFrame kFar{{534000, 3378500, -12.0625}};
+
+TEST_F(PlyTest, SaysWhereLocalPositionsCountFrom) {
+  write_cloud_ply(file_, three_points(), true, {kFar, false});
+  EXPECT_THAT(read_file(file_), HasSubstr("\ncomment geo_offset 534000 3378500 -12.0625\n"));
+  EXPECT_EQ(read_cloud_ply(file_).positions, three_points().positions);
+  EXPECT_EQ(read_cloud_ply(file_, kFar).positions, three_points().positions);
+  EXPECT_EQ(read_cloud_ply(file_, {{534000, 3378499, -12.0625}}).positions[0],
+            Eigen::Vector3f(1, 3, 3));
+  const PlyPlace place = ply_place(file_);
+  EXPECT_EQ(place.frame.origin, kFar.origin);
+  EXPECT_EQ(place.first_vertex, kFar.origin + Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(place.is_float);
+}
+
+TEST_F(PlyTest, ANearCloudHasTheBytesItAlwaysHad) {
+  write_cloud_ply(file_, three_points());
+  const std::string bytes = read_file(file_);
+  EXPECT_EQ(bytes.find("geo_offset"), std::string::npos);
+  write_cloud_ply(file_, three_points(), true, {LocalFrame{}, false});
+  EXPECT_EQ(read_file(file_), bytes);
+}
+
+RC_GTEST_PROP(Ply, DoublesHoldWorldCoordinates, ()) {
+  PointCloud cloud;
+  const auto scalar = [] { return static_cast<float>(*rc::gen::inRange(-100000, 100000)) * 1e-3f; };
+  for (int i = *rc::gen::inRange(1, 12); i > 0; --i)
+    cloud.positions.emplace_back(scalar(), scalar(), scalar());
+  const fs::path folder = test::empty_folder();
+  const fs::path file = folder / "a.ply";
+  write_cloud_ply(file, cloud, true, {kFar, true});
+  const std::string bytes = read_file(file);
+  const auto in_frame = read_cloud_ply(file, kFar).positions;
+  const PlyPlace place = ply_place(file);
+  write_mesh_ply(file, Mesh{cloud.positions, {}, {{0, 0, 0}}}, {kFar, true});
+  const auto of_mesh = read_mesh_ply(file, kFar).vertices;
+  fs::remove_all(folder);
+  RC_ASSERT(bytes.find("geo_offset") == std::string::npos);
+  RC_ASSERT(bytes.find("property float64 x") != std::string::npos);
+  RC_ASSERT(of_mesh == in_frame);
+  RC_ASSERT(!place.is_float);
+  RC_ASSERT(place.first_vertex == kFar.origin + cloud.positions[0].cast<double>());
+  // What a double at this place can hold.
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    RC_ASSERT((in_frame[i] - cloud.positions[i]).cwiseAbs().maxCoeff() <= 1e-9f);
+}
+
+TEST_F(PlyTest, NamesAWrongOffset) {
+  const auto with_comment = [](const std::string& comment) {
+    return "ply\nformat ascii 1.0\n" + comment +
+           "\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+           "end_header\n1 2 3\n";
+  };
+  EXPECT_THAT(error(with_comment("comment geo_offset 1 2")), HasSubstr("line 3: geo_offset"));
+  EXPECT_THAT(error(with_comment("comment geo_offset 1 2 x")), HasSubstr("'x'"));
+  EXPECT_THAT(error(with_comment("comment geo_offset 1 2 nan")), HasSubstr("'nan'"));
+  EXPECT_THAT(error(with_comment("comment geo_offset 1 2 3 4")), HasSubstr("unexpected '4'"));
+  EXPECT_THAT(error(with_comment("comment geo_offset 1 2 3\ncomment geo_offset 1 2 3")),
+              HasSubstr("second geo_offset"));
+  EXPECT_EQ(cloud(with_comment("comment\ncomment my geo_offset 1")).size(), 1u);
+}
+
 // Everything a reader may meet, in ascii: old and new type names, other order, elements and
 // properties nobody asked for, lists among them, comments, tabs and CRLF.
 constexpr std::string_view kForeign =

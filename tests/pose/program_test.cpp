@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "io/calibmar.h"
@@ -140,6 +141,137 @@ TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
   const auto report = io::read_json(folder_ / "out" / "report.json");
   EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);  // 1 / sqrt(2 x 4000) is 1 %
   EXPECT_EQ(report["scale_sigma"], 0);
+}
+
+// Tracks that name an image two or three times, at the same place and at others, tell no more than
+// those that name it once.
+TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
+  ASSERT_EQ(run(kInput + "-o once --scale-from " + baseline()).exit_code, 0);
+  io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    io::ColmapPoint3D& point = model.points[i];
+    const io::ColmapTrackElement first = point.track[i % point.track.size()];
+    io::ColmapImage& image = model.images[first.image - model.images.front().id];
+    for (std::size_t k = 0; k < i % 3; ++k) {
+      io::ColmapPoint2D copy = image.points[first.point2d];
+      copy.x += k == 0 ? 0 : 6;
+      point.track.insert(point.track.begin() + static_cast<std::ptrdiff_t>(k),
+                         {image.id, static_cast<std::uint32_t>(image.points.size())});
+      image.points.push_back(copy);
+      ++added;
+    }
+  }
+  write("sparse", model);
+  const Outcome outcome = run(kInput + "-o more --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr(
+                                  fmt::format("{} observations are of an image that sees", added)));
+  const auto once = nlohmann::json::parse(read_file(folder_ / "once" / "report.json"));
+  const auto more = nlohmann::json::parse(read_file(folder_ / "more" / "report.json"));
+  EXPECT_EQ(more["observations_after"], once["observations_after"]);
+  // Adjustments end where steps are small, not at the same bits.
+  for (const char* number : {"pixel_sigma", "rms_after_px", "scale_sigma"})
+    EXPECT_NEAR(more[number].get<double>() / once[number].get<double>(), 1, 1e-3) << number;
+}
+
+TEST_F(RefinePoses, DropsPointsThatOneImageSees) {
+  io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
+  const std::size_t points = model.points.size();
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    io::ColmapImage& image = model.images[i % model.images.size()];
+    io::ColmapPoint3D alone{90000 + i, model.points[i].position, {}, 0, {}};
+    for (const double shift : {0.0, 0.3, 0.6}) {
+      alone.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+      image.points.push_back({500 + shift, 400, alone.id});
+    }
+    model.points.push_back(alone);
+  }
+  write("sparse", model);
+  const Outcome outcome = run(kInput + "-o out --min-angle 0 --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  EXPECT_LE(refined.points.size(), points);
+  for (const io::ColmapPoint3D& point : refined.points) {
+    EXPECT_LT(point.id, 90000u);
+    std::set<std::uint32_t> images;
+    for (const io::ColmapTrackElement& element : point.track) images.insert(element.image);
+    EXPECT_EQ(images.size(), point.track.size());
+    EXPECT_GE(images.size(), 2u);
+  }
+}
+
+// The same photographs by names with blanks, commas, '#' and quotes.
+TEST_F(RefinePoses, TakesNamesWithAnySigns) {
+  io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
+  write("sparse", model);  // reading and writing again rounds
+  ASSERT_EQ(run(kInput + "-o plain --scale-from " + baseline()).exit_code, 0);
+  model.images[0].name = "dive 1/a,b.jpg";
+  model.images[5].name = "#5 of 7.jpg";
+  model.images[7].name = "\"q\" 1 2 3.jpg";
+  model.images[11].name = "c,d.jpg";
+  write("sparse", model);
+  const std::string metres = baseline().substr(baseline().rfind(','));
+  for (const char* names : {"images:dive 1/a,b.jpg,c,d.jpg", "images:\"dive 1/a,b.jpg\",c,d.jpg",
+                            "images:\"dive 1/a,b.jpg\",\"c,d.jpg\""}) {
+    const Outcome outcome = run(kInput + "-o out --scale-from '" + names + metres + "'");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_EQ(read_file(folder_ / "out" / "sparse" / "points3D.txt"),
+              read_file(folder_ / "plain" / "sparse" / "points3D.txt"));
+  }
+  expect_refusal("RefinePoses", kInput + "-o out --scale-from 'images:a,b,c,d,0.5'",
+                 "put names with commas in double quotes");
+  std::string lines = "\xEF\xBB\xBF# name x y z\n#image1.jpg 9 9 9\n";
+  for (std::size_t i = 0; i < truth_.images.size(); ++i)
+    lines += fmt::format("{} {} {} {} # seen\n", model.images[i].name,
+                         truth_.images[i].pose.centre.x() + 1, truth_.images[i].pose.centre.y(),
+                         truth_.images[i].pose.centre.z());
+  write_atomically(folder_ / "positions.txt", lines);
+  const Outcome outcome = run(kInput + "-o placed --scale-from positions:positions.txt");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("the model has no image")));
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "placed" / "sparse");
+  for (std::size_t i = 0; i < truth_.images.size(); ++i) {
+    EXPECT_EQ(refined.images[i].name, model.images[i].name);
+    EXPECT_LT(
+        (refined.images[i].pose.centre - truth_.images[i].pose.centre - Eigen::Vector3d::UnitX())
+            .norm(),
+        0.002);
+  }
+}
+
+// Where two files carry a port or a lens, a line names both if they differ, and none if they agree.
+TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
+  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1").exit_code, 0);
+  io::ColmapCamera camera = testing::kLens;
+  camera.port = flat_port(2);
+  io::write_calibmar(folder_ / "same.yaml", camera);
+  camera.port = flat_port(2, 0.03);
+  io::write_calibmar(folder_ / "other.yaml", camera);
+  camera.port.reset();
+  camera.params[0] += 2;
+  io::ColmapModel lens;
+  lens.cameras = {camera};
+  write("other_lens", lens);
+  const std::string wet = "-i out/colmap-underwater -o again ";
+  const auto lines = [&](const std::string& arguments) {
+    const Outcome outcome = run(wet + arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  for (const char* agreeing :
+       {"", "--lens same.yaml", "--housing housing.json", "--lens lens --housing housing.json"})
+    EXPECT_THAT(lines(agreeing), ::testing::Not(::testing::HasSubstr("differ"))) << agreeing;
+  EXPECT_THAT(lines("--lens other.yaml"),
+              ::testing::ContainsRegex("ports are those of .*other.yaml, and not those of the "
+                                       "model in .*colmap-underwater, which differ, first for "
+                                       "image0.jpg"));
+  EXPECT_THAT(lines("--lens other.yaml --housing housing.json"),
+              ::testing::ContainsRegex("ports are those of .*housing.json, and not those of "
+                                       ".*other.yaml, which differ"));
+  EXPECT_THAT(lines("--lens other_lens"),
+              ::testing::ContainsRegex("lenses are those of .*other_lens, and not those of "
+                                       ".*colmap-underwater, which differ, first for camera 1"));
 }
 
 TEST_F(RefinePoses, RefusesAWaterSurface) {

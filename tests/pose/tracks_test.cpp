@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "pose/survey.h"
 
 namespace axial::pose {
@@ -57,6 +59,45 @@ TEST(Filter, DropsWhatDoesNotFitAndKeepsTheRest) {
   EXPECT_EQ(filter(bundle, {4, 0, 1}), 2u);
   EXPECT_EQ(bundle.observations.size(), before - 2);
   EXPECT_EQ(filter(bundle, {4, 0, 1}), 0u);
+}
+
+// Copies of observations moved at random, put anywhere: what is left is what was there before.
+TEST(DropRepeated, KeepsTheNearestOfEachImage) {
+  const Bundle truth = survey(camera_behind(flat_port()), {.points = 100});
+  Bundle bundle = truth;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(0.1, 5);
+  for (int i = 0; i < 150; ++i) {
+    Observation copy = truth.observations[random() % truth.observations.size()];
+    copy.pixel.x() += shift(random);
+    const auto place = static_cast<std::ptrdiff_t>(random() % bundle.observations.size());
+    bundle.observations.insert(bundle.observations.begin() + place, copy);
+  }
+  EXPECT_EQ(drop_repeated(bundle), 150u);
+  ASSERT_EQ(bundle.observations.size(), truth.observations.size());
+  for (std::size_t i = 0; i < truth.observations.size(); ++i) {
+    EXPECT_EQ(bundle.observations[i].image, truth.observations[i].image);
+    EXPECT_EQ(bundle.observations[i].point, truth.observations[i].point);
+    EXPECT_EQ(bundle.observations[i].pixel, truth.observations[i].pixel);
+  }
+  EXPECT_EQ(drop_repeated(bundle), 0u);
+}
+
+// Two places in one image are no two views of a point, whatever angle is asked for.
+TEST(Filter, DropsPointsThatOneImageSees) {
+  Bundle bundle = survey(camera_behind(flat_port()), {});
+  const std::size_t points = bundle.points.size();
+  std::erase_if(bundle.observations,
+                [&](const Observation& observation) { return observation.point == 3; });
+  Observation seen = bundle.observations.front();
+  bundle.points[3].position = bundle.points[seen.point].position;
+  seen.point = 3;
+  for (const double shift : {0.0, 0.5}) {
+    seen.pixel.x() += shift;
+    bundle.observations.push_back(seen);
+  }
+  filter(bundle, {4, 0, 1});
+  EXPECT_EQ(bundle.points.size(), points - 1);
 }
 
 TEST(Filter, ClosesRanksWhereAPointGoes) {

@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <numbers>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -160,6 +161,84 @@ TEST(ScoreNeighbours, SaysWhyAnImageCannotBeUsed) {
   EXPECT_THAT(views[1].problem, testing::HasSubstr("calibrated"));
   EXPECT_THAT(views[2].problem, testing::HasSubstr("sparse points"));
   for (const ViewScore& view : scene.images[0].neighbours) EXPECT_GT(view.image, 2u);
+}
+
+TEST(ScoreNeighbours, SaysWhereThePointsOfAnUnusableImageLie) {
+  // The first camera looks away from all points; the second is told points beside its image, of the
+  // third only the points that no other image sees are left.
+  Scene scene = make_scene(test::behind_port(test::dry_camera()));
+  scene.images[0].pose.rotation =
+      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY()) * scene.images[0].pose.rotation;
+  EXPECT_EQ(score_neighbours(scene)[0].problem,
+            "it sees only 0 sparse points (of 289 more, 289 behind it)");
+
+  scene = make_scene(test::dry_camera());
+  for (SparsePoint& point : scene.points)
+    std::erase_if(point.views, [](auto v) { return v.image == 2; });
+  for (SparsePoint alone : std::vector(scene.points)) {
+    alone.views = {{2, 0}};
+    scene.points.push_back(alone);
+  }
+  EXPECT_EQ(score_neighbours(scene)[2].problem,
+            "it sees only 0 sparse points (of 289 more, 289 seen by no other image)");
+}
+
+// Neighbours with one fault each, in any number: every one is counted once, under its own reason.
+RC_GTEST_PROP(WhyNoSourceView, CountsEachNeighbourOnce, ()) {
+  const ViewSelectionOptions options;
+  const auto good = [] {
+    ViewScore view;
+    view.points = 5;
+    view.scale = 1;
+    view.angle = 0.2f;
+    view.area = 0.5f;
+    view.score = 1;
+    return view;
+  }();
+  ViewScore narrow = good, wide = good, scaled = good, small = good;
+  narrow.angle = 0.01f;
+  wide.angle = 1.5f;
+  scaled.scale = 5;
+  small.area = 0.01f;
+  const std::vector<std::pair<ViewScore, std::string>> kinds = {
+      {good, "sharing too few points"},
+      {narrow, "seen under too small an angle"},
+      {wide, "seen under too large an angle"},
+      {scaled, "of too different a scale"},
+      {small, "sharing too small an area"}};
+  const auto counts = *rc::gen::container<std::vector<std::size_t>>(
+      kinds.size(), rc::gen::inRange<std::size_t>(0, 4));
+  std::vector<ViewScore> neighbours;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    neighbours.insert(neighbours.end(), counts[kind], kinds[kind].first);
+  RC_ASSERT(choose_source_views(neighbours, 5, options).empty());
+  const std::string said = why_no_source_view(neighbours, options);
+  RC_ASSERT(said.starts_with(fmt::format("no good images in view: {} with", neighbours.size())));
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    const std::string part = fmt::format(" {} {}", counts[kind], kinds[kind].second);
+    RC_ASSERT((said.find(part) != std::string::npos) == (counts[kind] > 0));
+  }
+}
+
+// The bounds on the number of neighbours hold, and the closer one is exact where every camera can
+// have made its observations.
+RC_GTEST_PROP(CountNeighbours, IsWhatScoringFinds, ()) {
+  Scene scene = test::scene_of(test::dry_camera(), test::circle_of_poses(7, 0.2));
+  // Each track as bits of the images that see the point.
+  const auto tracks = *rc::gen::container<std::vector<unsigned>>(rc::gen::inRange(0u, 128u));
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    SparsePoint point;
+    point.position = {0.01f * static_cast<float>(i % 5), 0.01f * static_cast<float>(i % 3), 1};
+    for (std::uint32_t image = 0; image < 7; ++image)
+      if (tracks[i] >> image & 1) point.views.push_back({image, 0});
+    scene.points.push_back(point);
+  }
+  const std::uint64_t counted = count_neighbours(scene);
+  RC_ASSERT(counted <= scoring_size(scene).neighbours);
+  score_neighbours(scene);
+  std::uint64_t found = 0;
+  for (const SceneImage& image : scene.images) found += image.neighbours.size();
+  RC_ASSERT(counted == found);
 }
 
 TEST(ScoreNeighbours, RefusesViewsOfImagesThatDoNotExist) {

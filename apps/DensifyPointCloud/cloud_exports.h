@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What OpenMVS's program does instead of densifying: clouds derived from the scene's own points, or
+// those of -p.
+#pragma once
+
+#include "options.h"
+#include "scene/point_cloud.h"
+#include "scene/scene.h"
+
+namespace densify {
+
+// The sparse points as a cloud.
+axial::PointCloud cloud_of(const axial::Scene& scene);
+
+// Whether the options ask for one of these.
+bool only_exports(const Options& options);
+
+// Writes the first that is asked for, beside the output and named after it:
+//   --filter-point-cloud T < 0   <out>_filtered.ply and .mvs: points whose visibility is above T
+//   --export-number-views N      <out>_<N>views.ply: points seen by |N| images or more; N < 0: .mvs
+//   --estimate-scale F > 0       <out>_scale.ply: every point's size, F pixels of its mean view
+// `scene` has its ports and lenses. Error if it has no points.
+void export_cloud(axial::Scene scene, const Options& options);
+
+}  // namespace densify

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dense_config.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parse_number.h"
+
+namespace densify {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// One title that sets something here.
+struct Setting {
+  const char* title;
+  double low, high;
+  std::function<double()> get;
+  std::function<void(double)> set;
+  bool of_maps =
+      false;  // depth maps depend on it, and nothing else that they are made from shows it
+};
+
+template <class T>
+Setting setting(const char* title, T& target, double low, double high, double unit = 1,
+                bool of_maps = false) {
+  return {title,
+          low,
+          high,
+          [&target, unit] { return static_cast<double>(target) / unit; },
+          [&target, unit](double value) { target = static_cast<T>(value * unit); },
+          of_maps};
+}
+
+// A standard deviation of grey levels in [0, 1], kept as its square.
+Setting min_texture(float& target) {
+  return {"Descriptor Min Magnitude Threshold",
+          0,
+          1,
+          [&target] { return std::sqrt(static_cast<double>(target)); },
+          [&target](double value) { target = static_cast<float>(value * value); },
+          true};
+}
+
+// 0: the region does not count; 1: points outside it count less.
+Setting point_inside_region(double& weight) {
+  constexpr double kOutside = 0.7;
+  return {"Point Inside ROI", 0, 1, [&weight] { return weight < 1 ? 1.0 : 0.0; },
+          [&weight](double value) { weight = value < 0.5 ? 1.0 : kOutside; }};
+}
+
+std::vector<Setting> settings(Options& options) {
+  axial::ViewSelectionOptions& views = options.selection;
+  axial::depth::PatchMatchOptions& matching = options.matching;
+  return {setting("Min Views", views.min_views, 1, 1000),
+          setting("Max Views", views.max_views, 1, 1000),
+          setting("Min Views Trust Point", views.min_trusted_views, 1, 1000),
+          point_inside_region(views.weight_outside_region),
+          setting("View Min Score", views.min_score, 0, 1e9),
+          setting("View Min Score Ratio", views.min_score_ratio, 0, 1),
+          setting("Min Area", views.min_area, 0, 1),
+          setting("Min Angle", views.min_angle, 0, 180, kDegree),
+          setting("Optim Angle", views.optimal_angle, 0.1, 180, kDegree),
+          setting("Max Angle", views.max_angle, 0, 180, kDegree),
+          setting("Depth Diff Threshold", options.fusion.depth_threshold, 1e-6, 1),
+          setting("Normal Diff Threshold", options.fusion.normal_threshold, 0, 180, kDegree),
+          min_texture(matching.min_texture),
+          setting("NCC Threshold Keep", matching.keep_cost, 0, 2, 1, true),
+          setting("Estimation Geometric Weight", matching.geometric_weight, 0, 100, 1, true),
+          setting("Speckle Size", options.speckles.min_pixels, 0, 1e9, 1, true),
+          setting("Interpolate Gap Size", options.gaps.max_gap, 0, 1e6, 1, true)};
+}
+
+std::string shown(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+// Titles of OpenMVS whose values its options replace, even by their defaults.
+const std::set<std::string, std::less<>>& titles_of_options() {
+  static const std::set<std::string, std::less<>> titles{"Resolution Level",
+                                                         "Max Resolution",
+                                                         "Min Resolution",
+                                                         "SubResolution levels",
+                                                         "Min Views Fuse",
+                                                         "Num Views",
+                                                         "Remove Dmaps",
+                                                         "Ignore Mask Label",
+                                                         "Optimize",
+                                                         "Estimate Colors",
+                                                         "Estimate Normals",
+                                                         "Estimation Iters",
+                                                         "Estimation Geometric Iters"};
+  return titles;
+}
+
+// Titles of OpenMVS that are of no method here.
+const std::set<std::string, std::less<>>& titles_without_effect() {
+  static const std::set<std::string, std::less<>> titles{
+      "Min Views Filter",     "Min Views Filter Adjust",
+      "Filter Adjust",        "Add Corners",
+      "Init Sparse",          "Pairwise Mul",
+      "Optimizer Eps",        "Optimizer Max Iters",
+      "Random Iters",         "Random Max Scale",
+      "Random Depth Ratio",   "Random Angle1 Range",
+      "Random Angle2 Range",  "Random Smooth Depth",
+      "Random Smooth Normal", "Random Smooth Bonus"};
+  return titles;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+// Whether the line holds nothing to set.
+bool is_decoration(std::string_view line) {
+  return line.empty() || line.front() == '[' || line == "{" || line == "}";
+}
+
+class ConfigFile {
+ public:
+  ConfigFile(std::string name, Options& options)
+      : name_(std::move(name)), options_(options), settings_(settings(options)) {}
+
+  void read(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      ++number_;
+      read_line(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    warn();
+    note_what_maps_depend_on();
+  }
+
+ private:
+  void read_line(std::string_view line) {
+    line = trimmed(line.substr(0, line.find_first_of("#;")));
+    if (is_decoration(line)) return;
+    const std::size_t sign = line.find('=');
+    if (sign == std::string_view::npos)
+      axial::fail("{}: line {} is no 'title = value': {}", name_, number_, line);
+    set(std::string(title_of(line.substr(0, sign))), trimmed(line.substr(sign + 1)));
+  }
+
+  // OpenMVS's titles of angles have no unit, but its documentation does: "Min Angle (deg)".
+  static std::string_view title_of(std::string_view text) {
+    text = trimmed(text);
+    constexpr std::string_view kUnit = "(deg)";
+    if (text.ends_with(kUnit)) text.remove_suffix(kUnit.size());
+    return trimmed(text);
+  }
+
+  void set(const std::string& title, std::string_view text) {
+    if (titles_of_options().contains(title)) return list(of_options_, title);
+    if (titles_without_effect().contains(title)) return list(without_effect_, title);
+    for (const Setting& setting : settings_) {
+      if (title != setting.title) continue;
+      const std::optional<double> value = axial::parse_finite<double>(text);
+      if (!value) axial::fail("{}: line {}: {} is '{}', no number", name_, number_, title, text);
+      if (!(*value >= setting.low && *value <= setting.high))
+        axial::fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
+                    setting.low, setting.high);
+      // A value that the file got from the one in use does not change its last bits.
+      if (shown(*value) != shown(setting.get())) setting.set(*value);
+      return;
+    }
+    list(unknown_, title);
+  }
+
+  static void list(std::string& titles, const std::string& title) {
+    titles += (titles.empty() ? "" : ", ") + title;
+  }
+
+  void warn() const {
+    if (!unknown_.empty()) axial::log_warning("{}: unknown, passed over: {}", name_, unknown_);
+    if (!without_effect_.empty())
+      axial::log_info("{}: without effect here: {}", name_, without_effect_);
+    if (!of_options_.empty())
+      axial::log_info("{}: set by options alone, as in OpenMVS: {}", name_, of_options_);
+  }
+
+  void note_what_maps_depend_on() {
+    Options defaults;
+    const std::vector<Setting> before = settings(defaults);
+    for (std::size_t i = 0; i < settings_.size(); ++i)
+      if (settings_[i].of_maps && settings_[i].get() != before[i].get())
+        options_.map_settings += fmt::format("{} {}\n", settings_[i].title, settings_[i].get());
+  }
+
+  std::string name_;
+  Options& options_;
+  std::vector<Setting> settings_;
+  std::size_t number_ = 0;
+  std::string unknown_, without_effect_, of_options_;
+};
+
+}  // namespace
+
+void apply_dense_config(const std::filesystem::path& file, Options& options) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error))
+    return ConfigFile(file.string(), options).read(axial::read_file(file, 1 << 20));
+  std::string text;
+  for (const Setting& setting : settings(options))
+    text += fmt::format("{} = {}\n", setting.title, shown(setting.get()));
+  axial::write_atomically(file, text);
+  axial::log_info("{}: was not there, written with the values in use", file.string());
+}
+
+}  // namespace densify

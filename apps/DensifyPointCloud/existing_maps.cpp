@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "existing_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "depth_stage.h"
+#include "scene/resolution.h"
+
+namespace densify {
+using axial::fail;
+using axial::io::DmapOrigin;
+
+namespace {
+
+bool is_plain_pinhole(const axial::CameraModel& camera) {
+  return !camera.port && !camera.distortion;
+}
+
+// Points that the map's corners and centre show if the scene is in the middle of its depth range.
+std::vector<Eigen::Vector3d> points_seen(const axial::DepthMap& map) {
+  const double w = map.camera.width - 1, h = map.camera.height - 1;
+  const auto near = static_cast<double>(map.min_depth), far = static_cast<double>(map.max_depth);
+  const double depth = near > 0 ? std::sqrt(near * far) : far / 2;
+  std::vector<Eigen::Vector3d> points;
+  std::visit(
+      [&](const auto& camera) {
+        for (const auto& [u, v] : {std::pair{0.0, 0.0}, {w, 0.0}, {0.0, h}, {w, h}, {w / 2, h / 2}})
+          points.push_back(map.pose.to_world(camera.ray({u, v}).at(depth)));
+      },
+      axial::make_camera<double>(map.camera));
+  return points;
+}
+
+// How far apart the map's camera and the scene's, at the map's resolution, see the same points
+// [px].
+double largest_shift(const axial::DepthMap& map, const axial::CameraModel& model,
+                     const axial::Pose& pose) {
+  const std::vector<Eigen::Vector3d> points = points_seen(map);
+  const double w = map.camera.width - 1, h = map.camera.height - 1;
+  const double us[] = {0, w, 0, w, w / 2}, vs[] = {0, 0, h, h, h / 2};
+  double largest = 0;
+  std::visit(
+      [&](const auto& camera) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const auto seen = camera.project(pose.to_camera(points[i]));
+          if (!seen.visible) {
+            largest = std::numeric_limits<double>::infinity();
+            return;
+          }
+          largest = std::max(largest, std::hypot(seen.pixel.x() - us[i], seen.pixel.y() - vs[i]));
+        }
+      },
+      axial::make_camera<double>(model));
+  return largest;
+}
+
+// The camera of the image at its map's resolution. Error unless the map is of this camera.
+axial::CameraModel camera_of_map(const Project& project, const Options& options, std::size_t image,
+                                 DmapOrigin origin) {
+  const std::string file = depth_map_path(project, options, image).string();
+  const axial::SceneImage& scene_image = project.scene.images[image];
+  if (origin == DmapOrigin::damaged)
+    fail("{}: is damaged, or its side file is: remove both to fuse the others", file);
+  if (origin == DmapOrigin::foreign && !is_plain_pinhole(scene_image.camera))
+    fail("{}: is a pinhole's depth map, but image {} is seen through a port or a distorted lens",
+         file, scene_image.path);
+  const axial::DepthMap map = axial::io::read_dmap_header(file, side_to_read(origin));
+  const cv::Size size(map.camera.width, map.camera.height);
+  if (!axial::same_shape(size, {scene_image.camera.width, scene_image.camera.height}))
+    fail("{}: is {}x{}, but the camera of image {} is {}x{}", file, size.width, size.height,
+         scene_image.path, scene_image.camera.width, scene_image.camera.height);
+  const axial::CameraModel camera = scene_image.camera.resized(size.width, size.height);
+  constexpr double kMostPixels = 1;
+  if (const double shift = largest_shift(map, camera, scene_image.pose); !(shift < kMostPixels))
+    fail(
+        "{}: its camera sees the scene {:.1f} px from where that of image {} does: it was made "
+        "with other poses or intrinsics",
+        file, shift, scene_image.path);
+  return camera;
+}
+
+}  // namespace
+
+axial::io::DmapSide side_to_read(DmapOrigin origin) {
+  return origin == DmapOrigin::foreign ? axial::io::DmapSide::ignored : axial::io::DmapSide::used;
+}
+
+ExistingMaps find_existing_maps(const Project& project, const Options& options) {
+  ExistingMaps maps(project.scene.images.size());
+  // One at a time: each is read whole, and the memory plan is still to be made.
+  for (const std::size_t image : project.references)
+    maps[image] = axial::io::dmap_status(depth_map_path(project, options, image));
+  return maps;
+}
+
+void check_overwriting(const Project& project, const Options& options, const ExistingMaps& maps) {
+  std::vector<std::size_t> foreign;
+  for (const std::size_t image : project.references) {
+    if (maps[image].origin == DmapOrigin::foreign) foreign.push_back(image);
+    if (maps[image].origin == DmapOrigin::damaged)
+      axial::log_warning("{}: is damaged, or its side file is, and is made anew",
+                         depth_map_path(project, options, image).string());
+  }
+  if (foreign.empty()) return;
+  const std::string file = depth_map_path(project, options, foreign.front()).string();
+  if (options.overwrite_dmaps) {
+    axial::log_info("{} and {} others of other programs are overwritten", file, foreign.size() - 1);
+    return;
+  }
+  const bool fusable = std::ranges::all_of(foreign, [&](std::size_t image) {
+    return is_plain_pinhole(project.scene.images[image].camera);
+  });
+  fail(
+      "{}: was written by another program ({} of {} depth maps were): {}move it away, or give "
+      "--overwrite-dmaps 1",
+      file, foreign.size(), project.references.size(),
+      fusable ? "fuse what is there (--fusion-mode -1), " : "it counts as a pinhole's here: ");
+}
+
+void keep_images_with_maps(Project& project, const Options& options, const ExistingMaps& maps) {
+  std::vector<std::size_t> kept;
+  std::size_t foreign = 0;
+  for (const std::size_t image : project.references) {
+    const DmapOrigin origin = maps[image].origin;
+    if (origin == DmapOrigin::none) {
+      axial::log_info("{}: has no depth map, left out", project.scene.images[image].path);
+      continue;
+    }
+    project.views[image].camera = camera_of_map(project, options, image, origin);
+    foreign += origin == DmapOrigin::foreign ? 1 : 0;
+    kept.push_back(image);
+  }
+  if (kept.empty())
+    fail("--fusion-mode -1: no depth map is there: {} is none",
+         depth_map_path(project, options, project.references.front()).string());
+  axial::log_info("{} of {} images have a depth map, {} by other programs", kept.size(),
+                  project.references.size(), foreign);
+  project.references = std::move(kept);
+}
+
+}  // namespace densify

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "neighbour_lists.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parse_number.h"
+
+namespace densify {
+namespace {
+
+std::vector<std::uint32_t> numbers_of(const std::string& line, std::size_t images,
+                                      const std::string& where) {
+  std::istringstream words(line.substr(0, line.find('#')));
+  std::vector<std::uint32_t> numbers;
+  for (std::string word; words >> word;) {
+    const auto number = axial::parse_finite<std::uint32_t>(word);
+    if (!number || *number >= images)
+      axial::fail("{}: '{}' is no image of the scene, which has {}", where, word, images);
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+axial::ViewScore given_neighbour(std::uint32_t image) {
+  axial::ViewScore score;
+  score.image = image;
+  score.scale = 1;
+  score.angle = 15 * std::numbers::pi_v<float> / 180;
+  score.area = 0.5f;
+  score.score = 3;
+  return score;
+}
+
+}  // namespace
+
+std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, axial::Scene& scene) {
+  std::istringstream text(axial::read_file(file));
+  std::vector<bool> named(scene.images.size(), false);
+  std::size_t number = 0;
+  for (std::string line; std::getline(text, line);) {
+    const std::string where = fmt::format("{}: line {}", file.string(), ++number);
+    const std::vector<std::uint32_t> images = numbers_of(line, scene.images.size(), where);
+    if (images.empty()) continue;
+    if (images.size() == 1) axial::fail("{}: image {} has no neighbours", where, images[0]);
+    if (named[images[0]]) axial::fail("{}: image {} has a line already", where, images[0]);
+    if (std::find(images.begin() + 1, images.end(), images[0]) != images.end())
+      axial::fail("{}: image {} is its own neighbour", where, images[0]);
+    named[images[0]] = true;
+    std::vector<axial::ViewScore>& neighbours = scene.images[images[0]].neighbours;
+    neighbours.clear();
+    for (std::size_t i = 1; i < images.size(); ++i) {
+      const auto end = images.begin() + static_cast<std::ptrdiff_t>(i);
+      const bool repeated = std::find(images.begin(), end, images[i]) != end;
+      if (!repeated && scene.images[images[i]].calibrated)
+        neighbours.push_back(given_neighbour(images[i]));
+    }
+  }
+  return named;
+}
+
+void write_neighbour_lists(const std::filesystem::path& file, const axial::Scene& scene) {
+  std::string text;
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const axial::SceneImage& image = scene.images[i];
+    if (!image.calibrated || image.neighbours.empty()) continue;
+    text += std::to_string(i);
+    for (const axial::ViewScore& neighbour : image.neighbours)
+      text += fmt::format(" {}", neighbour.image);
+    text += "\n";
+  }
+  axial::write_atomically(file, text);
+}
+
+}  // namespace densify

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outputs.h"
+
+#include "base/atomic_file.h"
+#include "base/same_file.h"
+#include "depth_stage.h"
+
+namespace densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path cloud_file(const Options& options) {
+  return fs::path(options.output).replace_extension(".ply");
+}
+
+std::vector<fs::path> scene_files(const Options& options) {
+  return {options.input, housing_file(options), axial::io::lenses_beside(options.input)};
+}
+
+// The housing is not among them: it is not written where it is the one that was read.
+std::vector<fs::path> cloud_outputs(const Options& options) {
+  return {options.output, cloud_file(options), axial::io::lenses_beside(options.output)};
+}
+
+std::vector<fs::path> depth_outputs(const Project& project, const Options& options) {
+  std::vector<fs::path> files;
+  const bool pictures = options.parsed.common.verbosity >= kVerbosityOfPictures;
+  for (const std::size_t image : project.references) {
+    const fs::path map = depth_map_path(project, options, image);
+    files.insert(files.end(), {map, map.string() + ".json"});
+    for (const char* picture : {".png", ".normal.png", ".confidence.png"})
+      if (pictures) files.push_back(fs::path(map).replace_extension(picture));
+  }
+  return files;
+}
+
+}  // namespace
+
+void check_outputs(const Options& options) {
+  axial::require_no_inputs(cloud_outputs(options), scene_files(options), "--output-file");
+  axial::require_writable(options.output);
+  axial::require_writable(cloud_file(options));
+  axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
+  axial::remove_abandoned(options.parsed.common.working_folder, "depth");
+}
+
+void check_outputs(const Project& project, const Options& options) {
+  std::vector<fs::path> inputs = scene_files(options);
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    inputs.push_back(project.scene.images[i].path);
+    inputs.push_back(project.views[i].mask);
+  }
+  axial::require_no_inputs(cloud_outputs(options), inputs, "--output-file");
+  axial::require_no_inputs(depth_outputs(project, options), inputs, "--working-folder");
+}
+
+}  // namespace densify

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files that a run writes: they can be written, and none of them is one that it reads.
+#pragma once
+
+#include "project.h"
+
+namespace densify {
+
+// Before the scene is read. What killed runs left half-written goes. Error that names the file that
+// cannot be written, or the option and both files where an output is the scene, its housing or its
+// lenses.
+void check_outputs(const Options& options);
+
+// The same for the photographs and masks of the scene, and for depth maps and their pictures. Maps
+// of earlier runs are no inputs.
+void check_outputs(const Project& project, const Options& options);
+
+}  // namespace densify

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace axial {
+
+// The files of a folder, not of its subfolders, in any order; of a file itself that file. Nothing
+// of a path that is empty or not there.
+inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) return {path};
+  for (const auto& entry : std::filesystem::directory_iterator(path, ignored))
+    if (entry.is_regular_file(ignored)) files.push_back(entry.path());
+  return files;
+}
+
+}  // namespace axial

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/same_file.h"
+
+#include <sys/stat.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+
+namespace axial {
+namespace {
+
+using Identity = std::pair<dev_t, ino_t>;
+
+std::optional<Identity> identity_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (path.empty() || ::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return Identity{status.st_dev, status.st_ino};
+}
+
+}  // namespace
+
+void require_no_inputs(std::span<const std::filesystem::path> outputs,
+                       std::span<const std::filesystem::path> inputs, const std::string& option) {
+  std::map<Identity, const std::filesystem::path*> known;
+  for (const std::filesystem::path& input : inputs)
+    if (const auto identity = identity_of(input)) known.emplace(*identity, &input);
+  for (const std::filesystem::path& output : outputs) {
+    const auto identity = identity_of(output);
+    const auto input = identity ? known.find(*identity) : known.end();
+    if (input == known.end()) continue;
+    fail("{} {}: is {}, which is read and would be overwritten", option, output.string(),
+         output == *input->second ? "an input" : "the input " + input->second->string());
+  }
+}
+
+void require_not_an_input(const std::filesystem::path& output,
+                          std::span<const std::filesystem::path> inputs,
+                          const std::string& option) {
+  if (identity_of(output)) require_no_inputs({&output, 1}, inputs, option);
+}
+
+}  // namespace axial

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Masks: which file is taken, and that none is passed over without a word."""
+
+
+import tiny_scene
+from programs import ProgramTest, depth_rows, grey_png, main, read, write
+
+LEFT, RIGHT = bytes([0] * 48 + [255] * 48), bytes([255] * 48 + [0] * 48)
+
+
+class Masks(ProgramTest):
+    """Pixels at the left are left out by LEFT, at the right by RIGHT."""
+
+    def setUp(self):
+        super().setUp()
+        self.names = tiny_scene.names()
+        self.images = [self.path("images", name) for name in self.names]
+        self.write_images()
+
+    def write_images(self):
+        for path, centre in zip(self.images, tiny_scene.CENTRES):
+            write(path, tiny_scene.picture(centre))
+        write(self.path("scene.mvs"), tiny_scene.mvs(self.images))
+
+    def put(self, row, *parts):
+        write(self.path(*parts), grey_png([row] * 72))
+
+    def arguments(self, *more):
+        return ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.folder, "--resolution-level", "0",
+                "--iters", "1", "--geometric-iters", "0", "--postprocess-dmaps", "0", *more)
+
+    def densify(self, *more):
+        return self.succeeds(*self.arguments(*more)).stdout
+
+    def matched(self, image):
+        """Whether any pixel of the left half, and of the right half, has a depth."""
+        rows = depth_rows(read(self.path(f"depth{image:04}.dmap")))
+        middle = len(rows[0]) // 2
+        return tuple(any(depth > 0 for row in rows for depth in half(row))
+                     for half in (lambda row: row[:middle], lambda row: row[middle:]))
+
+    def test_a_folder_alone_means_label_zero(self):
+        for kind in ("{}.mask.png", "{}.png.png", "{}_mask.png", "{}.png"):
+            folder = "masks" + kind.strip("{}")
+            for name in self.names:
+                self.put(LEFT, folder, kind.format(name[:-4]))
+            self.assertNotIn("mask", self.densify("--mask-path", folder).replace(folder, ""))
+            for image in range(3):
+                self.assertEqual(self.matched(image), (False, True), kind)
+
+    def test_beside_the_image(self):
+        self.put(LEFT, "images", "0000.png.png")
+        self.put(LEFT, "images", "0001_mask.png")
+        said = self.densify("--ignore-mask-label", "0")
+        self.assertEqual([self.matched(i) for i in range(3)],
+                         [(False, True), (False, True), (True, True)])
+        warnings = [line for line in said.splitlines() if "mask" in line]
+        self.assertEqual(len(warnings), 1, said)
+        self.assertIn(f"{self.images[2]}: no mask: looked for 0002.mask.png, 0002.png.png and "
+                      f"0002_mask.png in {self.path('images')}", warnings[0])
+
+    def test_rivals(self):
+        for name in self.names:
+            self.put(LEFT, "masks", name[:-4] + ".mask.png")
+            self.put(RIGHT, "masks", name + ".png")
+        said = self.densify("--mask-path", "masks")
+        self.assertEqual(self.matched(0), (False, True))
+        warnings = [line for line in said.splitlines() if "which differs" in line]
+        self.assertEqual(len(warnings), 1, said)
+        for part in (self.path("masks", "0000.mask.png"), self.path("masks", "0000.png.png"),
+                     "3 images"):
+            self.assertIn(part, warnings[0])
+
+    def test_images_of_one_name(self):
+        self.images = [self.path("images", f"cam{i}", "0001.png") for i in range(3)]
+        self.write_images()
+        self.put(LEFT, "masks", "0001.mask.png")
+        self.refuses(f"no mask for image {self.images[0]}: looked for", *self.arguments(
+            "--mask-path", "masks"))
+        for i, row in enumerate((LEFT, RIGHT, LEFT)):
+            self.put(row, "masks", f"cam{i}", "0001.mask.png")
+        self.densify("--mask-path", "masks")
+        self.assertEqual([self.matched(i) for i in range(3)],
+                         [(False, True), (True, False), (False, True)])
+
+    def test_a_label_that_no_mask_has(self):
+        for name in self.names:
+            self.put(LEFT, "masks", name[:-4] + ".mask.png")
+        said = self.densify("--mask-path", "masks", "--ignore-mask-label", "7")
+        self.assertIn("--ignore-mask-label 7: no mask has this label", said)
+        self.assertIn("0, 255", said)
+        self.assertEqual(self.matched(0), (True, True))
+        self.assertNotIn("no mask has", self.densify("--mask-path", "masks"))
+
+    def test_masks_that_are_not_asked_for(self):
+        for name in self.names:
+            self.put(LEFT, "masks", name[:-4] + ".mask.png")
+        said = self.densify("--mask-path", "masks", "--ignore-mask-label", "-1")
+        self.assertIn("is not used, because --ignore-mask-label is -1", said)
+        self.assertEqual(self.matched(0), (True, True))
+
+    def test_a_folder_that_lacks_masks(self):
+        self.refuses("masks: is no folder of masks", *self.arguments("--mask-path", "masks"))
+        self.put(LEFT, "masks", "0000.mask.png")
+        self.put(LEFT, "masks", "0002.mask.png")
+        self.refuses(f"no mask for image {self.images[1]}: looked for 0001.mask.png, 0001.png.png, "
+                     f"0001_mask.png and 0001.png in {self.path('masks')}", *self.arguments(
+                         "--mask-path", "masks"))
+
+
+if __name__ == "__main__":
+    main()

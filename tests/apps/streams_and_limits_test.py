@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Programs without standard streams, with little memory or disk, killed, and told to write over what
+they read: outputs are whole or absent, inputs stay, and what is said is one line."""
+
+import itertools
+import os
+import re
+import resource
+import shutil
+import struct
+import subprocess
+import tempfile
+
+import tiny_scene
+from programs import BIN, ProgramTest, files_below, main, read, run, write
+
+DENSIFY = ("DensifyPointCloud", "--max-threads", "1", "--resolution-level", "0", "--iters", "1",
+           "--geometric-iters", "0", "--number-views-fuse", "2")
+
+
+def contents(folder):
+    return {name: read(os.path.join(folder, name)) for name in files_below(folder)}
+
+
+def dead_process():
+    process = subprocess.Popen(["true"])
+    process.wait()
+    return process.pid
+
+
+class TinyScene(ProgramTest):
+    """images/, work/scene.mvs, colmap/{images,sparse}."""
+
+    def setUp(self):
+        super().setUp()
+        tiny_scene.write_colmap(self.path("colmap"))
+        self.work, self.scene = self.path("work"), self.path("work", "scene.mvs")
+        self.images = [self.path("colmap", "images", name) for name in tiny_scene.names()]
+        write(self.scene, tiny_scene.mvs(self.images))
+
+    def densify(self, *arguments):
+        return (*DENSIFY, "-i", self.scene, "-w", self.work, *arguments)
+
+    def refuses_and_keeps(self, expected, *command, **options):
+        before = contents(self.folder)
+        self.refuses(expected, *command, **options)
+        self.assertEqual(contents(self.folder), before, command)
+
+
+class ClosedStreams(TinyScene):
+    def run_without(self, descriptors, program, *arguments):
+        closed = " ".join(f"{descriptor}>&-" for descriptor in descriptors)
+        return subprocess.run(["bash", "-c", f'exec "$@" {closed}', "bash",
+                               os.path.join(BIN, program), *map(str, arguments)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+
+    def test_nothing_of_the_log_gets_into_a_file(self):
+        self.succeeds(*self.densify())
+        expected = contents(self.work)
+        for count in (1, 2, 3):
+            for closed in itertools.combinations(range(3), count):
+                shutil.rmtree(self.work)
+                write(self.scene, expected["scene.mvs"])
+                ended = self.run_without(closed, *self.densify("-v", "3"))
+                self.assertEqual(ended.returncode, 0, (closed, ended.stderr))
+                found = {name: data for name, data in contents(self.work).items()
+                         if not name.endswith(".png")}
+                self.assertEqual(found, expected, closed)
+
+    def test_every_program(self):
+        cloud = self.path("mesh.ply")
+        write(cloud, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+              "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        sparse = self.path("colmap", "sparse")
+        for command, output in (
+                (("InterfaceCOLMAP", "-i", self.path("colmap")), "a.mvs"),
+                (("AlignModel", "-i", sparse, "--reference", sparse), "aligned"),
+                (("EvaluateReconstruction", "-i", cloud, "-m", cloud, "--json"), "a.json")):
+            made = []
+            for closed in ((), (1,), (0, 1, 2)):
+                path = self.path("without" + "".join(map(str, closed)), output)
+                os.makedirs(os.path.dirname(path), exist_ok=True)
+                option = () if command[-1] == "--json" else ("-o",)
+                ended = self.run_without(closed, *command, *option, path)
+                self.assertEqual(ended.returncode, 0, (command, closed, ended.stderr))
+                made.append(contents(path) if os.path.isdir(path) else read(path))
+            for other in made[1:]:
+                self.assertEqual(other, made[0], command)
+
+    def test_errors_are_still_errors(self):
+        for closed in ((1,), (2,), (0, 1, 2)):
+            ended = self.run_without(closed, *DENSIFY, "-i", self.path("none.mvs"))
+            self.assertEqual(ended.returncode, 1, closed)
+
+
+class Overwriting(TinyScene):
+    """By any name that the input has."""
+
+    def names_of(self, path, link):
+        os.symlink(path, link + ".soft" + os.path.splitext(path)[1])
+        os.link(path, link + ".hard" + os.path.splitext(path)[1])
+        return (path, link + ".soft" + os.path.splitext(path)[1],
+                link + ".hard" + os.path.splitext(path)[1])
+
+    def test_scene(self):
+        for output in self.names_of(self.scene, self.path("other")):
+            self.refuses_and_keeps(f"--output-file {output}: is ", *self.densify("-o", output))
+
+    def test_photographs_beside_depth_maps(self):
+        images = [self.path("work", f"depth{i:04d}.png") for i in range(3)]
+        for source, image in zip(self.images, images):
+            shutil.copyfile(source, image)
+        write(self.scene, tiny_scene.mvs(images))
+        self.refuses_and_keeps("--working-folder " + images[0] + ": is an input",
+                               *self.densify("-v", "3"))
+        before = [read(image) for image in images]
+        self.succeeds(*self.densify("-v", "2"))  # draws nothing
+        self.assertEqual([read(image) for image in images], before)
+
+    def test_housing(self):
+        text = '{"version": 1,\n "ports": {"main": {"type": "flat", "distance_m": 0.001, ' \
+               '"thickness_m": 0.001, "normal": [0, 0, 1],\n "n_air": 1, "n_glass": 1.5, ' \
+               '"n_water": 1.33}}, "default": "main"}'
+        housing = self.path("work", "scene_dense.housing.json")
+        write(housing, text)
+        self.succeeds(*self.densify("--refractive", "--housing", housing))
+        self.assertEqual(read(housing).decode(), text)
+        other = self.path("work", "other.housing.json")
+        self.succeeds(*self.densify("-o", self.path("work", "other.mvs"), "--housing", housing))
+        self.assertIn(b"distance_m", read(other))
+        for output in (self.path("work", "a.mvs"), self.path("work", "a.ply")):
+            os.link(housing, output)
+            self.refuses_and_keeps(f"{output}: is the input {housing}", *self.densify(
+                "-o", self.path("work", "a.mvs"), "--housing", housing))
+            os.remove(output)
+
+    def test_models(self):
+        sparse = self.path("colmap", "sparse")
+        reference = self.path("reference")
+        shutil.copytree(sparse, reference)
+        os.symlink(sparse, self.path("link"))
+        for output in (sparse, reference, self.path("link"), os.path.join(sparse, "..", "sparse")):
+            self.refuses_and_keeps("--output-folder", "AlignModel", "-i", sparse, "--reference",
+                                   reference, "-o", output)
+        self.succeeds("AlignModel", "-i", sparse, "--reference", reference, "-o", self.path("new"))
+
+    def test_evaluation(self):
+        mesh, model = self.path("mesh.ply"), self.path("colmap", "sparse")
+        write(mesh, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+              "end_header\n0 0 1\n1 0 1\n0 1 1\n3 0 1 2\n")
+        cloud = self.path("cloud.ply")
+        shutil.copyfile(mesh, cloud)
+        given = ("EvaluateReconstruction", "-i", cloud, "-m", mesh, "--cameras", model)
+        for option in ("--json", "--error-cloud", "--picture", "--aligned", "--transform-out"):
+            for target in (cloud, mesh, os.path.join(model, "images.txt")):
+                self.refuses_and_keeps(f"{option} {target}: is ", *given, option, target)
+
+    def test_refined_poses(self):
+        out, lens = self.path("out"), self.path("out", "sparse", "cameras.txt")
+        housing = self.path("out", "housing.json")
+        shutil.copytree(self.path("colmap", "sparse"), self.path("out", "sparse"))
+        write(housing, '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": 0.02, '
+              '"thickness_m": 0.01, "normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, '
+              '"n_water": 1.33}}, "default": "main"}')
+        positions = self.path("out", "report.json")
+        write(positions, "".join(f"{name} {x} {y} {z}\n" for name, (x, y, z) in zip(
+            tiny_scene.names(), tiny_scene.CENTRES)))
+        other_lens, other_housing = self.path("cameras.txt"), self.path("housing.json")
+        shutil.copyfile(lens, other_lens)
+        shutil.copyfile(housing, other_housing)
+        for arguments in (("--lens", other_lens, "--housing", housing),
+                          ("--lens", lens, "--housing", other_housing),
+                          ("--lens", other_lens, "--housing", other_housing, "--scale-from",
+                           "positions:" + positions)):
+            self.refuses_and_keeps("--output-folder " + out, "RefinePoses", "-i",
+                                   self.path("colmap"), *arguments, "-o", out)
+
+    def test_calibration(self):
+        lens, housing = self.path("colmap", "sparse", "cameras.txt"), self.path("housing.json")
+        write(housing, '{"version": 1, "ports": {"main": {"type": "flat", "distance_m": 0.02, '
+              '"thickness_m": 0.01, "normal": [0, 0, 1], "n_air": 1, "n_glass": 1.5, '
+              '"n_water": 1.33}}, "default": "main"}')
+        given = ("CalibrateHousing", "-i", self.path("colmap", "images"), "--lens", lens,
+                 "--housing", housing, "--board", "checkerboard:9x6:0.03")
+        for target in (lens, housing, self.images[1]):
+            self.refuses_and_keeps(f"--output-file {target}: is ", *given, "-o", target)
+            for option in ("--calibmar", "--report", "--coverage"):
+                self.refuses_and_keeps(f"{option} {target}: is ", *given, "-o",
+                                       self.path("new.json"), option, target)
+
+
+class LongFields(TinyScene):
+    def test_errors_are_short_lines(self):
+        """Of every kind of file, a field of any length and of any characters."""
+        for field in ("x" * 5000, "x " * 2500, "\x01\x1b[2J" * 900, "\u20ac" * 3000):
+            sparse = self.path("colmap", "sparse")
+            cases = [(self.path("a.ply"), f"ply\nformat {field} 1.0\nend_header\n",
+                      ("EvaluateReconstruction", "-i", self.path("a.ply"), "-m", self.path("a.ply"))),
+                     (os.path.join(sparse, "cameras.txt"), f"1 {field} 96 72 90 90 48 36\n",
+                      ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs"))),
+                     (self.path("a.json"), '{"version": 1, "ports": {}, "default": "%s"}'
+                      % field.replace("\x01\x1b", "\\u0001\\u001b"),
+                      self.densify("--refractive", "--housing", self.path("a.json"))),
+                     (self.scene, tiny_scene.mvs([field] * 3), self.densify()),
+                     (self.path("DensifyPointCloud.cfg"), f"{field} = 1\n", self.densify(
+                         "-c", self.path("DensifyPointCloud.cfg")))]
+            for path, data, command in cases:
+                before = read(path) if os.path.exists(path) else None
+                write(path, data)
+                said = self.refuses("", *command).stderr
+                self.assertLess(len(said.encode()), 540, said)
+                self.assertFalse(re.search("[\\x00-\\x09\\x0b-\\x1f]", said), repr(said))
+                if before is None:
+                    os.remove(path)
+                else:
+                    write(path, before)
+
+
+class LittleMemory(TinyScene):
+    def test_is_one_line(self):
+        """From so little that libraries cannot be loaded to enough."""
+
+        def limited(megabytes):
+            return lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1000000,) * 2)
+
+        for command in (self.densify("-v", "0"),
+                        ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs"),
+                         "-v", "0")):
+            ends = []
+            for megabytes in [*range(190, 230, 2), *range(230, 430, 20)]:
+                ended = subprocess.run(
+                    [os.path.join(BIN, command[0]), *command[1:]], text=True,
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
+                    preexec_fn=limited(megabytes))
+                said = f"{command[0]} with {megabytes} MB: {ended.returncode} {ended.stderr!r}"
+                self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: of the loader
+                ends.append(ended.returncode)
+                if ended.returncode == 1:
+                    self.assertEqual(ended.stderr.count("\n"), 1, said)
+                    self.assertRegex(ended.stderr, "out of memory|thread|pthread", said)
+            self.assertIn(1, ends, command)
+            self.assertEqual(ends[-1], 0, command)
+
+
+class ManyObservations(ProgramTest):
+    """A scene whose points outweigh its pixels. Most lie behind the cameras, which takes as much
+    memory and less time."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scene_folder = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.work = cls.scene_folder.name
+        image = os.path.join(cls.work, "a.png")
+        write(image, tiny_scene.picture((0, 0, 0)))
+        centres = [(0.01 * i, 0, 0) for i in range(40)]
+        views = struct.pack("<Q", 20) + b"".join(struct.pack("<If", i, 0) for i in range(40))
+        points = b"".join(struct.pack("<3f", 0.2 + 0.0001 * (i % 1000), 0.0001 * (i % 997),
+                                      1 if i % 40 == 0 else -1)
+                          + struct.pack("<Q", 20) + views[8 + 8 * (i % 20):8 + 8 * (i % 20 + 20)]
+                          for i in range(120000))
+        empty = tiny_scene.mvs([image] * 40, centres=centres, points=[])
+        at = len(empty) - (8 + 40 + 16 * 8 + 9 * 8 + 6 * 8)  # of the number of points
+        write(os.path.join(cls.work, "scene.mvs"),
+              empty[:at] + struct.pack("<Q", 120000) + points + empty[at + 8:])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scene_folder.cleanup()
+
+    def run_with(self, megabytes):
+        """The exit code, what was said, and the most memory that was taken [MB]."""
+        with open(self.path("said"), "w+") as said:
+            process = subprocess.Popen(
+                [os.path.join(BIN, "DensifyPointCloud"), "-i", os.path.join(self.work, "scene.mvs"),
+                 "-w", self.work, "--resolution-level", "2", "--iters", "1", "--geometric-iters",
+                 "0", "-v", "0", "--max-memory", str(megabytes)],
+                stdout=subprocess.DEVNULL, stderr=said)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            said.seek(0)
+            return process.returncode, said.read(), usage.ru_maxrss * 1024 / 1e6
+
+    def test_is_planned_before_it_is_taken(self):
+        code, said, peak = self.run_with(150)
+        self.assertEqual(code, 1, said)
+        self.assertIn("--max-memory 150: 150 MB are too little, this scene needs at least", said)
+        self.assertLess(peak, 120)
+        needed = int(re.search(r"needs at least (\d+)", said)[1])
+        code, said, peak = self.run_with(needed - 5)
+        self.assertEqual(code, 1, said)
+        self.assertLess(peak, needed - 5)
+        code, said, peak = self.run_with(needed)
+        self.assertEqual(code, 0, said)
+        self.assertLess(peak, needed)
+        self.assertGreater(peak, 0.6 * needed)
+
+
+class Leftovers(TinyScene):
+    def test_go_at_the_next_start(self):
+        dead = dead_process()
+        for place in ("work/scene_dense.{}.tmp.ply", "work/scene_dense.{}.tmp.mvs",
+                      "work/depth0001.{}.tmp.dmap", "work/depth0001.dmap.{}.tmp.json",
+                      "work/depth0001.{0}.tmp.{0}.tmp.dmap"):
+            write(self.path(place.format(dead)), "half")
+        kept = (f"work/other.{dead}.tmp.ply", f"work/scene_dense.{os.getpid()}.tmp.ply")
+        for place in kept:
+            write(self.path(place), "half")
+        self.succeeds(*self.densify())
+        left = {name for name in files_below(self.folder) if ".tmp" in name}
+        self.assertEqual(left, set(kept))
+
+    def test_of_other_programs(self):
+        dead = dead_process()
+        sparse = self.path("colmap", "sparse")
+        for command, place in (
+                (("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("a.mvs")),
+                 "a.{}.tmp.mvs"),
+                (("AlignModel", "-i", sparse, "--reference", sparse, "-o", self.path("b")),
+                 "b.{}.tmp/cameras.txt"),
+                (("AlignModel", "-i", sparse, "--reference", sparse, "-o", self.path("b")),
+                 "b/staging.{}.tmp/cameras.txt")):
+            write(self.path(place.format(dead)), "half")
+            self.succeeds(*command)
+            self.assertEqual([name for name in files_below(self.folder) if ".tmp" in name], [])
+
+
+class WholeFolders(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.model = cls.made.name
+        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 5, "--width", 160,
+                   "--height", 120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium",
+                   "water", "-o", cls.model)
+        assert made.returncode == 0, made.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.made.cleanup()
+
+    def refine(self, out):
+        return ("RefinePoses", "-i", os.path.join(self.model, "sparse"), "--lens",
+                os.path.join(self.model, "sparse", "cameras.txt"), "--housing",
+                os.path.join(self.model, "housing.json"), "--poses", "known", "-o", out)
+
+    def align(self, out):
+        sparse = os.path.join(self.model, "sparse")
+        return ("AlignModel", "-i", sparse, "--reference", sparse, "-o", out)
+
+    def test_on_a_full_disk(self):
+        for command in (self.refine, self.align):
+            whole = self.path("whole")
+            self.succeeds(*command(whole))
+            expected = contents(whole)
+            sizes = sorted(len(data) for data in expected.values())
+            for limit in [size - 1 for size in sizes]:
+                out = self.path("out")
+                self.refuses("cannot be written", *command(out), file_size_limit=limit)
+                self.assertFalse(os.path.exists(out), limit)
+                # With other files in the folder, and older ones of these names.
+                write(self.path("out", "notes.txt"), "mine")
+                write(self.path("out", *max(expected).split("/")), "old")
+                before = contents(out)
+                self.refuses("cannot be written", *command(out), file_size_limit=limit)
+                self.assertEqual(contents(out), before, limit)
+                self.succeeds(*command(out))
+                self.assertEqual(contents(out), {**expected, "notes.txt": b"mine"})
+                shutil.rmtree(out)
+            shutil.rmtree(whole)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/same_file.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "base/atomic_file.h"
+#include "support/empty_folder.h"
+#include "support/error_of.h"
+
+namespace axial {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct TwoFiles : testing::Test {
+  TwoFiles() : folder(test::empty_folder()), input(folder / "a"), other(folder / "b") {
+    write_atomically(input, "x");
+    write_atomically(other, "x");
+  }
+  std::string error(const fs::path& output) const {
+    const std::array inputs{folder / "missing", fs::path(), other, input};
+    return test::error_of([&] { require_not_an_input(output, inputs, "--output-file"); });
+  }
+  fs::path folder, input, other;
+};
+
+// Every name a file can go by is the file.
+TEST_F(TwoFiles, AnInputByAnyNameIsRefused) {
+  fs::create_symlink(input, folder / "symbolic");
+  fs::create_hard_link(input, folder / "hard");
+  for (const fs::path& name : {input, folder / "." / "a", folder / "symbolic", folder / "hard"})
+    EXPECT_THAT(error(name), AllOf(HasSubstr("--output-file " + name.string()),
+                                   HasSubstr(name == input ? "an input" : input.string())));
+}
+
+// The same content is not the same file, and a file that is not there yet is nobody's.
+TEST_F(TwoFiles, OtherFilesPass) {
+  const std::array inputs{input};
+  EXPECT_NO_THROW(require_not_an_input(other, inputs, "-o"));
+  EXPECT_NO_THROW(require_not_an_input(folder / "new", inputs, "-o"));
+  EXPECT_NO_THROW(require_not_an_input(folder / "missing", std::array{folder / "missing"}, "-o"));
+  EXPECT_NO_THROW(require_not_an_input({}, std::array{fs::path()}, "-o"));
+}
+
+}  // namespace
+}  // namespace axial
