@@ -94,11 +94,14 @@ std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
   return imported;
 }
 
-void check_size(const fs::path& path, const CameraModel& camera) {
-  const cv::Size size = read_image_size(path);
+// Returns whether a JPEG can hold the image's pixels.
+bool check_image(const fs::path& path, const CameraModel& camera) {
+  const ImageHeader header = read_image_header(path);
+  const cv::Size size = header.size;
   if (size.width != camera.width || size.height != camera.height)
     fail("{}: image is {} x {}, but its camera is {} x {}", path.string(), size.width, size.height,
          camera.width, camera.height);
+  return header.bits == 8 && !header.alpha;
 }
 
 // The mask of an image that is to be undistorted, which has `camera`'s size.
@@ -122,8 +125,8 @@ std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<b
 }
 
 // Names come from a file: none may lead out of the folder that is written to, or back to the
-// photographs, and no two to one file. `resampled`: the images to undistort, as indices.
-void check_undistorted_names(const ColmapModel& model, std::span<const std::size_t> resampled,
+// photographs, and no two to one file. `distorted`: the images to undistort.
+void check_undistorted_names(const ColmapModel& model, std::span<const DistortedImage> distorted,
                              const ColmapImport& import) {
   std::error_code error;
   if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
@@ -135,13 +138,10 @@ void check_undistorted_names(const ColmapModel& model, std::span<const std::size
       fail("{}: image {}: name '{}' is not below the image folder", import.model_folder.string(),
            image.id, image.name);
   }
-  std::vector<std::string> names;
+  require_apart(distorted, import.model_folder);
   std::vector<fs::path> photographs, undistorted;
-  for (const std::size_t i : resampled) {
-    names.push_back(model.images[i].name);
-    undistorted.push_back(import.undistorted_folder / undistorted_name(names.back()));
-  }
-  require_apart(names, import.model_folder);
+  for (const DistortedImage& image : distorted)
+    undistorted.push_back(import.undistorted_folder / undistorted_name(image));
   for (const ColmapImage& image : model.images)
     photographs.push_back(import.image_folder / image.name);
   require_no_inputs(undistorted, photographs, "The undistorted image");
@@ -189,21 +189,46 @@ cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
   return straight;
 }
 
-// Writes the undistorted image, and its mask, and returns the image's path.
-fs::path undistort(const fs::path& source, const fs::path& mask, const std::string& name,
-                   const cv::Mat2f& map, const fs::path& folder) {
+// Writes the undistorted image to `target`, and its mask beside it.
+void undistort(const fs::path& source, const fs::path& mask, const cv::Mat2f& map,
+               const fs::path& target) {
   const cv::Mat straight = resampled(read_photograph(source), map);
-  const fs::path target = folder / undistorted_name(name);
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
   constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target) && straight.type() == CV_8UC3)
+  if (is_jpeg(target))
     write_jpeg(target, straight, kQuality);
   else
     write_png(target, straight);
   undistort_mask(mask, target, map);
-  return target;
+}
+
+// Undistorts the model's images of indices `images`, which `distorted` names in the same order, and
+// makes the scene name the new files. `masks`: of all images of the model.
+void undistort_images(const ColmapModel& model, const ColmapImport& import,
+                      std::span<const std::size_t> images,
+                      std::span<const DistortedImage> distorted, std::span<const fs::path> masks,
+                      const ProgressSink& progress, Scene& scene) {
+  std::unordered_map<std::uint32_t, const ColmapCamera*> camera_of;
+  for (const ColmapCamera& camera : model.cameras) camera_of.emplace(camera.id, &camera);
+  UndistortionMaps maps;
+  for (const std::size_t i : images)
+    maps.expect(*camera_of.at(model.images[i].camera), scene.images[i].camera.lens);
+  FirstError error;
+  std::mutex mutex;
+  std::size_t done = 0;
+  for_each_in_flight(images.size(), thread_count(), [&](std::size_t k) {
+    const std::size_t i = images[k];
+    error.run(i, [&] {
+      const fs::path target = import.undistorted_folder / undistorted_name(distorted[k]);
+      undistort(scene.images[i].path, masks[i], maps.take(model.images[i].camera), target);
+      scene.images[i].path = target.string();
+    });
+    const std::scoped_lock lock(mutex);
+    if (progress) progress(++done, images.size());
+  });
+  error.rethrow();
 }
 
 void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene) {
@@ -232,8 +257,8 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
 std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
   const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
   const fs::path name =
-      undistorted ? undistorted_name(image.name) : fs::path(image.name).lexically_normal();
-  return name.generic_string();
+      undistorted ? path.lexically_relative(import.undistorted_folder) : fs::path(image.name);
+  return name.lexically_normal().generic_string();
 }
 
 // Names are told apart by the ends of paths: what is written must be what is read.
@@ -279,36 +304,21 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
   const std::vector<fs::path> masks =
       all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
   FirstError error;
+  std::vector<char> fits_jpeg(scene.images.size());
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
     error.run(i, [&] {
-      check_size(image.path, image.camera);
+      fits_jpeg[i] = check_image(image.path, image.camera);
       check_mask(masks[i], image.camera);
     });
   });
   error.rethrow();
   const std::vector<std::size_t> undistorted = images_to_undistort(model, cameras);
-  if (!undistorted.empty()) check_undistorted_names(model, undistorted, import);
-  std::unordered_map<std::uint32_t, const ColmapCamera*> camera_of;
-  for (const ColmapCamera& camera : model.cameras) camera_of.emplace(camera.id, &camera);
-  UndistortionMaps maps;
+  std::vector<DistortedImage> distorted;
   for (const std::size_t i : undistorted)
-    maps.expect(*camera_of.at(model.images[i].camera), scene.images[i].camera.lens);
-  std::mutex mutex;
-  std::size_t done = 0;
-  for_each_in_flight(undistorted.size(), thread_count(), [&](std::size_t k) {
-    const std::size_t i = undistorted[k];
-    const ColmapImage& from = model.images[i];
-    error.run(i, [&] {
-      const fs::path source = scene.images[i].path;
-      scene.images[i].path =
-          undistort(source, masks[i], from.name, maps.take(from.camera), import.undistorted_folder)
-              .string();
-    });
-    const std::scoped_lock lock(mutex);
-    if (undistorting) undistorting(++done, undistorted.size());
-  });
-  error.rethrow();
+    distorted.push_back({model.images[i].name, fits_jpeg[i] != 0});
+  if (!undistorted.empty()) check_undistorted_names(model, distorted, import);
+  undistort_images(model, import, undistorted, distorted, masks, undistorting, scene);
   import_points(model, import, scene);
   return scene;
 }

@@ -21,22 +21,22 @@ std::string lower(std::string text) {
 
 }  // namespace
 
-fs::path undistorted_name(const std::string& name) {
-  fs::path undistorted = fs::path(name).lexically_normal();
+fs::path undistorted_name(const DistortedImage& image) {
+  fs::path undistorted = fs::path(image.name).lexically_normal();
   const std::string extension = lower_extension(undistorted);
-  const bool jpeg = extension == ".jpg" || extension == ".jpeg";
+  const bool jpeg = image.fits_jpeg && (extension == ".jpg" || extension == ".jpeg");
   if (!jpeg && undistorted.extension() != ".png") undistorted += ".png";
   return undistorted;
 }
 
-void require_apart(std::span<const std::string> names, const fs::path& model_folder) {
+void require_apart(std::span<const DistortedImage> images, const fs::path& model_folder) {
   std::map<std::string, const std::string*> taken;
-  for (const std::string& name : names) {
-    const std::string undistorted = undistorted_name(name).generic_string();
-    const auto [other, added] = taken.try_emplace(lower(undistorted), &name);
+  for (const DistortedImage& image : images) {
+    const std::string undistorted = undistorted_name(image).generic_string();
+    const auto [other, added] = taken.try_emplace(lower(undistorted), &image.name);
     if (!added)
       fail("{}: the images {} and {} would both be undistorted to {}: rename one of them",
-           model_folder.string(), *other->second, name, undistorted);
+           model_folder.string(), *other->second, image.name, undistorted);
   }
 }
 

@@ -15,14 +15,21 @@
 
 namespace axial::io {
 
-// What the undistorted image of the model's image `name` is called, relative to its folder: JPEGs
-// and ".png" keep their name, everything else gets ".png" behind it, so that a.tif and a.bmp may
+// An image of a model that is to be undistorted.
+struct DistortedImage {
+  std::string name;       // in the model
+  bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold its pixels
+};
+
+// The undistorted image's name, relative to its folder: ".png", and ".jpg" where a JPEG can hold
+// the pixels, keep their name, everything else gets ".png" behind it, so that a.tif and a.bmp may
 // lie side by side.
-std::filesystem::path undistorted_name(const std::string& name);
+std::filesystem::path undistorted_name(const DistortedImage& image);
 
 // Error that starts with `model_folder` and names both images if the undistorted ones of two of
-// `names` would be one file, on file systems that do not tell a from A, too.
-void require_apart(std::span<const std::string> names, const std::filesystem::path& model_folder);
+// `images` would be one file, on file systems that do not tell a from A, too.
+void require_apart(std::span<const DistortedImage> images,
+                   const std::filesystem::path& model_folder);
 
 // The maps of cv::remap that undistort a model's images, each in memory from the first of its
 // camera's images to the last. Images should be worked on camera by camera: then no more maps are

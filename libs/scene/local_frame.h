@@ -20,7 +20,8 @@ struct LocalFrame {
 };
 
 // The world if `place` lies within 1,000 units of its origin; else the frame at `place`, rounded to
-// 10 units, so that subtracting the origin loses nothing that a double holds.
+// 10 units. Going to the local frame and back moves no coordinate by more than rounding a double of
+// the local coordinate's size.
 LocalFrame frame_near(const Eigen::Vector3d& place);
 
 // The world if all camera `centres` and the median of `points` (which may be none) lie within 1,000

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 namespace axial {
@@ -39,7 +40,12 @@ RC_GTEST_PROP(LocalFrame, IsNearAFarScene, ()) {
   for (const double x : frame.origin) RC_ASSERT(std::fmod(x, 10) == 0);
   for (const Eigen::Vector3d& centre : centres) {
     RC_ASSERT(frame.to_local(centre).cwiseAbs().maxCoeff() <= 45);
-    RC_ASSERT(frame.to_world(frame.to_local(centre)) == centre);  // nothing is lost
+    // Local coordinates are below 64, where doubles are this far apart. Larger world coordinates
+    // come back exactly; smaller ones, as heights, may be rounded.
+    const double step = 64 * std::numeric_limits<double>::epsilon();
+    const Eigen::Vector3d back = frame.to_world(frame.to_local(centre));
+    RC_ASSERT((back - centre).cwiseAbs().maxCoeff() <= step);
+    RC_ASSERT(back.head<2>() == centre.head<2>());
   }
 }
 
