@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
-#include <opencv2/imgproc.hpp>
 #include <set>
 #include <unordered_map>
 
 #include "base/error.h"
-#include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -19,18 +16,12 @@
 #include "io/image.h"
 #include "io/image_names.h"
 #include "io/masks.h"
-#include "scene/resolution.h"
 
 namespace axial::io {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-bool is_jpeg(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".jpg" || extension == ".jpeg";
-}
 
 // What replaces one camera of the model.
 struct ImportedCamera {
@@ -147,88 +138,27 @@ void check_undistorted_names(const ColmapModel& model, std::span<const Distorted
   require_no_inputs(undistorted, photographs, "The undistorted image");
 }
 
-// The images to undistort, those of one camera one after another.
-std::vector<std::size_t> images_to_undistort(
-    const ColmapModel& model, const std::map<std::uint32_t, ImportedCamera>& cameras) {
-  std::vector<std::size_t> images;
-  for (std::size_t i = 0; i < model.images.size(); ++i)
-    if (cameras.at(model.images[i].camera).resampled) images.push_back(i);
-  std::ranges::stable_sort(images, {}, [&](std::size_t i) { return model.images[i].camera; });
-  return images;
-}
-
-// `mask`, unless it is empty, goes beside `target`. Labels are copied, never mixed.
-void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2f& map) {
-  if (mask.empty()) return;
-  const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
-  cv::Mat1w straight;
-  cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
-  write_png(mask_beside(target), straight);
-}
-
-// A photograph as `map` sees it: B G R of its own depth, and alpha if some of it is transparent.
-// Hidden colours are mixed into no pixel that is not.
-cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
-  cv::Mat straight;
-  cv::remap(photograph.pixels, straight, map, cv::noArray(), cv::INTER_LANCZOS4,
-            cv::BORDER_REPLICATE);
-  if (straight.depth() == CV_16U) {
-    // Where the interpolation overshoots, it must not take more bits than the camera has.
-    cv::Mat values = straight.reshape(1);
-    cv::min(values, (1 << bits_used(photograph.pixels)) - 1, values);
-  }
-  if (photograph.opaque.empty()) return straight;
-  cv::Mat alpha;
-  cv::remap(photograph.opaque, alpha, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // what the kernel of 8 x 8 reaches
-  alpha.convertTo(alpha, straight.depth(), straight.depth() == CV_16U ? 257 : 1);
-  std::vector<cv::Mat> channels;
-  cv::split(straight, channels);
-  channels.push_back(alpha);
-  cv::merge(channels, straight);
-  return straight;
-}
-
-// Writes the undistorted image to `target`, and its mask beside it.
-void undistort(const fs::path& source, const fs::path& mask, const cv::Mat2f& map,
-               const fs::path& target) {
-  const cv::Mat straight = resampled(read_photograph(source), map);
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
-  constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target))
-    write_jpeg(target, straight, kQuality);
-  else
-    write_png(target, straight);
-  undistort_mask(mask, target, map);
-}
-
-// Undistorts the model's images of indices `images`, which `distorted` names in the same order, and
-// makes the scene name the new files. `masks`: of all images of the model.
-void undistort_images(const ColmapModel& model, const ColmapImport& import,
-                      std::span<const std::size_t> images,
-                      std::span<const DistortedImage> distorted, std::span<const fs::path> masks,
-                      const ProgressSink& progress, Scene& scene) {
+// Undistorts the images that are `resampled`, and makes the scene name the new files. `masks` and
+// `fits_jpeg`: of all images of the model.
+void undistort(const ColmapModel& model, const ColmapImport& import,
+               const std::vector<bool>& resampled, std::span<const fs::path> masks,
+               std::span<const char> fits_jpeg, const ProgressSink& progress, Scene& scene) {
   std::unordered_map<std::uint32_t, const ColmapCamera*> camera_of;
   for (const ColmapCamera& camera : model.cameras) camera_of.emplace(camera.id, &camera);
-  UndistortionMaps maps;
-  for (const std::size_t i : images)
-    maps.expect(*camera_of.at(model.images[i].camera), scene.images[i].camera.lens);
-  FirstError error;
-  std::mutex mutex;
-  std::size_t done = 0;
-  for_each_in_flight(images.size(), thread_count(), [&](std::size_t k) {
-    const std::size_t i = images[k];
-    error.run(i, [&] {
-      const fs::path target = import.undistorted_folder / undistorted_name(distorted[k]);
-      undistort(scene.images[i].path, masks[i], maps.take(model.images[i].camera), target);
-      scene.images[i].path = target.string();
-    });
-    const std::scoped_lock lock(mutex);
-    if (progress) progress(++done, images.size());
-  });
-  error.rethrow();
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < model.images.size(); ++i)
+    if (resampled[i]) indices.push_back(i);
+  std::ranges::stable_sort(indices, {}, [&](std::size_t i) { return model.images[i].camera; });
+  std::vector<DistortedImage> distorted;
+  for (const std::size_t i : indices)
+    distorted.push_back({model.images[i].name, scene.images[i].path, masks[i],
+                         camera_of.at(model.images[i].camera), scene.images[i].camera.lens,
+                         fits_jpeg[i] != 0});
+  check_undistorted_names(model, distorted, import);
+  undistort_images(distorted, import.undistorted_folder, progress);
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    scene.images[indices[k]].path =
+        (import.undistorted_folder / undistorted_name(distorted[k])).string();
 }
 
 void import_points(const ColmapModel& model, const ColmapImport& import, Scene& scene) {
@@ -313,12 +243,7 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
     });
   });
   error.rethrow();
-  const std::vector<std::size_t> undistorted = images_to_undistort(model, cameras);
-  std::vector<DistortedImage> distorted;
-  for (const std::size_t i : undistorted)
-    distorted.push_back({model.images[i].name, fits_jpeg[i] != 0});
-  if (!undistorted.empty()) check_undistorted_names(model, distorted, import);
-  undistort_images(model, import, undistorted, distorted, masks, undistorting, scene);
+  if (!all_straight) undistort(model, import, resampled, masks, fits_jpeg, undistorting, scene);
   import_points(model, import, scene);
   return scene;
 }

@@ -2,10 +2,20 @@
 #include "io/colmap_undistort.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/first_error.h"
+#include "base/parallel.h"
 #include "io/colmap_lens.h"
+#include "io/image.h"
+#include "io/masks.h"
+#include "scene/resolution.h"
 
 namespace axial::io {
 namespace {
@@ -19,12 +29,89 @@ std::string lower(std::string text) {
   return text;
 }
 
+bool is_jpeg(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+// The maps of cv::remap that undistort images, each in memory from the first of its camera's images
+// to the last.
+class UndistortionMaps {
+ public:
+  explicit UndistortionMaps(std::span<const DistortedImage> images) {
+    for (const DistortedImage& image : images) ++entries_[image.camera->id].images_left;
+  }
+
+  // To be called once for each of the images, from any thread.
+  cv::Mat2f take(const DistortedImage& image) {
+    Entry& entry = entries_.at(image.camera->id);
+    const std::scoped_lock lock(entry.mutex);
+    if (entry.map.empty()) entry.map = undistortion_map(*image.camera, image.pinhole);
+    cv::Mat2f map = entry.map;
+    if (--entry.images_left == 0) entry.map.release();
+    return map;
+  }
+
+ private:
+  struct Entry {
+    std::size_t images_left = 0;
+    std::mutex mutex{};
+    cv::Mat2f map{};
+  };
+  std::map<std::uint32_t, Entry> entries_;
+};
+
+// `mask`, unless it is empty, goes beside `target`. Labels are copied, never mixed.
+void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2f& map) {
+  if (mask.empty()) return;
+  const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
+  cv::Mat1w straight;
+  cv::remap(distorted, straight, map, cv::noArray(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
+  write_png(mask_beside(target), straight);
+}
+
+// A photograph as `map` sees it: B G R of its own depth, and alpha if some of it is transparent.
+// Hidden colours are mixed into no pixel that is not.
+cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
+  cv::Mat straight;
+  cv::remap(photograph.pixels, straight, map, cv::noArray(), cv::INTER_LANCZOS4,
+            cv::BORDER_REPLICATE);
+  if (straight.depth() == CV_16U) {
+    // Where the interpolation overshoots, it must not take more bits than the camera has.
+    cv::Mat values = straight.reshape(1);
+    cv::min(values, (1 << bits_used(photograph.pixels)) - 1, values);
+  }
+  if (photograph.opaque.empty()) return straight;
+  cv::Mat alpha;
+  cv::remap(photograph.opaque, alpha, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // what the kernel of 8 x 8 reaches
+  alpha.convertTo(alpha, straight.depth(), straight.depth() == CV_16U ? 257 : 1);
+  std::vector<cv::Mat> channels;
+  cv::split(straight, channels);
+  channels.push_back(alpha);
+  cv::merge(channels, straight);
+  return straight;
+}
+
+// Writes the undistorted image to `target`, and its mask beside it.
+void undistort(const DistortedImage& image, const cv::Mat2f& map, const fs::path& target) {
+  const cv::Mat straight = resampled(read_photograph(image.source), map);
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
+  constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
+  if (is_jpeg(target))
+    write_jpeg(target, straight, kQuality);
+  else
+    write_png(target, straight);
+  undistort_mask(image.mask, target, map);
+}
+
 }  // namespace
 
 fs::path undistorted_name(const DistortedImage& image) {
   fs::path undistorted = fs::path(image.name).lexically_normal();
-  const std::string extension = lower_extension(undistorted);
-  const bool jpeg = image.fits_jpeg && (extension == ".jpg" || extension == ".jpeg");
+  const bool jpeg = image.fits_jpeg && is_jpeg(undistorted);
   if (!jpeg && undistorted.extension() != ".png") undistorted += ".png";
   return undistorted;
 }
@@ -40,21 +127,19 @@ void require_apart(std::span<const DistortedImage> images, const fs::path& model
   }
 }
 
-void UndistortionMaps::expect(const ColmapCamera& camera,
-                              const refractive::PinholeLens<double>& pinhole) {
-  Entry& entry = entries_[camera.id];
-  entry.camera = &camera;
-  entry.pinhole = pinhole;
-  ++entry.images_left;
-}
-
-cv::Mat2f UndistortionMaps::take(std::uint32_t id) {
-  Entry& entry = entries_.at(id);
-  const std::scoped_lock lock(entry.mutex);
-  if (entry.map.empty()) entry.map = undistortion_map(*entry.camera, entry.pinhole);
-  cv::Mat2f map = entry.map;
-  if (--entry.images_left == 0) entry.map.release();
-  return map;
+void undistort_images(std::span<const DistortedImage> images, const fs::path& folder,
+                      const ProgressSink& progress) {
+  UndistortionMaps maps(images);
+  FirstError error;
+  std::mutex mutex;
+  std::size_t done = 0;
+  for_each_in_flight(images.size(), thread_count(), [&](std::size_t i) {
+    const DistortedImage& image = images[i];
+    error.run(i, [&] { undistort(image, maps.take(image), folder / undistorted_name(image)); });
+    const std::scoped_lock lock(mutex);
+    if (progress) progress(++done, images.size());
+  });
+  error.rethrow();
 }
 
 }  // namespace axial::io

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: undistorting the images of a COLMAP model: their names, and the maps.
+// Private to libs/io: undistorting the images of a COLMAP model, and the masks beside them.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <map>
-#include <mutex>
-#include <opencv2/core.hpp>
 #include <span>
 #include <string>
 
+#include "base/progress.h"
 #include "io/colmap.h"
 #include "refractive/pinhole_camera.h"
 
@@ -17,8 +14,12 @@ namespace axial::io {
 
 // An image of a model that is to be undistorted.
 struct DistortedImage {
-  std::string name;       // in the model
-  bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold its pixels
+  std::string name;                           // in the model
+  std::filesystem::path source;               // the photograph
+  std::filesystem::path mask;                 // of the photograph; empty: none
+  const ColmapCamera* camera = {};            // of the photograph
+  refractive::PinholeLens<double> pinhole{};  // of the undistorted image, of the same size
+  bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold the pixels
 };
 
 // The undistorted image's name, relative to its folder: ".png", and ".jpg" where a JPEG can hold
@@ -31,26 +32,10 @@ std::filesystem::path undistorted_name(const DistortedImage& image);
 void require_apart(std::span<const DistortedImage> images,
                    const std::filesystem::path& model_folder);
 
-// The maps of cv::remap that undistort a model's images, each in memory from the first of its
-// camera's images to the last. Images should be worked on camera by camera: then no more maps are
-// alive than images are at work.
-class UndistortionMaps {
- public:
-  // One more image of `camera`, which becomes `pinhole`. `camera` must stay where it is.
-  void expect(const ColmapCamera& camera, const refractive::PinholeLens<double>& pinhole);
-
-  // The map for one of the expected images of camera `id`. From any thread.
-  cv::Mat2f take(std::uint32_t id);
-
- private:
-  struct Entry {
-    const ColmapCamera* camera = nullptr;
-    refractive::PinholeLens<double> pinhole{};
-    std::size_t images_left = 0;
-    std::mutex mutex{};
-    cv::Mat2f map{};
-  };
-  std::map<std::uint32_t, Entry> entries_;
-};
+// Writes the undistorted images below `folder`, by undistorted_name, each with its mask beside it.
+// Images of one camera should follow each other: then no more maps of pixels are in memory than
+// images are at work. The error of the first image in this order, if any cannot be read or written.
+void undistort_images(std::span<const DistortedImage> images, const std::filesystem::path& folder,
+                      const ProgressSink& progress);
 
 }  // namespace axial::io
