@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -17,6 +16,7 @@
 #include "neighbour_lists.h"
 #include "options.h"
 #include "outputs.h"
+#include "pinhole_export.h"
 #include "project.h"
 
 namespace {
@@ -47,15 +47,12 @@ void make_folder_of(const fs::path& file) {
 
 // OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
 void say_who_may_read(const densify::Project& project, const fs::path& scene) {
-  const bool pinholes = std::ranges::none_of(project.views, [](const densify::View& view) {
-    return view.camera.port || view.camera.distortion;
-  });
-  if (pinholes) return;
+  if (densify::all_pinholes(project)) return;
   const fs::path name = scene.filename();
   axial::log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
       "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
-      "depth maps give wrong results there",
+      "depth maps give wrong results there; --pinhole-export DIR writes what they can take",
       name.string(), name.string());
 }
 
@@ -85,6 +82,7 @@ int run(int argc, char** argv) {
   const densify::Project& project = loaded;
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
   densify::check_outputs(project, options);
+  densify::check_pinhole_export(project, options);
   std::optional<densify::ImageStore> images(std::in_place, project, options, plan.cached_images);
   images->check_all(plan.decodes);
   if (options.make_maps) densify::make_depth_maps(project, options, plan, existing, *images);
@@ -104,6 +102,7 @@ int run(int argc, char** argv) {
         "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
         "masks and the region of interest leave nothing",
         options.fusion.min_views);
+  densify::export_pinholes(loaded, options, plan, existing, ply);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
   say_who_may_read(project, options.output);
   return 0;
