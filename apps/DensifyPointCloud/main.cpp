@@ -46,14 +46,16 @@ void make_folder_of(const fs::path& file) {
 }
 
 // OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
-void say_who_may_read(const densify::Project& project, const fs::path& scene) {
+void say_who_may_read(const densify::Project& project, const densify::Options& options) {
   if (densify::all_pinholes(project)) return;
-  const fs::path name = scene.filename();
+  const fs::path name = options.output.filename();
+  const std::string folder =
+      options.pinhole_export.empty() ? "DIR" : options.pinhole_export.filename().string();
   axial::log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
       "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
-      "depth maps give wrong results there; --pinhole-export DIR writes what they can take",
-      name.string(), name.string());
+      "depth maps give wrong results there; --pinhole-export {} writes what they can take",
+      name.string(), name.string(), folder);
 }
 
 int run(int argc, char** argv) {
@@ -104,7 +106,7 @@ int run(int argc, char** argv) {
         options.fusion.min_views);
   densify::export_pinholes(loaded, options, plan, existing, ply);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
-  say_who_may_read(project, options.output);
+  say_who_may_read(project, options);
   return 0;
 }
 

@@ -210,18 +210,18 @@ TEST_P(Resampling, TakesObservationsAlong) {
 // The pixels, by the colours of a scene that both cameras photograph: nearer to the pinhole's own
 // photograph than one that is 0.3 pixels off.
 TEST_P(Resampling, GivesThePhotographThatThePinholeWouldTake) {
+  const CameraModel small = model().resized(120, 90);
   test::TexturedScene scene;
-  scene.cell = 0.04;
+  scene.cell = 0.08;
   const Pose pose{tilted_pose().rotation, {0.1, 0.05, 0.9}};
-  const test::RenderedView taken = render(scene, model(), pose);
+  const test::RenderedView taken = render(scene, small, pose);
   DepthMap map;
-  map.camera = model(), map.pose = pose, map.depth = taken.depth;
-  const PinholeView view = pinhole_for(model(), kNear, kFar);
+  map.camera = small, map.pose = pose, map.depth = taken.depth;
+  const PinholeView view = pinhole_for(small, kNear, kFar);
   cv::Mat3b photograph;
   cv::merge(std::vector<cv::Mat>(3, taken.image), photograph);
   const cv::Mat1f surface = render_surface(map, view);
-  const PinholeImage image =
-      resampled(photograph, {}, model(), view, surface, filled(surface, 1.0f));
+  const PinholeImage image = resampled(photograph, {}, small, view, surface, filled(surface, 1.0f));
   const cv::Mat1b truth = render(scene, view.camera, view.pose(pose)).image;
   CameraModel off = view.camera;
   off.lens.cx += 0.3;
