@@ -86,8 +86,9 @@ class Exports(ProgramTest):
         cls.addClassCleanup(cls.shared.cleanup)
         cls.truth = cls.at("closeup")
         cls.must("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", VIEWS,
-                 "--width", 320, "--height", 240, "-o", cls.truth)
-        cls.make_scene("water", cls.at("work"))
+                 "--width", 320, "--height", 240, "--medium", "water", "--samples", 2, "--truth", 0,
+                 "-o", cls.truth)
+        cls.make_scene(cls.at("work"))
         cls.must(*cls.command(cls.at("work"), "--pinhole-export", "pinholes"))
 
     @classmethod
@@ -101,10 +102,10 @@ class Exports(ProgramTest):
         return result.stdout
 
     @classmethod
-    def make_scene(cls, medium, folder):
-        port = ["--housing", os.path.join(cls.truth, "housing.json")] if medium == "water" else []
+    def make_scene(cls, folder):
         cls.must("InterfaceCOLMAP", "-i", cls.truth, "--image-folder",
-                 os.path.join(cls.truth, medium), "-o", os.path.join(folder, "scene.mvs"), *port)
+                 os.path.join(cls.truth, "water"), "-o", os.path.join(folder, "scene.mvs"),
+                 "--housing", os.path.join(cls.truth, "housing.json"))
 
     @staticmethod
     def command(folder, *arguments):
@@ -136,8 +137,8 @@ class Taken(Exports):
         self.succeeds("EvaluateReconstruction", "-i", cloud, "-m",
                       os.path.join(self.truth, "mesh.ply"), "--cameras",
                       os.path.join(self.truth, "sparse"), "--housing",
-                      os.path.join(self.truth, "housing.json"), "--tolerance", "0.002", "--json",
-                      report)
+                      os.path.join(self.truth, "housing.json"), "--tolerance", "0.002", "--samples",
+                      "10000", "--json", report)
         return 1000 * json.loads(read(report))["accuracy"]["mean"], cloud_size(read(cloud))
 
     def test_the_cloud_is_the_same(self):
@@ -180,7 +181,7 @@ class Taken(Exports):
 
     def copy_of_photographs(self):
         folder = self.at("ignored")
-        self.make_scene("water", folder)
+        self.make_scene(folder)
         self.succeeds(*self.command(folder, "--camera-model", "pinhole"))
         return os.path.join(folder, "scene_dense.ply")
 
@@ -194,7 +195,7 @@ class Taken(Exports):
         """The simulated points, which no depth map made, lie where the maps say."""
         folder = self.at("work", "pinholes")
         scene = Reader(read(os.path.join(folder, "scene.mvs")))
-        ratios, seen = [], 0
+        ratios, shown = [], 0
         for image in range(VIEWS):
             size = image_size(scene, image)
             rows = depth_rows(read(os.path.join(folder, f"depth{image:04}.dmap")))
@@ -202,12 +203,15 @@ class Taken(Exports):
             for point, views in scene.points:
                 if image not in views:
                     continue
-                seen += 1
+                # Observed in air, where cameras see more.
                 u, v, z = project(scene.camera(image), point)
                 x, y = round((u + 0.5) * scale[0] - 0.5), round((v + 0.5) * scale[1] - 0.5)
-                if 0 <= x < len(rows[0]) and 0 <= y < len(rows) and rows[y][x] > 0:
+                if not (0 <= x < len(rows[0]) and 0 <= y < len(rows)):
+                    continue
+                shown += 1
+                if rows[y][x] > 0:
                     ratios.append(rows[y][x] / z)
-        self.assertGreater(len(ratios), 0.8 * seen)
+        self.assertGreater(len(ratios), 0.65 * shown)
         ratios.sort()
         self.assertAlmostEqual(ratios[len(ratios) // 2], 1, delta=0.002)
         self.assertGreater(ratios[len(ratios) // 10], 0.98)
@@ -286,6 +290,17 @@ class Files(Exports):
             self.assertEqual(read(os.path.join(folder, "images", moved)),
                              read(self.at("work", "pinholes", "images", name)))
 
+    def assert_same_points(self, a, b):
+        """Bodies of clouds; a double in world coordinates holds 5e-10 of a metre there."""
+        self.assertEqual(len(a), len(b))
+        at = 0
+        while at < len(a):
+            for p, q in zip(struct.unpack_from("<3f", a, at), struct.unpack_from("<3f", b, at)):
+                self.assertAlmostEqual(p, q, delta=1e-9 + 1e-7 * abs(p))
+            end = at + 12 + 3 + 12 + 2 * (1 + 4 * a[at + 27])
+            self.assertEqual(a[at + 12:end], b[at + 12:end])
+            at = end
+
     def test_a_scene_far_from_its_world_s_origin(self):
         work = self.copy("work", leave_out=("depth*", "scene_dense*"))
         write(os.path.join(work, "scene.geo.json"),
@@ -295,7 +310,7 @@ class Files(Exports):
             folder = self.export(work, "--output-precision", precision)
             ply = read(os.path.join(folder, "scene.ply"))
             self.assertIn(b"comment geo_offset 534000 3378500 30\n", ply)
-            self.assertEqual(ply.split(b"end_header\n", 1)[1], body, precision)
+            self.assert_same_points(ply.split(b"end_header\n", 1)[1], body)
             self.assertEqual(json.loads(read(os.path.join(folder, "scene.geo.json")))["geo_offset"],
                              [534000, 3378500, 30])
             for name in ("scene.mvs", "images/0003.jpg", "depth0003.dmap"):
@@ -310,12 +325,13 @@ class Refusals(Exports):
         self.assertEqual(self.contents(folder), before)
 
     def test_scenes_of_pinholes(self):
-        air = self.at("air")
-        self.make_scene("air", air)
-        self.refused("as it is", air, "--pinhole-export", "pinholes")
+        dry = self.copy("work", leave_out=("*.housing.json",))
+        self.refused("as it is", dry, "--pinhole-export", "pinholes")
+        self.refused("as it is", self.at("work", "pinholes"), "--pinhole-export", "again")
+
+    def test_cameras_taken_for_pinholes(self):
         self.refused("as it is", self.copy("work"), "--pinhole-export", "pinholes",
                      "--camera-model", "pinhole")
-        self.refused("as it is", self.copy("work", "pinholes"), "--pinhole-export", "again")
 
     def test_folders_of_others_and_of_inputs(self):
         work = self.copy("work")
