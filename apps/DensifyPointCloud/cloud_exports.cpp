@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -35,22 +34,6 @@ std::size_t distinct_views(const axial::SparsePoint& point) {
     previous = view.image;
   }
   return count;
-}
-
-void keep_points(axial::Scene& scene, const std::function<bool(std::size_t point)>& kept) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    if (!kept(i)) continue;
-    if (count != i) {
-      scene.points[count] = std::move(scene.points[i]);
-      if (!scene.point_normals.empty()) scene.point_normals[count] = scene.point_normals[i];
-      if (!scene.point_colors.empty()) scene.point_colors[count] = scene.point_colors[i];
-    }
-    ++count;
-  }
-  scene.points.resize(count);
-  if (!scene.point_normals.empty()) scene.point_normals.resize(count);
-  if (!scene.point_colors.empty()) scene.point_colors.resize(count);
 }
 
 void write(const axial::Scene& scene, const Options& options, const std::string& suffix,
@@ -126,6 +109,22 @@ axial::PointCloud cloud_of(const axial::Scene& scene) {
   cloud.normals = scene.point_normals;
   cloud.colors = scene.point_colors;
   return cloud;
+}
+
+void keep_points(axial::Scene& scene, const std::function<bool(std::size_t point)>& kept) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    if (!kept(i)) continue;
+    if (count != i) {
+      scene.points[count] = std::move(scene.points[i]);
+      if (!scene.point_normals.empty()) scene.point_normals[count] = scene.point_normals[i];
+      if (!scene.point_colors.empty()) scene.point_colors[count] = scene.point_colors[i];
+    }
+    ++count;
+  }
+  scene.points.resize(count);
+  if (!scene.point_normals.empty()) scene.point_normals.resize(count);
+  if (!scene.point_colors.empty()) scene.point_colors.resize(count);
 }
 
 bool only_exports(const Options& options) {

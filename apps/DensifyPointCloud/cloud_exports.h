@@ -3,6 +3,8 @@
 // those of -p.
 #pragma once
 
+#include <functional>
+
 #include "options.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
@@ -11,6 +13,10 @@ namespace densify {
 
 // The sparse points as a cloud.
 axial::PointCloud cloud_of(const axial::Scene& scene);
+
+// Keeps the points of `scene`, with their normals and colours, that `kept` says yes to, in their
+// order.
+void keep_points(axial::Scene& scene, const std::function<bool(std::size_t point)>& kept);
 
 // Whether the options ask for one of these.
 bool only_exports(const Options& options);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -17,6 +16,7 @@
 #include "neighbour_lists.h"
 #include "options.h"
 #include "outputs.h"
+#include "pinhole_export.h"
 #include "project.h"
 
 namespace {
@@ -46,17 +46,16 @@ void make_folder_of(const fs::path& file) {
 }
 
 // OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
-void say_who_may_read(const densify::Project& project, const fs::path& scene) {
-  const bool pinholes = std::ranges::none_of(project.views, [](const densify::View& view) {
-    return view.camera.port || view.camera.distortion;
-  });
-  if (pinholes) return;
-  const fs::path name = scene.filename();
+void say_who_may_read(const densify::Project& project, const densify::Options& options) {
+  if (densify::all_pinholes(project)) return;
+  const fs::path name = options.output.filename();
+  const std::string folder =
+      options.pinhole_export.empty() ? "DIR" : options.pinhole_export.filename().string();
   axial::log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
       "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
-      "depth maps give wrong results there",
-      name.string(), name.string());
+      "depth maps give wrong results there; --pinhole-export {} writes what they can take",
+      name.string(), name.string(), folder);
 }
 
 int run(int argc, char** argv) {
@@ -85,6 +84,7 @@ int run(int argc, char** argv) {
   const densify::Project& project = loaded;
   const densify::MemoryPlan plan = densify::plan_memory(project, options);
   densify::check_outputs(project, options);
+  densify::check_pinhole_export(project, options);
   std::optional<densify::ImageStore> images(std::in_place, project, options, plan.cached_images);
   images->check_all(plan.decodes);
   if (options.make_maps) densify::make_depth_maps(project, options, plan, existing, *images);
@@ -104,8 +104,9 @@ int run(int argc, char** argv) {
         "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
         "masks and the region of interest leave nothing",
         options.fusion.min_views);
+  densify::export_pinholes(loaded, options, plan, existing, ply);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);
-  say_who_may_read(project, options.output);
+  say_who_may_read(project, options);
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "depth/filters.h"
 #include "depth/plane_map.h"
 #include "io/mvs_counts.h"
+#include "pinhole_export.h"
 
 namespace densify {
 namespace {
@@ -70,8 +71,9 @@ struct Sizes {
   std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
   std::uint64_t match;     // matching, the results included
   std::uint64_t adjust;
-  std::uint64_t fused;  // FusionMap
-  std::uint64_t taken;  // fusion's bits of all views
+  std::uint64_t fused;     // FusionMap
+  std::uint64_t taken;     // fusion's bits of all views
+  std::uint64_t exported;  // while an image is resampled, without images that are kept
 };
 
 // Longest lists, an image itself included.
@@ -97,7 +99,10 @@ Counts count(const Project& project, const Options& options) {
 Sizes measure(const Project& project, const Options& options, const Counts& counts) {
   std::uint64_t pixels = 0, decode = 0;
   bool masks = false;
+  Sizes sizes{};
   for (const View& view : project.views) {
+    if (!options.pinhole_export.empty())
+      sizes.exported = std::max(sizes.exported, bytes_to_resample(view));
     const auto area = [](std::int64_t width, std::int64_t height) {
       return static_cast<std::uint64_t>(width * height);
     };
@@ -108,7 +113,6 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   }
   const std::uint64_t sources = counts.matched - 1;
   const std::uint64_t colors = needs_colors(options) ? 3 : 0;
-  Sizes sizes{};
   sizes.scene = axial::allocated_memory();
   sizes.write_scene = axial::io::count_scene(project.scene).writing_bytes();
   sizes.decode = decode + 4 * pixels;
@@ -141,7 +145,7 @@ std::uint64_t fusing(const Sizes& sizes, std::size_t maps, std::size_t loads) {
 // What a run takes that works on `in_flight` images at a time and keeps nothing that is not in use.
 // The image store outlives matching.
 std::uint64_t least_for(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
-  return std::max({matching(sizes, counts, in_flight), sizes.write_scene,
+  return std::max({matching(sizes, counts, in_flight), sizes.write_scene, sizes.exported,
                    in_flight * counts.matched * sizes.image + fusing(sizes, counts.fused, 1)});
 }
 
@@ -177,6 +181,7 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
 
   const auto fuse = [&](std::size_t loads) { return fusing(sizes, counts.fused, loads); };
   plan.fusion_loads = most(std::min(threads, counts.fused), room - kept, fuse);
+  plan.exports = most(threads, room, [&](std::size_t k) { return k * sizes.exported; });
   plan.fused_maps = enlarged(counts.fused, sizes.fused, room - kept - fuse(plan.fusion_loads));
   return plan;
 }

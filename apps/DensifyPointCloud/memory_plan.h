@@ -25,6 +25,7 @@ struct MemoryPlan {
   std::size_t cached_maps = 0;    // of the stage before
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
+  std::size_t exports = 1;        // images resampled at the same time by --pinhole-export
 };
 
 // The plan for a project as load_project left it, the largest image and the longest lists of

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cloud_exports.h"
 #include "dense_config.h"
 #include "io/bit_depth.h"
 
@@ -17,7 +18,7 @@ namespace {
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
   std::string input, output, housing, mask_path;
-  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config;
+  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -58,6 +59,9 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("output-precision", &raw.precision,
                         "of the cloud's positions: float, counting from the scene's offset where "
                         "it has one (<scene>.geo.json), or double, in world coordinates")
+      .add("pinhole-export", &raw.pinhole_export,
+           "folder to write photographs, depth maps, cloud and scene to, resampled into pinhole "
+           "cameras for OpenMVS's later programs")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
@@ -262,6 +266,11 @@ Options parse_command_line(int argc, const char* const* argv) {
     fail("--refractive contradicts --camera-model pinhole");
   options.make_maps = raw.fusion_mode >= 0;
   options.fuse = raw.fusion_mode <= 0;
+  options.pinhole_export = axial::in_working_folder(common, raw.pinhole_export);
+  if (!options.pinhole_export.empty() &&
+      (!options.fuse || only_exports(options) || !options.neighbour_lists_output.empty()))
+    fail("--pinhole-export {}: needs a cloud, which this run does not make",
+         options.pinhole_export.string());
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
   return options;

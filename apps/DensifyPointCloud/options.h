@@ -60,8 +60,9 @@ struct Options {
   // What is done instead of densifying (cloud_exports.h).
   int filter_point_cloud = 0, export_number_views = 0;
   double estimate_scale = 0;
-  bool double_precision = false;  // of the cloud, which is then in world coordinates
-  std::uint64_t max_memory = 0;   // [MB of 10^6 bytes]; 0: 70 % of what is free
+  std::filesystem::path pinhole_export;  // empty: none
+  bool double_precision = false;         // of the cloud, which is then in world coordinates
+  std::uint64_t max_memory = 0;          // [MB of 10^6 bytes]; 0: 70 % of what is free
 };
 
 // Whether the cloud takes colours from the images.

@@ -267,6 +267,11 @@ void warn_of_missing_lenses(const Options& options) {
 
 }  // namespace
 
+bool all_pinholes(const Project& project) {
+  return std::ranges::none_of(
+      project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
+}
+
 fs::path housing_file(const Options& options) {
   return options.housing.empty() ? axial::io::housing_beside(options.input) : options.housing;
 }

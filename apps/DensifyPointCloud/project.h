@@ -56,6 +56,9 @@ Project load_scene(const Options& options);
 // shape than their camera; ImageStore::check_all finds the rest.
 Project load_project(const Options& options);
 
+// Whether every calibrated image is a pinhole's.
+bool all_pinholes(const Project& project);
+
 // Where the housing is read from, if there is one.
 std::filesystem::path housing_file(const Options& options);
 

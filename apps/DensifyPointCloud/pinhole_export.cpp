@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pinhole_export.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/first_error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "cloud/pinhole_resampling.h"
+#include "cloud_exports.h"
+#include "depth_stage.h"
+#include "io/colmap_export.h"
+#include "io/dmap.h"
+#include "io/geo_offset.h"
+#include "io/image.h"
+#include "io/json.h"
+#include "io/masks.h"
+#include "io/mvs.h"
+#include "io/ply.h"
+#include "scene/resolution.h"
+
+namespace densify {
+namespace fs = std::filesystem;
+using axial::fail;
+
+namespace {
+
+constexpr const char* kMarker = "pinhole_export.json";
+
+bool is_jpeg(const fs::path& file) {
+  const std::string extension = axial::lower_extension(file);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+// Below images/: the way from the deepest folder of all photographs. JPEGs and PNGs keep their
+// names.
+fs::path exported_name(const axial::SceneImage& image, const fs::path& photographs) {
+  fs::path name = fs::path(image.path).lexically_normal().lexically_relative(photographs);
+  if (!is_jpeg(name) && name.extension() != ".png") name += ".png";
+  return name;
+}
+
+void check_names(const Project& project) {
+  const fs::path photographs = axial::io::common_image_folder(project.scene);
+  std::map<fs::path, const std::string*> taken;
+  for (const std::size_t image : project.references) {
+    const std::string& path = project.scene.images[image].path;
+    const fs::path name = exported_name(project.scene.images[image], photographs);
+    for (const fs::path& file : {name, axial::io::mask_beside(name)})
+      if (const auto [other, added] = taken.try_emplace(file, &path); !added)
+        fail("--pinhole-export: {} and {} would both be exported as images/{}", *other->second,
+             path, file.string());
+  }
+}
+
+void check_folder(const Project& project, const Options& options) {
+  const fs::path& folder = options.pinhole_export;
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error))
+    fail("--pinhole-export {}: is a file, not a folder", folder.string());
+  std::vector<fs::path> inputs = {options.input.parent_path(),
+                                  options.parsed.common.working_folder};
+  for (const axial::SceneImage& image : project.scene.images)
+    inputs.push_back(fs::path(image.path).parent_path());
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(folder, input, error))
+      fail("--pinhole-export {}: this run's inputs lie there", folder.string());
+  if (!fs::is_empty(folder, error) && !fs::exists(folder / kMarker, error))
+    fail("--pinhole-export {}: holds other files: name an empty folder, or a new one",
+         folder.string());
+}
+
+struct Exported {
+  axial::cloud::PinholeView view;  // at the photograph's resolution
+  double exact = 0;                // share of its pixels
+};
+
+class Export {
+ public:
+  Export(Project& project, const Options& options, const MemoryPlan& plan,
+         const ExistingMaps& existing)
+      : project_(project),
+        options_(options),
+        plan_(plan),
+        existing_(existing),
+        photographs_(axial::io::common_image_folder(project.scene)),
+        exported_(project.scene.images.size()),
+        is_exported_(project.scene.images.size(), false) {
+    for (const std::size_t image : project.references) is_exported_[image] = true;
+    find_range();
+  }
+
+  void run(const fs::path& ply) {
+    axial::write_folder(options_.pinhole_export, [&](const fs::path& folder) {
+      folder_ = fs::absolute(folder);
+      export_images();
+      export_cloud(ply);
+      export_scene();
+      export_marker();
+    });
+    report();
+  }
+
+ private:
+  // Of the median image, so that the same lens behind the same port becomes the same pinhole.
+  void find_range() {
+    std::vector<float> near, far;
+    for (const std::size_t image : project_.references) {
+      near.push_back(project_.preparations[image].min_depth);
+      far.push_back(project_.preparations[image].max_depth);
+    }
+    const auto median = [](std::vector<float>& values) {
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::ranges::nth_element(values, middle);
+      return static_cast<double>(*middle);
+    };
+    near_ = median(near), far_ = median(far);
+  }
+
+  fs::path image_file(std::size_t image) const {
+    return folder_ / "images" / exported_name(project_.scene.images[image], photographs_);
+  }
+
+  axial::DepthMap load_map(std::size_t image) const {
+    const fs::path file = depth_map_path(project_, options_, image);
+    axial::DepthMap map =
+        axial::io::read_dmap(file, options_.make_maps ? axial::io::DmapSide::used
+                                                      : side_to_read(existing_[image].origin))
+            .map;
+    if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
+    return map;
+  }
+
+  // The resolution at which OpenMVS, given this run's options, would work on the pinhole's image.
+  cv::Size map_size(const axial::CameraModel& pinhole, std::size_t image) const {
+    if (options_.make_maps)
+      return axial::working_size(pinhole.width, pinhole.height, options_.resolution);
+    const View& view = project_.views[image];
+    const double scale = static_cast<double>(view.camera.width) / view.file.size.width;
+    return {std::max(1, cvRound(scale * pinhole.width)),
+            std::max(1, cvRound(scale * pinhole.height))};
+  }
+
+  void export_map(std::size_t image, axial::DepthMap map, const axial::cloud::PinholeView& view,
+                  const cv::Mat1f& surface) const {
+    map = axial::cloud::resampled(map, view, surface);
+    map.image_path = image_file(image).string();
+    axial::io::write_dmap(folder_ / depth_map_path(project_, options_, image).filename(), map,
+                          made_from());
+  }
+
+  std::string made_from() const { return project_.fingerprint + " as a pinhole's"; }
+
+  void write_image(std::size_t image, const axial::cloud::PinholeImage& pinhole) {
+    constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
+    const fs::path file = image_file(image);
+    if (is_jpeg(file))
+      axial::io::write_jpeg(file, pinhole.color, kQuality);
+    else
+      axial::io::write_png(file, pinhole.color);
+    axial::io::write_png(axial::io::mask_beside(file), pinhole.label);
+    const int exact = cv::countNonZero(pinhole.label == axial::cloud::kExact);
+    exported_[image].exact = exact / static_cast<double>(pinhole.label.total());
+  }
+
+  void export_image(std::size_t image) {
+    const axial::SceneImage& from = project_.scene.images[image];
+    axial::io::Photograph photograph = axial::io::read_photograph(from.path);
+    const cv::Mat3b color = axial::io::in_8_bits(photograph.pixels, project_.bit_depth);
+    photograph.pixels.release();
+    const axial::CameraModel camera = from.camera.resized(color.cols, color.rows);
+    const axial::cloud::PinholeView view = axial::cloud::pinhole_for(camera, near_, far_);
+    exported_[image].view = view;
+    axial::DepthMap map = load_map(image);
+    const cv::Mat1f surface = axial::cloud::render_surface(map, view);
+    const cv::Size size = map_size(view.camera, image);
+    const axial::cloud::PinholeView small = view.resized(size.width, size.height);
+    const cv::Mat1f coarse = axial::cloud::render_surface(map, small);
+    export_map(image, std::move(map), small, coarse);
+    const cv::Mat1f guess =
+        axial::cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
+    write_image(image,
+                axial::cloud::resampled(color, photograph.opaque, camera, view, surface, guess));
+  }
+
+  void export_images() {
+    for (const std::size_t image : project_.references)
+      axial::make_folder(image_file(image).parent_path());
+    const std::size_t count = project_.references.size();
+    const axial::ProgressSink progress = axial::console_progress("Exported pinhole images");
+    std::mutex reporting;
+    axial::FirstError error;
+    std::size_t done = 0;
+    axial::for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
+      error.run(i, [&] { export_image(project_.references[i]); });
+      const std::lock_guard lock(reporting);
+      progress(++done, count);
+    });
+    error.rethrow();
+  }
+
+  // Positions of float count from the scene's offset, as its poses do.
+  void export_cloud(const fs::path& ply) const {
+    const fs::path file = folder_ / "scene.ply";
+    if (options_.double_precision)
+      axial::io::write_cloud_ply(file, axial::io::read_cloud_ply(ply, project_.frame), true,
+                                 {project_.frame, false});
+    else
+      fs::copy_file(ply, file);
+  }
+
+  axial::SceneImage exported_scene_image(std::size_t image) const {
+    axial::SceneImage result = project_.scene.images[image];
+    result.calibrated = is_exported_[image];
+    result.neighbours.clear();
+    result.mask_path.clear();
+    result.port_name.clear();
+    if (!result.calibrated) return result;
+    const axial::cloud::PinholeView& view = exported_[image].view;
+    result.path = image_file(image).string();
+    result.mask_path = axial::io::mask_beside(result.path).string();
+    result.camera = view.camera;
+    result.pose = view.pose(result.pose);
+    const auto nearer = static_cast<float>(view.centre.z());
+    result.min_depth -= nearer, result.average_depth -= nearer, result.max_depth -= nearer;
+    for (const axial::ViewScore& neighbour : project_.scene.images[image].neighbours)
+      if (is_exported_[neighbour.image]) result.neighbours.push_back(neighbour);
+    return result;
+  }
+
+  void export_scene() {
+    axial::Scene& scene = project_.scene;
+    axial::Scene exported;
+    for (std::size_t i = 0; i < scene.images.size(); ++i)
+      exported.images.push_back(exported_scene_image(i));
+    exported.region = scene.region;
+    exported.points = std::move(scene.points);
+    exported.point_normals = std::move(scene.point_normals);
+    exported.point_colors = std::move(scene.point_colors);
+    for (axial::SparsePoint& point : exported.points)
+      std::erase_if(point.views,
+                    [&](const axial::SparseView& view) { return !is_exported_[view.image]; });
+    keep_points(exported, [&](std::size_t i) { return !exported.points[i].views.empty(); });
+    axial::io::write_mvs(folder_ / "scene.mvs", exported, folder_);
+    axial::io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame);
+  }
+
+  void export_marker() const {
+    nlohmann::json images = nlohmann::json::array();
+    for (const std::size_t image : project_.references) {
+      const Exported& as = exported_[image];
+      images.push_back(
+          {{"image",
+            "images/" + exported_name(project_.scene.images[image], photographs_).generic_string()},
+           {"photograph", project_.scene.images[image].path},
+           {"centre_in_camera_m", {as.view.centre.x(), as.view.centre.y(), as.view.centre.z()}},
+           {"exact_share", as.exact}});
+    }
+    axial::io::write_json(folder_ / kMarker, {{"version", 1},
+                                              {"made_from", made_from()},
+                                              {"scene", options_.input.string()},
+                                              {"images", images}});
+  }
+
+  void report() const {
+    double exact = 0;
+    std::size_t cut = 0;
+    for (const std::size_t image : project_.references) {
+      exact += exported_[image].exact;
+      cut += exported_[image].view.whole ? 0 : 1;
+    }
+    const std::size_t count = project_.references.size();
+    if (cut > 0)
+      axial::log_warning(
+          "--pinhole-export: {} of {} images see more than a pinhole can show: their edges are cut",
+          cut, count);
+    axial::log_info(
+        "{}: {} images as pinholes, {:.1f} % of their pixels on a known surface: OpenMVS's "
+        "programs may take scene.mvs, scene.ply and the depth maps there",
+        options_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
+  }
+
+  Project& project_;
+  const Options& options_;
+  const MemoryPlan& plan_;
+  const ExistingMaps& existing_;
+  fs::path photographs_, folder_;
+  double near_ = 0, far_ = 0;       // lambda [m]
+  std::vector<Exported> exported_;  // one an image of the scene
+  std::vector<bool> is_exported_;
+};
+
+}  // namespace
+
+void check_pinhole_export(const Project& project, const Options& options) {
+  if (options.pinhole_export.empty()) return;
+  if (all_pinholes(project))
+    fail(
+        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS may take what "
+        "this run writes as it is",
+        options.pinhole_export.string(), options.input.string());
+  check_folder(project, options);
+  check_names(project);
+  axial::require_writable_folder(options.pinhole_export);
+}
+
+std::uint64_t bytes_to_resample(const View& view) {
+  const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
+  const std::uint64_t photograph = area(view.file.size);
+  // Photograph and opacity; of a pinhole at most 1.4 times as wide and as high: depth, colour,
+  // label, and colour once more while it is written. While it is read, what reading takes.
+  const std::uint64_t images =
+      std::max<std::uint64_t>(view.file.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
+  // The map, the pinhole's, and what writing it takes; depths, filled.
+  constexpr std::uint64_t kMaps = 20 + 2 * (20 + 44 + 8 + 8);
+  return images + kMaps * area({view.camera.width, view.camera.height});
+}
+
+void export_pinholes(Project& project, const Options& options, const MemoryPlan& plan,
+                     const ExistingMaps& existing, const fs::path& ply) {
+  if (!options.pinhole_export.empty()) Export(project, options, plan, existing).run(ply);
+}
+
+}  // namespace densify
