@@ -19,6 +19,9 @@ namespace {
 // Photographs agree with a prediction, or have nothing to do with it. Patches of the same place
 // correlate at 0.6 and more unless noise or haze hides it, those of others at 0.2 and less.
 constexpr double kAgree = 0.5, kClearlyMore = 0.25;
+// A single change may be the cause and not yet the whole truth: the optical axis for a normal that
+// is in truth some degrees off it.
+constexpr double kAgreeWithChange = 0.35;
 
 // `in_air` behind the ports of `housing`: a water surface is another port for every pose.
 Bundle behind_ports(const Bundle& in_air, const io::ColmapModel& sample,
@@ -77,8 +80,8 @@ std::optional<std::pair<PortChange, double>> change_by_pictures(const TrackPictu
       continue;
     const auto value = pictures.behind(changed(bundle, change));
     if (value) log_details("Photographs: {:.2f} with {}", *value, cause_of(change, bundle));
-    if (value && *value > kAgree && *value > given + kClearlyMore &&
-        (!best || *value > best->second + 0.05))
+    if (value && *value > kAgreeWithChange && *value > given + kClearlyMore &&
+        (!best || *value > best->second + 0.02))
       best = {change, *value};
   }
   return best;
@@ -129,12 +132,12 @@ std::optional<std::string> import_warning(const io::ColmapModel& model, const io
     const bool ports = std::ranges::any_of(bundle.cameras, [](const BundleCamera& camera) {
       return camera.measured.port.has_value();
     });
-    if (ports && check.fits()) return {};
     // Tracks of a model that carries ports are of photographs taken through them.
     const bool carried = std::ranges::any_of(
         sample.cameras, [](const io::ColmapCamera& camera) { return camera.port.has_value(); });
     if (check.fits_in_air() && !carried)
       return by_pictures(check, sample, in_air, bundle, ports, image_folder);
+    if (check.fits()) return {};
     return misfit(check, bundle, ports);
   } catch (const Error&) {
     return {};  // a lens that is not supported, a port that an image does not reach

@@ -38,8 +38,11 @@ void change_camera(const PortChange& change, CameraModel& camera) {
     camera.lens.fy *= change.value;
   }
   if (change.of == Of::port_left_out || change.of == Of::focal_in_air) camera.port.reset();
-  if (change.of == Of::thin_port && !camera.port)
-    camera.port = Flat{{0, 0, 1}, 1e-6, 0, 1, 1.5, kWater};
+  if (change.of == Of::thin_port && !camera.port) {
+    if (change.value == 1) camera.port = Flat{{0, 0, 1}, 1e-6, 0, 1, 1.5, kWater};
+    camera.lens.fx *= change.value;
+    camera.lens.fy *= change.value;
+  }
   if (camera.port) std::visit([&](auto& port) { change_port(change, port); }, *camera.port);
 }
 
@@ -88,7 +91,7 @@ Bundle changed(const Bundle& bundle, const PortChange& change) {
 std::vector<PortChange> likely_changes(const Bundle& bundle) {
   std::vector<PortChange> changes;
   const std::optional<PortValues> port = first_port(bundle);
-  if (!port) changes = {{Of::thin_port}};
+  if (!port) changes = {{Of::thin_port}, {Of::thin_port, kWater}};
   if (port) {
     changes.push_back({Of::port_left_out});
     if (std::abs(port->n_water - kWater) > 0.015) changes.push_back({Of::index, kWater});
@@ -99,7 +102,8 @@ std::vector<PortChange> likely_changes(const Bundle& bundle) {
       changes.push_back({Of::scale, scale});
   }
   constexpr double kFactors[] = {1 / kWater, kWater, 0.5, 2};
-  for (const double factor : kFactors) changes.push_back({Of::focal, factor});
+  for (const double factor : kFactors)
+    if (port || factor != kWater) changes.push_back({Of::focal, factor});
   if (port)
     for (const double factor : kFactors) changes.push_back({Of::focal_in_air, factor});
   return changes;
@@ -124,14 +128,16 @@ PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_erro
       first_port(bundle) ? track_residual(changed(bundle, {Of::port_left_out})) : check.residual;
   check.best_residual = check.residual;
   if (check.fits()) return check;
-  // Of causes that explain the tracks alike, the likeliest.
+  // Of causes that explain the tracks alike, the likeliest. Where none does so to the noise, none
+  // is the whole truth, and residuals rank them less sharply.
   const std::vector<PortChange> changes = likely_changes(bundle);
   std::vector<double> residuals;
   for (const PortChange& change : changes)
     residuals.push_back(track_residual(changed(bundle, change)));
   const double least = *std::ranges::min_element(residuals);
+  const double alike = least > 3 * check.noise ? 1.3 * least : 1.05 * least + 0.02;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (residuals[i] > 1.1 * least + 0.05 || residuals[i] >= check.residual) continue;
+    if (residuals[i] > alike || residuals[i] >= check.residual) continue;
     check.best = changes[i];
     check.best_residual = residuals[i];
     break;
@@ -166,8 +172,8 @@ std::string cause_of(const PortChange& change, const Bundle& bundle) {
                          times(1 / change.value));
     case Of::focal_in_air:
       return fmt::format(
-          "the poses were solved without the port, with a focal length that is {:.4g} times "
-          "this one",
+          "the tracks fit in air, with a focal length that is {:.4g} times this one: another lens, "
+          "or poses solved without the port",
           change.value);
   }
   return {};
@@ -175,8 +181,10 @@ std::string cause_of(const PortChange& change, const Bundle& bundle) {
 
 std::string advice_for(const PortChange& change) {
   switch (change.of) {
-    case Of::port_left_out:
     case Of::focal_in_air:
+      return "the lens must be the one calibrated in air, at this image size; RefinePoses makes "
+             "refractive poses of a pinhole's";
+    case Of::port_left_out:
       return "RefinePoses, with the lens calibrated in air, makes refractive poses of them";
     case Of::thin_port:
       return "give --housing";

@@ -23,14 +23,16 @@ struct PortChange {
   enum class Of {
     nothing,
     port_left_out,  // cameras in air
-    thin_port,      // cameras in air get a thin port at the lens: all that needs no dimension
-    index,          // that of the water becomes `value`
-    distance,       // of a flat port, times `value`
-    normal,         // of a flat port, becomes the optical axis
-    centre,         // of a dome, comes to the lens
-    scale,          // of the poses, times `value`
-    focal,          // focal lengths, times `value`
-    focal_in_air    // the same, and cameras in air
+    // Cameras in air get a thin port at the lens, which needs no dimensions; or, with another
+    // `value` than 1, the focal length times `value`, which is nearly the same.
+    thin_port,
+    index,        // that of the water becomes `value`
+    distance,     // of a flat port, times `value`
+    normal,       // of a flat port, becomes the optical axis
+    centre,       // of a dome, comes to the lens
+    scale,        // of the poses, times `value`
+    focal,        // focal lengths, times `value`
+    focal_in_air  // the same, and cameras in air
   };
   Of of = Of::nothing;
   double value = 1;
@@ -62,7 +64,7 @@ struct PortCheck {
   bool fits() const { return residual <= 3 * noise; }
   bool fits_in_air() const { return in_air <= 3 * noise; }
   // The change explains the tracks clearly better than what was given.
-  bool explained() const { return best_residual < 0.5 * residual; }
+  bool explained() const { return best_residual < 0.6 * residual; }
 };
 
 // `claimed_errors`: mean errors [px] of points that the model itself states, 0 where it states
