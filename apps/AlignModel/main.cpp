@@ -11,7 +11,9 @@
 #include "base/same_file.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
+#include "io/colmap_scene.h"
 #include "io/geo_offset.h"
+#include "pose/import_check.h"
 
 namespace fs = std::filesystem;
 using namespace axial;
@@ -67,6 +69,9 @@ int run(int argc, char** argv) {
   const LocalFrame frame = io::enter_local_frame(reference);
   const evaluate::CentreAlignment alignment = align(model, reference, options.model);
   evaluate::apply(alignment.similarity, model);
+  const io::Housing carried = io::housing_of(model.cameras);
+  if (!carried.ports.empty())
+    if (const auto line = pose::import_warning(model, carried, {})) log_warning("{}", *line);
   io::leave(frame, model);
   write_folder(options.output,
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });

@@ -14,6 +14,7 @@
 #include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
+#include "pose/import_check.h"
 
 namespace fs = std::filesystem;
 using namespace axial;
@@ -34,7 +35,8 @@ std::size_t count_distorted(const Scene& scene) {
 
 // Of the file, or else what the model's cameras carry. COLMAP-Underwater writes ports into models
 // whose poses it solved without refraction, too, and the files do not say so: the tracks do.
-io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
+// `warned`: that they tell so.
+io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned) {
   const io::Housing carried = io::housing_of(model.cameras);
   if (!options.housing_file.empty()) {
     io::Housing housing = io::read_housing(options.housing_file);
@@ -46,7 +48,8 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model) {
   const pose::PortFit fit = pose::port_fit(model);
   log_info("The model's cameras carry ports: its points are {:.3f} px off behind them",
            fit.behind_ports);
-  if (fit.behind_ports > fit.in_air)
+  warned = fit.behind_ports > fit.in_air;
+  if (warned)
     log_warning(
         "The points are {:.3f} px off in air: the poses were solved without refraction. "
         "RefinePoses makes refractive ones of them",
@@ -125,7 +128,8 @@ int run(int argc, char** argv) {
   log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
   const LocalFrame frame = io::enter_local_frame(model);
-  const io::Housing housing = load_housing(options, model);
+  bool warned = false;
+  const io::Housing housing = load_housing(options, model, warned);
   say_image_folder(options, model);
   check_outputs(options, model_folder, model);
 
@@ -170,6 +174,11 @@ int run(int argc, char** argv) {
                 options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
+  // The ports of a housing that is left beside the scene are not at hand here.
+  if (warned || (housing.ports.empty() && behind_ports)) return 0;
+  const io::Housing ports = io::in_frame(frame, housing);
+  if (const auto line = pose::import_warning(model, ports, options.image_folder))
+    log_warning("{}", *line);
   return 0;
 }
 

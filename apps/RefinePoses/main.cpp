@@ -16,6 +16,7 @@
 #include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
+#include "pose/freed_check.h"
 #include "report.h"
 #include "scale_from.h"
 
@@ -139,7 +140,7 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
 }
 
 // What is left of `images`, said where it is not all.
-void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
+void warn(const pose::RefineReport& report, const pose::Bundle& bundle, const Options& options) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
@@ -147,10 +148,10 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle) {
   if (report.repeated > 0)
     log_info("{} observations are of an image that sees the point already, and do not count",
              report.repeated);
-  const std::size_t distinct = report.observations_before - report.repeated;
-  if (4 * report.observations_after < 3 * distinct)
-    log_warning("{} of {} observations do not fit: is this the housing, and the lens in air?",
-                distinct - report.observations_after, distinct);
+  for (const std::string& line : pose::dropped_lines(report, options.refine.tracks))
+    log_warning("{}", line);
+  if (const auto freed = pose::number_that_does_not_fit(bundle, options.refine.adjust))
+    log_warning("{}", pose::warning_of(*freed, report.uncertainty.scale_sigma));
   if (!report.last.converged)
     log_warning("Not converged after {} iterations", report.last.iterations);
 }
@@ -219,7 +220,7 @@ int run(int argc, char** argv) {
     log_info("{}", line);
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
-  warn(report, refined.bundle);
+  warn(report, refined.bundle, options);
   write(options, refined, model, frame, result,
         report_json(report, images, refined.bundle, refined.ports, adjust));
   log_info("Refined model in {}", options.output.string());

@@ -147,7 +147,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     if (options.between_rounds) options.between_rounds();
     // Once adjusted, cameras predict which of several observations is meant.
     if (round == 0) report.repeated = drop_repeated(bundle);
-    const std::size_t dropped = filter(bundle, limits);
+    const std::size_t dropped = filter(bundle, limits, &report.dropped);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
     if (progress)
       progress(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
@@ -158,7 +158,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   report.last = adjust(bundle, adjusting);
-  filter(bundle, limits);
+  filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.uncertainty = uncertainty(bundle, adjusting);
   report.rms_after = root_mean_square(reprojection_errors(bundle));

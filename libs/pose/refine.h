@@ -23,6 +23,7 @@ struct RefineReport {
   double rms_after = 0;
   std::size_t observations_before = 0, observations_after = 0;
   std::size_t repeated = 0;  // of the former: further ones of an image that sees the point already
+  DropCounts dropped;        // the others that are not left
   std::size_t points_before = 0, points_after = 0;
   AdjustReport last;
   Uncertainty uncertainty;

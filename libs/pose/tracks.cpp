@@ -125,17 +125,27 @@ std::size_t drop_repeated(Bundle& bundle) {
   });
 }
 
-std::size_t filter(Bundle& bundle, const TrackLimits& limits) {
+std::size_t filter(Bundle& bundle, const TrackLimits& limits, DropCounts* counts) {
+  DropCounts dropped;
   const std::size_t before = bundle.observations.size();
   const std::vector<double> errors = reprojection_errors(bundle);
   std::vector<Observation> believed;
   for (std::size_t i = 0; i < errors.size(); ++i)
     if (errors[i] <= limits.max_error) believed.push_back(bundle.observations[i]);
   bundle.observations = std::move(believed);
+  dropped.errors = before - bundle.observations.size();
   for (std::size_t left = bundle.observations.size() + 1; left != bundle.observations.size();) {
     left = bundle.observations.size();
     drop_weak_images(bundle, limits.min_observations);
+    dropped.weak_images += left - bundle.observations.size();
+    const std::size_t of_strong_images = bundle.observations.size();
     drop_weak_points(bundle, limits.min_angle * std::numbers::pi / 180);
+    dropped.weak_points += of_strong_images - bundle.observations.size();
+  }
+  if (counts) {
+    counts->errors += dropped.errors;
+    counts->weak_images += dropped.weak_images;
+    counts->weak_points += dropped.weak_points;
   }
   return before - bundle.observations.size();
 }

@@ -28,9 +28,16 @@ struct TrackLimits {
   std::size_t min_observations = 30;  // of an image: fewer may fit a wrong pose
 };
 
+// Why observations were dropped.
+struct DropCounts {
+  std::size_t errors = 0;       // too large
+  std::size_t weak_images = 0;  // of images with too few observations left
+  std::size_t weak_points = 0;  // of points seen by one image, or under too narrow an angle
+};
+
 // Drops observations with larger errors, then all those of images with too few, and of points seen
 // by fewer than two images or under too narrow an angle, until nothing is left to drop. The number
-// dropped.
-std::size_t filter(Bundle& bundle, const TrackLimits& limits);
+// dropped, and by reason in `counts`, to which it is added.
+std::size_t filter(Bundle& bundle, const TrackLimits& limits, DropCounts* counts = nullptr);
 
 }  // namespace axial::pose

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/import_check.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "pose/colmap_bundle.h"
+#include "pose/port_check.h"
+#include "pose/track_pictures.h"
+#include "pose/track_sample.h"
+#include "pose/tracks.h"
+
+namespace axial::pose {
+namespace {
+
+// Photographs agree with a prediction, or have nothing to do with it. Patches of the same place
+// correlate at 0.6 and more unless noise or haze hides it, those of others at 0.2 and less.
+constexpr double kAgree = 0.5, kClearlyMore = 0.25;
+// A single change may be the cause and not yet the whole truth: the optical axis for a normal that
+// is in truth some degrees off it.
+constexpr double kAgreeWithChange = 0.35;
+
+// `in_air` behind the ports of `housing`: a water surface is another port for every pose.
+Bundle behind_ports(const Bundle& in_air, const io::ColmapModel& sample,
+                    const io::Housing& housing) {
+  Bundle bundle = in_air;
+  bundle.cameras.clear();
+  std::map<std::pair<std::size_t, std::string>, std::size_t> places;
+  for (std::size_t i = 0; i < bundle.images.size(); ++i) {
+    BundleImage& image = bundle.images[i];
+    const std::string& name = housing.port_of(image.name, sample.images[i].camera);
+    const auto found = housing.ports.find(name);
+    const bool surface =
+        found != housing.ports.end() && std::holds_alternative<WaterSurface>(found->second);
+    const auto [place, added] =
+        places.try_emplace({image.camera, surface ? image.name : name}, bundle.cameras.size());
+    if (added || surface) {
+      place->second = bundle.cameras.size();
+      bundle.cameras.push_back(in_air.cameras[image.camera]);
+      bundle.cameras.back().measured.port = housing.port_at(name, image.pose, image.name);
+    }
+    image.camera = place->second;
+  }
+  return bundle;
+}
+
+std::vector<double> claimed_errors(const io::ColmapModel& sample) {
+  std::vector<double> errors;
+  for (const io::ColmapPoint3D& point : sample.points) errors.push_back(point.error);
+  return errors;
+}
+
+std::string misfit(const PortCheck& check, const Bundle& bundle, bool ports) {
+  std::string line =
+      ports
+          ? fmt::format(
+                "Port, lens, scale and poses do not fit together: the sparse points are {:.2f} px "
+                "off behind the ports, {:.2f} px without them, where {:.2f} px are expected",
+                check.residual, check.in_air, check.noise)
+          : fmt::format(
+                "Lens and poses do not fit together: the sparse points are {:.2f} px off, "
+                "where {:.2f} px are expected",
+                check.residual, check.noise);
+  if (!check.explained()) return line + "; no single change of port, lens or scale explains it";
+  return line + fmt::format(". Likely cause: {} ({:.2f} px); {}", cause_of(check.best, bundle),
+                            check.best_residual, advice_for(check.best));
+}
+
+// The change under which the photographs agree, clearly more than with what was given; the first
+// of several.
+std::optional<std::pair<PortChange, double>> change_by_pictures(const TrackPictures& pictures,
+                                                                const Bundle& bundle,
+                                                                double given) {
+  std::optional<std::pair<PortChange, double>> best;
+  for (const PortChange& change : likely_changes(bundle)) {
+    if (change.of == PortChange::Of::port_left_out || change.of == PortChange::Of::focal_in_air)
+      continue;
+    const auto value = pictures.behind(changed(bundle, change));
+    if (value) log_details("Photographs: {:.2f} with {}", *value, cause_of(change, bundle));
+    if (value && *value > kAgreeWithChange && *value > given + kClearlyMore &&
+        (!best || *value > best->second + 0.02))
+      best = {change, *value};
+  }
+  return best;
+}
+
+// Tracks that fit in air are of photographs in air, or of pinhole poses: the photographs know.
+std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapModel& sample,
+                                       const Bundle& in_air, const Bundle& bundle, bool ports,
+                                       const std::filesystem::path& image_folder) {
+  if (image_folder.empty()) return {};
+  const TrackPictures pictures(sample, in_air, image_folder);
+  const auto at_tracks = pictures.at_tracks();
+  if (!at_tracks) return {};
+  const double behind = pictures.behind(bundle).value_or(0);
+  log_details("Photographs: {:.2f} at the tracks, {:.2f} where the cameras predict", *at_tracks,
+              behind);
+  if (ports && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)
+    return fmt::format(
+        "The poses were solved without the port, as a pinhole's: the sparse points are {:.2f} px "
+        "off behind the ports, {:.2f} px without them, where {:.2f} px are expected, and the "
+        "photographs agree with the tracks ({:.2f}) and not with the ports ({:.2f}). {}",
+        check.residual, check.in_air, check.noise, *at_tracks, behind,
+        "RefinePoses, with the lens calibrated in air, makes refractive poses of them");
+  if (*at_tracks > kAgree) return {};
+  const double given = std::max(ports ? behind : *at_tracks, 0.0);
+  const auto better = change_by_pictures(pictures, bundle, given);
+  if (!better) return {};
+  return fmt::format(
+      "The photographs do not show what {} predict: patches around the sparse points correlate by "
+      "{:.2f}, and by {:.2f} with one change. Likely cause: {}; {}",
+      ports ? "poses and ports" : "the poses", given, better->second,
+      cause_of(better->first, bundle), advice_for(better->first));
+}
+
+}  // namespace
+
+std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
+                                          const std::filesystem::path& image_folder) {
+  try {
+    const io::ColmapModel sample = sample_tracks(model);
+    Bundle in_air = to_bundle(sample, sample.cameras, {}).bundle;
+    triangulate(in_air);
+    const Bundle bundle = behind_ports(in_air, sample, housing);
+    const PortCheck check = check_ports(bundle, claimed_errors(sample));
+    log_details("Tracks: {} points, {} observations, {:.3f} px off, {:.3f} px in air", check.points,
+                check.observations, check.residual, check.in_air);
+    if (!check.tells()) return {};
+    const bool ports = std::ranges::any_of(bundle.cameras, [](const BundleCamera& camera) {
+      return camera.measured.port.has_value();
+    });
+    // Tracks of a model that carries ports are of photographs taken through them.
+    const bool carried = std::ranges::any_of(
+        sample.cameras, [](const io::ColmapCamera& camera) { return camera.port.has_value(); });
+    if (check.fits_in_air() && !carried)
+      return by_pictures(check, sample, in_air, bundle, ports, image_folder);
+    if (check.fits()) return {};
+    return misfit(check, bundle, ports);
+  } catch (const Error&) {
+    return {};  // a lens that is not supported, a port that an image does not reach
+  }
+}
+
+}  // namespace axial::pose

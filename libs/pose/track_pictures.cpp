@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/track_pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/colmap_lens.h"
+#include "io/image.h"
+#include "pose/tracks.h"
+
+namespace axial::pose {
+namespace {
+
+constexpr std::size_t kPairs = 3, kLeastPoints = 30, kPointsOfPair = 150;
+constexpr int kHalf = 6;           // patches of 13 x 13 samples
+constexpr double kPicture = 1200;  // samples are pixels of pictures of about this width
+
+using Cameras = std::vector<CameraVariant<double>>;
+
+Cameras cameras_of(const Bundle& bundle) {
+  Cameras cameras;
+  for (const BundleCamera& camera : bundle.cameras)
+    cameras.push_back(make_camera<double>(camera.now()));
+  return cameras;
+}
+
+// From the pixels of the distortion-free lens to those of the photograph.
+std::optional<Eigen::Vector2d> in_photograph(const io::ColmapCamera& lens,
+                                             const refractive::PinholeLens<double>& pinhole,
+                                             const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d at = io::image_direction(lens, (pixel.x() - pinhole.cx) / pinhole.fx,
+                                                 (pixel.y() - pinhole.cy) / pinhole.fy);
+  if (!at.allFinite()) return {};
+  return at;
+}
+
+// A point's image and how it moves with the point, along two directions across the line of sight.
+struct Patch {
+  Eigen::Vector2d centre;
+  Eigen::Matrix2d along;
+};
+
+struct Tangents {
+  Eigen::Vector3d point, u, v;
+};
+
+Tangents tangents_at(const Eigen::Vector3d& point, const Eigen::Vector3d& first,
+                     const Eigen::Vector3d& second) {
+  const Eigen::Vector3d sight =
+      ((point - first).normalized() + (point - second).normalized()).normalized();
+  const Eigen::Vector3d u = sight.unitOrthogonal();
+  const double step = 2e-3 * (point - first).norm();  // a pixel or two
+  return {point, step * u, step * sight.cross(u)};
+}
+
+cv::Mat1f grey_picture(const std::filesystem::path& file, cv::Size size) {
+  try {
+    const cv::Mat pixels = io::read_photograph(file).pixels;
+    if (pixels.size() != size) return {};
+    cv::Mat1f picture;
+    cv::Mat single;
+    cv::cvtColor(pixels, single, cv::COLOR_BGR2GRAY);
+    single.convertTo(picture, CV_32F, pixels.depth() == CV_16U ? 1 / 257.0 : 1.0);
+    const double sigma = std::max(1.0, picture.cols / kPicture) * 0.7;
+    cv::GaussianBlur(picture, picture, {}, sigma);
+    return picture;
+  } catch (const Error&) {
+    return {};  // whoever needs the photograph says so
+  }
+}
+
+std::optional<double> sample_at(const cv::Mat1f& picture, const Eigen::Vector2d& at) {
+  const double x = std::floor(at.x()), y = std::floor(at.y());
+  if (!(x >= 0 && y >= 0 && x < picture.cols - 1 && y < picture.rows - 1)) return {};
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double a = at.x() - x, b = at.y() - y;
+  return (1 - b) * ((1 - a) * picture(j, i) + a * picture(j, i + 1)) +
+         b * ((1 - a) * picture(j + 1, i) + a * picture(j + 1, i + 1));
+}
+
+// Nothing where a patch leaves its picture or has no texture.
+std::optional<double> correlation(const cv::Mat1f& a, const Patch& in_a, const cv::Mat1f& b,
+                                  const Patch& in_b) {
+  if (!(std::abs(in_a.along.determinant()) > 1e-9)) return {};
+  const Eigen::Matrix2d warp = in_b.along * in_a.along.inverse();
+  const double step = std::max(1.0, a.cols / kPicture);
+  double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
+  for (int y = -kHalf; y <= kHalf; ++y)
+    for (int x = -kHalf; x <= kHalf; ++x) {
+      const Eigen::Vector2d offset = step * Eigen::Vector2d(x, y);
+      const auto va = sample_at(a, in_a.centre + offset);
+      const auto vb = sample_at(b, in_b.centre + warp * offset);
+      if (!va || !vb) return {};
+      n += 1, sa += *va, sb += *vb, saa += *va * *va, sbb += *vb * *vb, sab += *va * *vb;
+    }
+  const double var_a = saa / n - sa * sa / (n * n), var_b = sbb / n - sb * sb / (n * n);
+  constexpr double kLeastVariance = 4;  // of 8-bit grey
+  if (!(var_a > kLeastVariance && var_b > kLeastVariance)) return {};
+  return (sab / n - sa * sb / (n * n)) / std::sqrt(var_a * var_b);
+}
+
+}  // namespace
+
+TrackPictures::TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
+                             const std::filesystem::path& image_folder)
+    : sample_(sample), in_air_(in_air) {
+  choose_pairs();
+  read_pictures(image_folder);
+}
+
+// Those with the most points in common that are not seen from nearly one place: there every camera
+// predicts the same.
+void TrackPictures::choose_pairs() {
+  std::vector<std::vector<std::size_t>> tracks(in_air_.points.size());
+  for (std::size_t i = 0; i < in_air_.observations.size(); ++i)
+    tracks[in_air_.observations[i].point].push_back(i);
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::array<std::size_t, 3>>> shared;
+  constexpr double kLeastSine = 0.05;  // of an angle of 3 degrees
+  for (std::size_t point = 0; point < tracks.size(); ++point)
+    for (const std::size_t i : tracks[point])
+      for (const std::size_t j : tracks[point]) {
+        const std::size_t a = in_air_.observations[i].image, b = in_air_.observations[j].image;
+        if (a >= b) continue;
+        const Eigen::Vector3d& x = in_air_.points[point].position;
+        const Eigen::Vector3d to_a = (in_air_.images[a].pose.centre - x).normalized();
+        const Eigen::Vector3d to_b = (in_air_.images[b].pose.centre - x).normalized();
+        if (to_a.cross(to_b).norm() > kLeastSine && to_a.dot(to_b) > 0.8)
+          shared[{a, b}].push_back({point, i, j});
+      }
+  std::vector<Pair> all;
+  for (auto& [images, points] : shared)
+    if (points.size() >= kLeastPoints / 2)
+      all.push_back({images.first, images.second, std::move(points), {}});
+  std::ranges::stable_sort(all, std::greater{},
+                           [](const Pair& pair) { return pair.shared.size(); });
+  std::set<std::size_t> taken;
+  for (Pair& pair : all) {
+    if (pairs_.size() == kPairs) break;
+    if (taken.contains(pair.first) || taken.contains(pair.second)) continue;
+    taken.insert({pair.first, pair.second});
+    pair.shared.resize(std::min(pair.shared.size(), kPointsOfPair));
+    pairs_.push_back(std::move(pair));
+  }
+}
+
+void TrackPictures::read_pictures(const std::filesystem::path& image_folder) {
+  std::map<std::uint32_t, cv::Size> sizes;
+  for (const io::ColmapCamera& camera : sample_.cameras)
+    sizes[camera.id] = {static_cast<int>(camera.width), static_cast<int>(camera.height)};
+  parallel_for(2 * pairs_.size(), [&](std::size_t k) {
+    Pair& pair = pairs_[k / 2];
+    const io::ColmapImage& image = sample_.images[k % 2 == 0 ? pair.first : pair.second];
+    pair.pictures[k % 2] = grey_picture(image_folder / image.name, sizes.at(image.camera));
+  });
+}
+
+std::optional<double> TrackPictures::at_tracks() const {
+  return agreement(in_air_, true);
+}
+
+std::optional<double> TrackPictures::behind(const Bundle& bundle) const {
+  return agreement(bundle, false);
+}
+
+std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_observations) const {
+  const Cameras cameras = cameras_of(bundle);
+  std::map<std::uint32_t, const io::ColmapCamera*> lenses;
+  for (const io::ColmapCamera& camera : sample_.cameras) lenses[camera.id] = &camera;
+  std::vector<double> values;
+  std::size_t compared = 0;
+  for (const Pair& pair : pairs_) {
+    if (pair.pictures[0].empty() || pair.pictures[1].empty()) continue;
+    for (const auto& [point, i, j] : pair.shared) {
+      const auto patch = [&](std::size_t image, std::size_t observation,
+                             const Tangents& at) -> std::optional<Patch> {
+        const BundleImage& from = bundle.images[image];
+        const io::ColmapCamera& lens = *lenses.at(sample_.images[image].camera);
+        // Where the photograph is taken apart does not change with the bundle's cameras.
+        const auto& pinhole = in_air_.cameras[in_air_.images[image].camera].measured.lens;
+        const auto see = [&](const Eigen::Vector3d& x) -> std::optional<Eigen::Vector2d> {
+          const auto image_of =
+              std::visit([&](const auto& camera) { return camera.project(from.pose.to_camera(x)); },
+                         cameras[from.camera]);
+          if (!image_of.visible) return {};
+          return in_photograph(lens, pinhole, image_of.pixel);
+        };
+        const auto centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
+        if (!centre || !u || !v) return {};
+        Patch result{*centre, {}};
+        result.along << *u - *centre, *v - *centre;
+        if (at_observations) {
+          const auto seen = in_photograph(lens, pinhole, in_air_.observations[observation].pixel);
+          if (!seen) return {};
+          result.centre = *seen;
+        }
+        return result;
+      };
+      const Tangents at =
+          tangents_at(bundle.points[point].position, bundle.images[pair.first].pose.centre,
+                      bundle.images[pair.second].pose.centre);
+      const auto a = patch(pair.first, i, at), b = patch(pair.second, j, at);
+      if (!a || !b) continue;
+      const auto value = correlation(pair.pictures[0], *a, pair.pictures[1], *b);
+      if (!value) continue;
+      ++compared;
+      values.push_back(*value);
+    }
+  }
+  if (compared < kLeastPoints) return {};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace axial::pose

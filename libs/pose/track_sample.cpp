@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/track_sample.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace axial::pose {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+// The k-th of `count` evenly spaced places among `total`.
+std::size_t spaced(std::size_t k, std::size_t count, std::size_t total) {
+  return (2 * k + 1) * total / (2 * count);
+}
+
+std::unordered_set<std::uint64_t> points_of_seeds(const io::ColmapModel& model,
+                                                  const SampleLimits& limits) {
+  std::unordered_set<std::uint64_t> chosen;
+  const std::size_t seeds = std::min(limits.seeds, model.images.size());
+  for (std::size_t k = 0; k < seeds; ++k) {
+    std::vector<std::uint64_t> seen;
+    for (const io::ColmapPoint2D& point :
+         model.images[spaced(k, seeds, model.images.size())].points)
+      if (point.point3d != io::kNoPoint3D) seen.push_back(point.point3d);
+    const std::size_t count = std::min(seen.size(), limits.points / seeds);
+    for (std::size_t i = 0; i < count; ++i) chosen.insert(seen[spaced(i, count, seen.size())]);
+  }
+  return chosen;
+}
+
+// Takes images into the sample as tracks name them, as long as there is room.
+class SampledImages {
+ public:
+  SampledImages(const io::ColmapModel& model, std::size_t limit) : model_(model), limit_(limit) {
+    for (std::size_t i = 0; i < model.images.size(); ++i) index_of_.emplace(model.images[i].id, i);
+  }
+
+  // The place in the sample; kNone where it is full.
+  std::size_t take(std::uint32_t id) {
+    const auto found = place_of_.find(id);
+    if (found != place_of_.end()) return found->second;
+    if (images_.size() >= limit_) return kNone;
+    const io::ColmapImage& from = model_.images[index_of_.at(id)];
+    images_.push_back({from.id, from.camera, from.name, from.pose, {}});
+    return place_of_[id] = images_.size() - 1;
+  }
+
+  const io::ColmapPoint2D& seen(const io::ColmapTrackElement& element) const {
+    return model_.images[index_of_.at(element.image)].points.at(element.point2d);
+  }
+
+  std::vector<io::ColmapImage>& images() { return images_; }
+
+ private:
+  const io::ColmapModel& model_;
+  std::size_t limit_;
+  std::unordered_map<std::uint32_t, std::size_t> index_of_, place_of_;
+  std::vector<io::ColmapImage> images_;
+};
+
+void add_track(const io::ColmapPoint3D& from, std::size_t limit, SampledImages& images,
+               std::vector<io::ColmapPoint3D>& points) {
+  std::vector<std::pair<std::size_t, io::ColmapPoint2D>> seen;  // by place in the sample
+  for (const io::ColmapTrackElement& element : from.track) {
+    if (seen.size() == limit) break;
+    const std::size_t place = images.take(element.image);
+    if (place != kNone &&
+        std::ranges::none_of(seen, [&](const auto& s) { return s.first == place; }))
+      seen.emplace_back(place, images.seen(element));
+  }
+  if (seen.size() < 2) return;
+  io::ColmapPoint3D point = from;
+  point.track.clear();
+  for (const auto& [place, pixel] : seen) {
+    io::ColmapImage& image = images.images()[place];
+    point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+    image.points.push_back(pixel);
+  }
+  points.push_back(std::move(point));
+}
+
+std::vector<std::vector<std::size_t>> points_by_image(const Bundle& bundle) {
+  std::vector<std::vector<std::size_t>> lists(bundle.images.size());
+  for (const Observation& observation : bundle.observations)
+    lists[observation.image].push_back(observation.point);
+  return lists;
+}
+
+std::vector<std::vector<std::size_t>> images_by_point(const Bundle& bundle) {
+  std::vector<std::vector<std::size_t>> lists(bundle.points.size());
+  for (const Observation& observation : bundle.observations)
+    lists[observation.point].push_back(observation.image);
+  return lists;
+}
+
+// Images reached from the middle one through points that both see, nearest first.
+std::vector<bool> connected_images(const Bundle& bundle, std::size_t limit, bool behind_ports) {
+  const auto points = points_by_image(bundle);
+  const auto images = images_by_point(bundle);
+  std::vector<bool> chosen(bundle.images.size()), visited(bundle.points.size());
+  const auto usable = [&](std::size_t image) {
+    return !points[image].empty() &&
+           (!behind_ports || bundle.cameras[bundle.images[image].camera].measured.port);
+  };
+  std::vector<std::size_t> queue;
+  for (std::size_t k = 0; k < chosen.size() && queue.empty(); ++k) {
+    const std::size_t image = (chosen.size() / 2 + k) % chosen.size();
+    if (usable(image)) queue.push_back(image), chosen[image] = true;
+  }
+  for (std::size_t next = 0; next < queue.size(); ++next)
+    for (const std::size_t point : points[queue[next]]) {
+      if (visited[point]) continue;
+      visited[point] = true;
+      for (const std::size_t image : images[point])
+        if (queue.size() < limit && !chosen[image] && usable(image))
+          queue.push_back(image), chosen[image] = true;
+    }
+  return chosen;
+}
+
+}  // namespace
+
+io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits) {
+  const auto chosen = points_of_seeds(model, limits);
+  SampledImages images(model, limits.images);
+  io::ColmapModel sample;
+  for (const io::ColmapPoint3D& point : model.points)
+    if (chosen.contains(point.id)) add_track(point, limits.track, images, sample.points);
+  sample.images = std::move(images.images());
+  std::unordered_set<std::uint32_t> cameras;
+  for (const io::ColmapImage& image : sample.images) cameras.insert(image.camera);
+  for (const io::ColmapCamera& camera : model.cameras)
+    if (cameras.contains(camera.id)) sample.cameras.push_back(camera);
+  return sample;
+}
+
+Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behind_ports) {
+  const std::vector<bool> chosen = connected_images(bundle, limits.images, behind_ports);
+  std::vector<std::size_t> seen(bundle.points.size());
+  for (const Observation& observation : bundle.observations)
+    if (chosen[observation.image]) ++seen[observation.point];
+  std::vector<std::size_t> usable;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] >= 2) usable.push_back(i);
+  std::ranges::stable_sort(usable, std::greater{}, [&](std::size_t i) { return seen[i]; });
+  usable.resize(std::min(usable.size(), limits.points));
+
+  Bundle part{bundle.cameras, bundle.images, {}, {}};
+  std::vector<std::size_t> place(seen.size(), kNone);
+  for (const std::size_t point : usable) {
+    place[point] = part.points.size();
+    part.points.push_back(bundle.points[point]);
+  }
+  for (Observation observation : bundle.observations) {
+    if (!chosen[observation.image] || place[observation.point] == kNone) continue;
+    observation.point = place[observation.point];
+    part.observations.push_back(observation);
+  }
+  // Images and cameras that nothing is left of would be unknowns of the adjustment.
+  std::vector<std::size_t> image_place(bundle.images.size(), kNone),
+      camera_place(bundle.cameras.size(), kNone);
+  Bundle result{{}, {}, std::move(part.points), std::move(part.observations)};
+  for (Observation& observation : result.observations) {
+    std::size_t& image = image_place[observation.image];
+    if (image == kNone) {
+      image = result.images.size();
+      result.images.push_back(bundle.images[observation.image]);
+      std::size_t& camera = camera_place[result.images.back().camera];
+      if (camera == kNone) {
+        camera = result.cameras.size();
+        result.cameras.push_back(bundle.cameras[result.images.back().camera]);
+      }
+      result.images.back().camera = camera;
+    }
+    observation.image = image;
+  }
+  return result;
+}
+
+}  // namespace axial::pose

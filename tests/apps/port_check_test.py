@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Port, lens, scale and poses that do not belong together, and no word of those that do: what
+InterfaceCOLMAP says of the simulated scene, whose tracks are of the photographs in air."""
+
+import json
+import os
+import shutil
+import tempfile
+
+from programs import ProgramTest, main, read, run, write
+
+WARNINGS = ("do not fit together", "do not show what", "poses were solved without")
+
+
+class Import(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(cls.shared.cleanup)
+        cls.scene = os.path.join(cls.shared.name, "closeup")
+        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 5, "--width", 320,
+                   "--height", 240, "--coarseness", 4, "-o", cls.scene)
+        assert made.returncode == 0, made.stderr
+
+    def said(self, medium="water", housing=None, model=None, threads=0):
+        """What the import says; `housing`: changes to the port, none for no housing."""
+        arguments = []
+        if housing is not None:
+            content = json.loads(read(os.path.join(self.scene, "housing.json")))
+            content["ports"][content["default"]].update(housing)
+            write(self.path("housing.json"), json.dumps(content))
+            arguments = ["--housing", self.path("housing.json")]
+        return self.succeeds("InterfaceCOLMAP", "-i", model or self.scene, "--image-folder",
+                             os.path.join(self.scene, medium), "-o", self.path("scene.mvs"),
+                             "--max-threads", threads, *arguments).stdout
+
+    def warns(self, expected, **situation):
+        self.assertIn(expected, self.said(**situation))
+        os.remove(self.path("scene.mvs"))
+
+    def is_silent(self, **situation):
+        said = self.said(**situation)
+        for warning in WARNINGS:
+            self.assertNotIn(warning, said)
+
+    def with_focal(self, factor):
+        model = self.path("model")
+        shutil.copytree(os.path.join(self.scene, "sparse"), model)
+        words = read(os.path.join(model, "cameras.txt")).decode().split()
+        at = words.index("PINHOLE")
+        camera = words[at - 1:]
+        for k in (4, 5):
+            camera[k] = repr(factor * float(camera[k]))
+        write(os.path.join(model, "cameras.txt"), " ".join(camera) + "\n")
+        return model
+
+    def test_correct_scenes(self):
+        self.is_silent(housing={})
+        shutil.rmtree(self.folder)
+        os.mkdir(self.folder)
+        self.is_silent(medium="air")
+
+    def test_a_distance_ten_times_too_large(self):
+        port = json.loads(read(os.path.join(self.scene, "housing.json")))["ports"]["main"]
+        self.warns("distance is 10 times too large",
+                   housing={"distance_m": 10 * port["distance_m"]})
+
+    def test_a_normal_45_degrees_off(self):
+        self.warns("normal, 45 degrees off", housing={"normal": [0.70710678, 0, 0.70710678]})
+
+    def test_indices_that_water_does_not_have(self):
+        self.warns("n_water 1 ", housing={"n_water": 1.0})
+        os.remove(self.path("scene.housing.json"))
+        self.warns("n_water 1.49 ", housing={"n_water": 1.49})
+
+    def test_focal_lengths(self):
+        for factor in (2, 1.333):
+            self.warns("focal length", housing={}, model=self.with_focal(factor))
+            shutil.rmtree(self.path("model"))
+
+    def test_photographs_that_no_port_was_before(self):
+        """Poses and photographs of a pinhole, and a housing: what COLMAP's poses from photographs
+        under water are, too."""
+        self.warns("The poses were solved without the port", medium="air", housing={})
+
+    def test_a_housing_that_is_forgotten(self):
+        self.warns("give --housing")
+
+    def test_the_same_line_for_any_number_of_threads(self):
+        wrong = {"n_water": 1.49}
+        lines = {next(line.split("]", 1)[-1] for line in
+                      self.said(housing=wrong, threads=threads).splitlines() if "n_water" in line)
+                 for threads in (1, 2, 5)}
+        self.assertEqual(len(lines), 1, lines)
+
+
+if __name__ == "__main__":
+    main()
