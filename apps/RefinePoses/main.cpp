@@ -238,7 +238,11 @@ int run(int argc, char** argv) {
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
     log_warning("{}: no image goes by {}",
-                (options.housing.empty() ? options.lens : options.housing).string(), entry);
+                (!options.housing.empty() ? options.housing
+                 : options.lens.empty()   ? options.model
+                                          : options.lens)
+                    .string(),
+                entry);
   if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
         return camera.measured.port.has_value();
       }))
