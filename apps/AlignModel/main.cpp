@@ -75,6 +75,8 @@ int run(int argc, char** argv) {
   io::leave(frame, model);
   write_folder(options.output,
                [&](const fs::path& staging) { io::write_colmap_text(staging, model); });
+  for (const std::string& line : evaluate::not_matched(alignment, reference))
+    log_warning("--reference {}: {}", options.reference.string(), line);
   log_info("{} of {} images have a known centre, scale {:.9g}", alignment.names.size(),
            model.images.size(), alignment.similarity.scale);
   log_info("Centre residuals: RMS {:.3f} mm, largest {:.3f} mm", alignment.rms * 1e3,

@@ -56,6 +56,22 @@ refractive::Port<double> known_port(const Options& options, const io::Housing& h
   return *port;
 }
 
+// Error for a limit that was given of a number that stays as it is, or that the port does not have.
+void check_limits(const Options& options, const refractive::Port<double>& port) {
+  const auto& free = options.calibrate.adjust.free;
+  const bool dome = std::holds_alternative<refractive::DomePort<double>>(port);
+  constexpr std::size_t kTilt = 0, kDistance = 2;
+  const std::pair<const char*, bool> limits[] = {
+      {"max-normal-sigma", !dome && free[kTilt]},
+      {"max-distance-sigma", free[kDistance]},
+      {"max-index-sigma", free[pose::kIndexNumber]},
+      {"max-thickness-sigma", free[pose::kThicknessNumber]}};
+  for (const auto& [name, used] : limits)
+    if (!used && given(options.parsed, name))
+      fail("--{}: is the limit of a number that {} does not name", name,
+           "--refine " + options.refine_list);
+}
+
 // What is unknown, into `options`.
 void set_unknown(Options& options, const refractive::Port<double>& port) {
   if (options.refine_list.empty()) options.refine_list = pose::place_words(port);
@@ -65,6 +81,7 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
   pose::AdjustOptions& adjust = options.calibrate.adjust;
   adjust.points_known = true;
   pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust);
+  check_limits(options, port);
   if (adjust.free[pose::kFocalNumber])
     fail("--refine {}: the focal length stays as calibrated in air", options.refine_list);
 }

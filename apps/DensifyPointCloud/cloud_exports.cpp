@@ -11,9 +11,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/same_file.h"
 #include "cloud/visibility.h"
+#include "fusion_stage.h"
 #include "io/mvs.h"
 #include "io/ply.h"
+#include "outputs.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -36,38 +39,49 @@ std::size_t distinct_views(const axial::SparsePoint& point) {
   return count;
 }
 
-void write(const axial::Scene& scene, const Options& options, const std::string& suffix,
+// The outputs of this name, which are no files that were read.
+fs::path checked_output(const Options& options, const std::string& suffix) {
+  const fs::path path = beside_output(options, suffix);
+  axial::require_not_an_input(path, scene_files(options), "--output-file");
+  return path;
+}
+
+void write(const Project& project, const Options& options, const std::string& suffix,
            bool with_scene) {
-  const fs::path ply = beside_output(options, suffix + ".ply");
-  axial::io::write_cloud_ply(ply, cloud_of(scene));
-  if (with_scene)
-    axial::io::write_mvs(beside_output(options, suffix + ".mvs"), scene,
-                         options.parsed.common.working_folder);
-  axial::log_info("{}: {} points", ply.string(), scene.points.size());
+  const fs::path ply = checked_output(options, suffix + ".ply");
+  Options of_scene = options;
+  of_scene.output = with_scene ? checked_output(options, suffix + ".mvs") : fs::path();
+  axial::io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, options));
+  if (with_scene) {
+    write_cameras_beside_output(project, of_scene);
+    axial::io::write_mvs(of_scene.output, project.scene, options.parsed.common.working_folder);
+  }
+  axial::log_info("{}: {} points", ply.string(), project.scene.points.size());
 }
 
-void export_filtered(axial::Scene& scene, const Options& options) {
-  const std::vector<long> visibility = axial::cloud::visibility_of_points(scene);
-  keep_points(scene,
+void export_filtered(Project& project, const Options& options) {
+  const std::vector<long> visibility = axial::cloud::visibility_of_points(project.scene);
+  keep_points(project.scene,
               [&](std::size_t point) { return visibility[point] > options.filter_point_cloud; });
-  write(scene, options, "_filtered", true);
+  write(project, options, "_filtered", true);
 }
 
-void export_number_of_views(axial::Scene& scene, const Options& options) {
+void export_number_of_views(Project& project, const Options& options) {
   const auto least = static_cast<std::size_t>(std::abs(options.export_number_views));
-  keep_points(scene,
-              [&](std::size_t point) { return distinct_views(scene.points[point]) >= least; });
-  write(scene, options, fmt::format("_{}views", least), options.export_number_views < 0);
+  keep_points(project.scene, [&](std::size_t point) {
+    return distinct_views(project.scene.points[point]) >= least;
+  });
+  write(project, options, fmt::format("_{}views", least), options.export_number_views < 0);
 }
 
 // Positions, colours and normals where the scene has them, confidence and value.
 void write_scales(const fs::path& ply, const axial::Scene& scene,
-                  const std::vector<axial::cloud::PointScale>& scales) {
+                  const std::vector<axial::cloud::PointScale>& scales,
+                  const axial::io::PlyPlacement& placement) {
   const bool colors = !scene.point_colors.empty(), normals = !scene.point_normals.empty();
-  std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float32 x\n"
-      "property float32 y\nproperty float32 z\n",
-      scene.points.size());
+  std::string bytes = fmt::format("ply\nformat binary_little_endian 1.0\n{}element vertex {}\n{}",
+                                  axial::io::geo_comment(placement), scene.points.size(),
+                                  axial::io::position_properties(placement));
   if (colors) bytes += "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
   if (normals) bytes += "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
   bytes += "property float32 confidence\nproperty float32 value\nend_header\n";
@@ -75,7 +89,7 @@ void write_scales(const fs::path& ply, const axial::Scene& scene,
     bytes.append(static_cast<const char*>(data), size);
   };
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    add(scene.points[i].position.data(), 3 * sizeof(float));
+    axial::io::append_position(bytes, scene.points[i].position, placement);
     if (colors) add(scene.point_colors[i].data(), 3);
     if (normals) add(scene.point_normals[i].data(), 3 * sizeof(float));
     add(&scales[i].confidence, sizeof(float));
@@ -84,12 +98,13 @@ void write_scales(const fs::path& ply, const axial::Scene& scene,
   axial::write_atomically(ply, bytes);
 }
 
-void export_scales(const axial::Scene& scene, const Options& options) {
-  const fs::path ply = beside_output(options, "_scale.ply");
+void export_scales(const Project& project, const Options& options) {
+  const axial::Scene& scene = project.scene;
+  const fs::path ply = checked_output(options, "_scale.ply");
   std::vector<axial::cloud::PointScale> scales = axial::cloud::scales_of_points(scene);
   for (axial::cloud::PointScale& scale : scales)
     scale.scale *= static_cast<float>(options.estimate_scale);
-  write_scales(ply, scene, scales);
+  write_scales(ply, scene, scales, placement_of(project, options));
   axial::log_info("{}: {} points", ply.string(), scene.points.size());
 }
 
@@ -132,11 +147,12 @@ bool only_exports(const Options& options) {
          options.estimate_scale > 0;
 }
 
-void export_cloud(axial::Scene scene, const Options& options) {
-  if (scene.points.empty()) axial::fail("{}: has no points to export", options.input.string());
-  if (options.filter_point_cloud < 0) return export_filtered(scene, options);
-  if (options.export_number_views != 0) return export_number_of_views(scene, options);
-  export_scales(scene, options);
+void export_cloud(Project project, const Options& options) {
+  if (project.scene.points.empty())
+    axial::fail("{}: has no points to export", options.input.string());
+  if (options.filter_point_cloud < 0) return export_filtered(project, options);
+  if (options.export_number_views != 0) return export_number_of_views(project, options);
+  export_scales(project, options);
 }
 
 }  // namespace densify

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "options.h"
+#include "project.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
 
@@ -25,7 +26,9 @@ bool only_exports(const Options& options);
 //   --filter-point-cloud T < 0   <out>_filtered.ply and .mvs: points whose visibility is above T
 //   --export-number-views N      <out>_<N>views.ply: points seen by |N| images or more; N < 0: .mvs
 //   --estimate-scale F > 0       <out>_scale.ply: every point's size, F pixels of its mean view
-// `scene` has its ports and lenses. Error if it has no points.
-void export_cloud(axial::Scene scene, const Options& options);
+// Clouds are where placement_of() says, and scenes have ports, lenses and offset beside them. A
+// warning for further ones that are asked for. Error if the scene of `project`, of load_scene(),
+// has no points, or where an output is a file that was read.
+void export_cloud(Project project, const Options& options);
 
 }  // namespace densify

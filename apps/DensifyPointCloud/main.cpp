@@ -67,7 +67,7 @@ int run(int argc, char** argv) {
   make_folder_of(options.output);
   densify::check_outputs(options);
   if (densify::only_exports(options)) {
-    densify::export_cloud(densify::load_scene(options).scene, options);
+    densify::export_cloud(densify::load_scene(options), options);
     return 0;
   }
   if (!options.neighbour_lists_output.empty()) {

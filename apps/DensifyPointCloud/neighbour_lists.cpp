@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parse_number.h"
 
 namespace densify {
@@ -54,6 +55,9 @@ std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, axial:
     if (std::find(images.begin() + 1, images.end(), images[0]) != images.end())
       axial::fail("{}: image {} is its own neighbour", where, images[0]);
     named[images[0]] = true;
+    for (const std::uint32_t image : images)
+      if (!scene.images[image].calibrated)
+        axial::log_warning("{}: image {} has no pose, and is passed over", where, image);
     std::vector<axial::ViewScore>& neighbours = scene.images[images[0]].neighbours;
     neighbours.clear();
     for (std::size_t i = 1; i < images.size(); ++i) {

@@ -6,9 +6,11 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/unused_input.h"
 #include "cloud_exports.h"
 #include "dense_config.h"
 #include "io/bit_depth.h"
+#include "without_effect.h"
 
 namespace densify {
 using axial::fail;
@@ -223,6 +225,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_matching(program.visible, options);
   declare_fusion(program.visible, raw, options);
   declare_points(program.visible, raw, options);
+  axial::UnusedInput::declare(program.visible, options.allow_missing);
   declare_hidden(program.hidden, raw);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
@@ -235,8 +238,8 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(hidden);
   check_values(options, raw);
   warn_of_no_effect(options, raw);
-  if (!raw.dense_config.empty())
-    apply_dense_config(axial::in_working_folder(common, raw.dense_config), options);
+  options.dense_config = axial::in_working_folder(common, raw.dense_config);
+  if (!options.dense_config.empty()) apply_dense_config(options.dense_config, options);
   options.input = axial::in_working_folder(common, raw.input);
   options.output = axial::in_working_folder(common, raw.output);
   if (options.output.empty())
@@ -273,6 +276,7 @@ Options parse_command_line(int argc, const char* const* argv) {
          options.pinhole_export.string());
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
+  warn_of_options_without_effect(options);
   return options;
 }
 

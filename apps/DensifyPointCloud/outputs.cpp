@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/same_file.h"
 #include "depth_stage.h"
+#include "io/geo_offset.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -12,10 +13,6 @@ namespace {
 
 fs::path cloud_file(const Options& options) {
   return fs::path(options.output).replace_extension(".ply");
-}
-
-std::vector<fs::path> scene_files(const Options& options) {
-  return {options.input, housing_file(options), axial::io::lenses_beside(options.input)};
 }
 
 // The housing is not among them: it is not written where it is the one that was read.
@@ -37,8 +34,21 @@ std::vector<fs::path> depth_outputs(const Project& project, const Options& optio
 
 }  // namespace
 
+std::vector<fs::path> scene_files(const Options& options) {
+  return {options.input,
+          housing_file(options),
+          axial::io::lenses_beside(options.input),
+          axial::io::geo_offset_beside(options.input),
+          options.point_cloud,
+          options.neighbour_lists,
+          options.dense_config};
+}
+
 void check_outputs(const Options& options) {
   axial::require_no_inputs(cloud_outputs(options), scene_files(options), "--output-file");
+  if (!options.neighbour_lists_output.empty())
+    axial::require_not_an_input(options.neighbour_lists_output, scene_files(options),
+                                "--output-view-neighbors-file");
   axial::require_writable(options.output);
   axial::require_writable(cloud_file(options));
   axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");

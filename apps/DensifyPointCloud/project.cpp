@@ -11,16 +11,18 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/unused_input.h"
 #include "io/bit_depth.h"
 #include "io/geo_offset.h"
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/mvs.h"
+#include "io/point_source.h"
 #include "io/rival_ports.h"
 #include "masks.h"
 #include "memory_plan.h"
 #include "neighbour_lists.h"
-#include "point_source.h"
+#include "without_effect.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -73,8 +75,11 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene,
          flat, images);
   axial::log_info("Housing {}: {} of {} images behind a port", file.filename().string(), wet,
                   images);
-  if (wet == 0) return {};
-  return housing;
+  if (wet > 0) return housing;
+  if (!options.housing.empty() && !housing.ports.empty())
+    axial::UnusedInput(options.allow_missing)
+        .report(fmt::format("--housing {}: gives no image a port", file.string()));
+  return {};
 }
 
 cv::Size size_to_work_on(const axial::SceneImage& image, const cv::Size& file_size,
@@ -288,7 +293,8 @@ Project load_scene(const Options& options) {
   if (project.housing) warn_of_missing_lenses(options);
   axial::log_info("Scene {}: {} images, {} points", options.input.filename().string(),
                   project.scene.images.size(), project.scene.points.size());
-  if (!options.point_cloud.empty()) use_point_cloud(project.scene, options.point_cloud);
+  if (!options.point_cloud.empty())
+    axial::io::use_point_cloud(project.scene, project.frame, options.point_cloud);
   return project;
 }
 
@@ -297,6 +303,7 @@ Project load_project(const Options& options) {
   load_views(project, options);
   check_ids(project);
   select_views(project, options);
+  warn_of_options_without_effect(project, options);
   project.fingerprint = fingerprint(project, options);
   return project;
 }

@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/unused_input.h"
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/icp.h"
@@ -82,12 +83,12 @@ Models read_models(const Options& options) {
   checked_frame(options.input);
   models.frames.truth = checked_frame(options.truth);
   if (!options.cameras.empty()) {
-    models.reference = io::read_colmap_model(io::find_colmap_model(options.cameras));
+    models.reference = io::read_colmap_model(options.cameras_model);
     models.frames.truth = io::enter_local_frame(models.reference);
   }
   models.frames.input = models.frames.truth;
   if (options.align == "centres") {
-    models.estimated = io::read_colmap_model(io::find_colmap_model(options.estimated));
+    models.estimated = io::read_colmap_model(options.estimated_model);
     models.frames.input = io::enter_local_frame(models.estimated);
   }
   return models;
@@ -113,8 +114,11 @@ std::vector<evaluate::View> read_views(const Options& options, const Models& mod
     io::warn_of_other_ports(*housing, options.housing.string(),
                             io::housing_of(models.reference.cameras),
                             "the model in " + options.cameras.string(), models.reference);
+    if (io::gives_no_image_a_port(*housing, models.reference))
+      UnusedInput(options.allow_missing)
+          .report(fmt::format("--housing {}: gives no image a port", options.housing.string()));
   }
-  return naming(io::find_colmap_model(options.cameras), [&] {
+  return naming(options.cameras_model, [&] {
     return evaluate::views_of_model(models.reference, housing ? &*housing : nullptr);
   });
 }
@@ -124,6 +128,8 @@ Similarity align_by_centres(const Options& options, const Models& models,
   const auto result = naming(options.estimated, [&] {
     return evaluate::align_centres(models.estimated, models.reference);
   });
+  for (const std::string& line : evaluate::not_matched(result, models.reference))
+    log_warning("{}: {}", options.cameras.string(), line);
   log_info("Aligned by {} camera centres: scale {:.9g}, RMS residual {:.3f} mm",
            result.names.size(), result.similarity.scale, result.rms * 1e3);
   report["centres"] = result.names.size();

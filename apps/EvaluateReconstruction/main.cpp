@@ -17,9 +17,9 @@ namespace {
 
 std::vector<fs::path> inputs_of(const Options& options) {
   std::vector<fs::path> inputs{options.input, options.truth, options.housing};
-  for (const fs::path& model : {options.cameras, options.estimated})
+  for (const fs::path& model : {options.cameras_model, options.estimated_model})
     if (!model.empty())
-      for (const fs::path& file : files_in(io::find_colmap_model(model))) inputs.push_back(file);
+      for (const fs::path& file : files_in(model)) inputs.push_back(file);
   return inputs;
 }
 
@@ -39,9 +39,17 @@ void check_outputs(const Options& options) {
   }
 }
 
+// Once, because it says which of several models is read.
+void find_models(Options& options) {
+  if (!options.cameras.empty()) options.cameras_model = io::find_colmap_model(options.cameras);
+  if (!options.estimated.empty())
+    options.estimated_model = io::find_colmap_model(options.estimated);
+}
+
 int run(int argc, char** argv) {
-  const Options options = parse_command_line(argc, argv);
+  Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  find_models(options);
   const ThreadLimit threads(options.parsed.common.max_threads);
   check_outputs(options);
   const bool is_depth_map = options.input.extension() == ".dmap";

@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parse_number.h"
+#include "base/unused_input.h"
 
 using axial::fail, axial::parse_finite;
 
@@ -68,6 +70,7 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts) {
                         "error of the last colour [m] (0: twice the first tolerance)")
       .add("aligned", &texts.aligned, "write the input after alignment (.ply)")
       .add("transform-out", &texts.transform, "write the alignment as 4 x 4 numbers, row by row");
+  axial::UnusedInput::declare(visible, options.allow_missing);
 }
 
 void check(const Options& options) {
@@ -76,6 +79,8 @@ void check(const Options& options) {
     fail("--align is {}: must be none, centres or icp", options.align);
   if (options.align == "centres" && (options.estimated.empty() || options.cameras.empty()))
     fail("--align centres needs --estimated and --cameras");
+  if (options.align != "centres" && !options.estimated.empty())
+    fail("--estimated {}: is for --align centres alone", options.estimated.string());
   if (!options.housing.empty() && options.cameras.empty())
     fail("--housing needs --cameras: the cameras behind its ports");
   if (options.framed_only && options.cameras.empty()) fail("--framed-only needs --cameras");
@@ -88,6 +93,21 @@ void check(const Options& options) {
     fail("--color-max is {}: must be a positive length in metres", options.color_max);
   if (!options.picture_camera.empty() && options.cameras.empty())
     fail("--picture-camera needs --cameras");
+}
+
+// Options whose values are taken and change nothing.
+void warn_of_no_effect(const Options& options) {
+  const auto warn = [&](bool without_effect, const char* name, const char* cause) {
+    if (without_effect && axial::given(options.parsed, name))
+      axial::log_warning("--{}: without effect {}", name, cause);
+  };
+  const bool is_map = options.input.extension() == ".dmap";
+  for (const char* name : {"samples", "seed", "min-views"}) warn(is_map, name, "on a depth map");
+  warn(!is_map && options.cameras.empty(), "min-views", "without --cameras");
+  warn(options.picture.empty(), "picture-camera", "without --picture");
+  warn(options.picture.empty() || is_map, "picture-width", "without --picture of a cloud");
+  warn(options.picture.empty() && options.error_cloud.empty(), "color-max",
+       "without --picture or --error-cloud");
 }
 
 }  // namespace
@@ -116,5 +136,6 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.transform = path(texts.transform);
   if (options.color_max == 0) options.color_max = 2 * options.tolerances.front();
   check(options);
+  warn_of_no_effect(options);
   return options;
 }

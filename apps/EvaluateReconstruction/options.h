@@ -13,9 +13,12 @@ struct Options {
   std::filesystem::path input, truth;
   std::vector<double> tolerances;   // [m], at least one
   std::string align = "none";       // none, centres, icp
+  bool allow_missing = false;       // go on with a housing that gives no image a port
   std::filesystem::path cameras;    // true COLMAP model; empty: none
   std::filesystem::path housing;    // ports of `cameras`; empty: dry
   std::filesystem::path estimated;  // estimated COLMAP model; empty: none
+  // The folders in these two that hold the models; filled by the program.
+  std::filesystem::path cameras_model, estimated_model;
   std::size_t samples = 200000;
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;

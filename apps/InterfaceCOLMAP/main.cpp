@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "base/unused_input.h"
 #include "io/colmap.h"
 #include "io/colmap_export.h"
 #include "io/colmap_scene.h"
@@ -11,6 +12,7 @@
 #include "io/housing.h"
 #include "io/lenses.h"
 #include "io/mvs.h"
+#include "io/point_source.h"
 #include "io/rival_ports.h"
 #include "options.h"
 #include "pose/colmap_bundle.h"
@@ -42,6 +44,10 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model, b
     io::Housing housing = io::read_housing(options.housing_file);
     io::warn_of_other_ports(housing, options.housing_file.string(), carried,
                             "the model in " + options.colmap_folder.string(), model);
+    if (io::gives_no_image_a_port(housing, model))
+      UnusedInput(options.allow_missing)
+          .report(
+              fmt::format("--housing {}: gives no image a port", options.housing_file.string()));
     return housing;
   }
   if (carried.ports.empty()) return carried;
@@ -93,13 +99,17 @@ ProgressSink progress_of_many(const std::string& title) {
 // A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
 int export_scene(const Options& options) {
   Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
+  const LocalFrame frame = io::enter_local_frame(scene, options.scene_file);
   io::attach_lenses_beside(scene, options.scene_file);
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code error;
-  if (fs::exists(housing_file, error)) io::attach_ports(scene, io::read_housing(housing_file));
+  if (fs::exists(housing_file, error))
+    io::attach_ports(scene, io::in_frame(frame, io::read_housing(housing_file)));
+  if (!options.point_cloud.empty()) io::use_point_cloud(scene, frame, options.point_cloud);
   const fs::path images =
       options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
-  const io::ColmapModel model = io::export_colmap_model(scene, images);
+  io::ColmapModel model = io::export_colmap_model(scene, images);
+  io::leave(frame, model);
   const fs::path folder = options.export_folder / "sparse";
   make_folder(folder);
   const std::size_t behind_ports = count_behind_ports(scene);

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "base/unused_input.h"
 
 namespace fs = std::filesystem;
 using axial::fail;
@@ -52,7 +54,8 @@ Options parse_command_line(int argc, const char* const* argv) {
            "1: resample images of distorted lenses into a pinhole's, which all programs can read; "
            "0: keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind "
            "ports, 1 in air)")
-      .add("pointcloud-file,p", &point_cloud, "not built: a scene is exported with its own points")
+      .add("pointcloud-file,p", &point_cloud,
+           "of an export: PLY cloud with views, in place of the scene's points")
       .add_with_default("normalize,f", &normalize,
                         "1: write intrinsics divided by the image's longer side, without its "
                         "resolution; 0: in pixels")
@@ -60,6 +63,7 @@ Options parse_command_line(int argc, const char* const* argv) {
                         "accepted and without effect: sparse points are always written");
 
   Options options;
+  axial::UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   const axial::CommonOptions& common = options.parsed.common;
@@ -69,14 +73,22 @@ Options parse_command_line(int argc, const char* const* argv) {
     options.scene_file = std::exchange(options.colmap_folder, {});
     options.export_folder = output.empty() ? options.scene_file.parent_path()
                                            : axial::in_working_folder(common, output);
-    if (!point_cloud.empty() || !housing.empty())
-      fail("--pointcloud-file and --housing: are not for exporting a scene");
+    if (!housing.empty())
+      fail("--housing {}: a scene is exported with the ports beside it", housing);
+    options.point_cloud = axial::in_working_folder(common, point_cloud);
+    for (const char* name : {"undistort", "normalize", "force-points"})
+      if (axial::given(options.parsed, name))
+        axial::log_warning("--{}: without effect on a scene that is exported", name);
     if (axial::given(options.parsed, "image-folder"))
       options.image_folder = axial::in_working_folder(common, image_folder) / "";
     return options;
   }
   options.normalize = normalize;
-  if (!point_cloud.empty()) fail("--pointcloud-file {}: is not built", point_cloud);
+  if (!point_cloud.empty())
+    fail("--pointcloud-file {}: only a scene (.mvs) is exported with another cloud's points",
+         point_cloud);
+  if (force_points)
+    axial::log_warning("--force-points: without effect: sparse points are always written");
   std::error_code error;
   if (!fs::is_directory(options.colmap_folder, error))
     fail("{}: is not a folder", options.colmap_folder.string());

@@ -14,6 +14,8 @@ struct Options {
   std::filesystem::path image_folder;        // exists; empty in an export: that of the images
   std::filesystem::path other_image_folder;  // of the same name, and passed over; may be empty
   std::filesystem::path housing_file;        // empty: no housing
+  std::filesystem::path point_cloud;         // of an export; empty: the scene's own points
+  bool allow_missing = false;                // go on with a housing that gives no image a port
   bool normalize = false;
   std::optional<bool> undistort;  // nothing: in air
 };

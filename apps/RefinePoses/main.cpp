@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
+#include "base/unused_input.h"
 #include "io/colmap.h"
 #include "io/colmap_lens.h"
 #include "io/colmap_scene.h"
@@ -17,7 +18,9 @@
 #include "options.h"
 #include "pose/colmap_bundle.h"
 #include "pose/freed_check.h"
+#include "pose/known.h"
 #include "report.h"
+#include "results.h"
 #include "scale_from.h"
 
 namespace fs = std::filesystem;
@@ -139,39 +142,86 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
   return frame;
 }
 
+// What the options say is known and unknown of the bundle, into `options.refine.adjust`. Returns
+// the frame that the bundle will be in; it is in `frame_of_model`.
+LocalFrame set_known(Options& options, const pose::Bundle& bundle, LocalFrame frame_of_model,
+                     UnusedInput& unused) {
+  pose::AdjustOptions& adjust = options.refine.adjust;
+  adjust = {};
+  add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder, bundle,
+            adjust, unused);
+  adjust.poses_known = options.poses == "known";
+  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust);
+  return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
+}
+
+// The bundle where refining began, and what came of it.
+struct Refined {
+  pose::Bundle before;
+  pose::RefineReport report;
+};
+
+Refined refine(Options& options, pose::ColmapBundle& refined, const io::ColmapModel& model) {
+  pose::bring_to_metres(refined.bundle, options.refine.adjust);
+  log_info("Begins with points {:.3g} m away, in the middle",
+           pose::median_distance(refined.bundle));
+  pose::Bundle before = refined.bundle;
+  if (options.refine.adjust.free[pose::kFocalNumber])
+    options.refine.between_rounds = [&] { place_again(refined, model); };
+  pose::RefineReport report = pose::refine(refined.bundle, options.refine,
+                                           [](const std::string& line) { log_info("{}", line); });
+  return {std::move(before), std::move(report)};
+}
+
 // What is left of `images`, said where it is not all.
-void warn(const pose::RefineReport& report, const pose::Bundle& bundle, const Options& options) {
+void warn(const pose::RefineReport& report, const pose::Bundle& bundle,
+          const pose::RefineOptions& options, std::vector<std::string>& unused) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
       log_warning("{}: too few observations fit; it is left out", bundle.images[i].name);
+  for (const std::size_t position : lost_positions(bundle, options.adjust)) {
+    unused.push_back("--scale-from: the position of " +
+                     bundle.images[options.adjust.positions[position].image].name);
+    log_warning("{}: its image is left out, and it does not count", unused.back());
+  }
   if (report.repeated > 0)
     log_info("{} observations are of an image that sees the point already, and do not count",
              report.repeated);
-  for (const std::string& line : pose::dropped_lines(report, options.refine.tracks))
+  for (const std::string& line : pose::dropped_lines(report, options.tracks))
     log_warning("{}", line);
-  if (const auto freed = pose::number_that_does_not_fit(bundle, options.refine.adjust))
-    log_warning("{}", pose::warning_of(*freed, report.uncertainty.scale_sigma));
   if (!report.last.converged)
     log_warning("Not converged after {} iterations", report.last.iterations);
 }
 
-// All files or none.
+void write_model(const Options& options, const fs::path& folder, const io::ColmapModel& model,
+                 const io::Housing& housing) {
+  io::write_housing(folder / "housing.json", housing);
+  if (options.underwater) {
+    make_folder(folder / "colmap-underwater");
+    io::write_underwater_text(folder / "colmap-underwater", model);
+    io::write_underwater_binary(folder / "colmap-underwater", model);
+  }
+  make_folder(folder / "sparse");
+  io::write_colmap_text(folder / "sparse", model);
+}
+
+// All files or none; the report a second time once standard deviations are known.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
-           const LocalFrame& frame, const io::Housing& housing, const std::string& report) {
+           const LocalFrame& frame, const io::Housing& housing, const Results& results) {
   io::ColmapModel result = to_model(refined, model);
   io::leave(frame, result);
-  write_folder(options.output, [&](const fs::path& folder) {
-    io::write_housing(folder / "housing.json", housing);
-    write_atomically(folder / "report.json", report);
-    if (options.underwater) {
-      make_folder(folder / "colmap-underwater");
-      io::write_underwater_text(folder / "colmap-underwater", result);
-      io::write_underwater_binary(folder / "colmap-underwater", result);
-    }
-    make_folder(folder / "sparse");
-    io::write_colmap_text(folder / "sparse", result);
-  });
+  const pose::Uncertainty known = write_results(
+      options.output,
+      [&](const fs::path& folder) { write_model(options, folder, result, housing); }, results,
+      [&] {
+        log_info("Refined model in {}", options.output.string());
+        result = {};
+        return pose::uncertainty(refined.bundle, results.options);
+      });
+  for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
+  if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
+    log_warning("{}", pose::warning_of(*freed, known.scale_sigma));
 }
 
 int run(int argc, char** argv) {
@@ -182,48 +232,54 @@ int run(int argc, char** argv) {
   io::ColmapModel model = io::read_colmap_model(folder);
   // Adjusting in the world, the solver would take steps for small that are not, against coordinates
   // of millions.
-  LocalFrame frame = io::enter_local_frame(model);
+  const LocalFrame frame_of_model = io::enter_local_frame(model);
   const Lenses lenses = load_lenses(options, model);
   warn_of_other_lenses(options, model, lenses);
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
     log_warning("{}: no image goes by {}",
-                (options.housing.empty() ? options.lens : options.housing).string(), entry);
-  pose::AdjustOptions& adjust = options.refine.adjust;
-  add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder,
-            refined.bundle, adjust);
-  if (!adjust.positions.empty()) frame = enter_local_frame(adjust.positions);
+                (!options.housing.empty() ? options.housing
+                 : options.lens.empty()   ? options.model
+                                          : options.lens)
+                    .string(),
+                entry);
   if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
         return camera.measured.port.has_value();
       }))
     fail("no image is behind a port: there is nothing to refine");
-  adjust.poses_known = options.poses == "known";
-  pose::set_free_numbers(options.refine_list, options.sigmas, refined.bundle, adjust);
+  UnusedInput unused(options.allow_missing);
+  LocalFrame frame = set_known(options, refined.bundle, frame_of_model, unused);
   check_output(options, folder);
   log_info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
            model.points.size(), refined.bundle.observations.size());
   if (refined.unseen > 0)
     log_warning("{} observations lie where the lens in air images nothing", refined.unseen);
 
-  pose::bring_to_metres(refined.bundle, adjust);
-  log_info("Begins with points {:.3g} m away, in the middle",
-           pose::median_distance(refined.bundle));
-  const pose::Bundle before = refined.bundle;
-  if (adjust.free[pose::kFocalNumber])
-    options.refine.between_rounds = [&] { place_again(refined, model); };
-  const pose::RefineReport report = pose::refine(
-      refined.bundle, options.refine, [](const std::string& line) { log_info("{}", line); });
-  const auto images = errors_by_image(before, refined.bundle);
-  for (const std::string& line :
-       report_lines(report, images, refined.bundle, refined.ports, adjust))
-    log_info("{}", line);
+  std::optional<pose::ColmapBundle> start;
+  if (options.allow_missing && !options.scale_from.empty()) start = refined;
+  Refined done = refine(options, refined, model);
+  if (!done.report.lost.empty()) {
+    unused.report("--scale-from " + options.scale_from + ": " + done.report.lost.front());
+    options.scale_from.clear();
+    refined = *std::move(start);
+    frame = set_known(options, refined.bundle, frame_of_model, unused);
+    done = refine(options, refined, model);
+  }
+  if (!unused.lines().empty())
+    log_warning("The model has no scale: what --scale-from says is not used");
+  Results results{done.report,
+                  errors_by_image(done.before, refined.bundle),
+                  refined.bundle,
+                  refined.ports,
+                  options.refine.adjust,
+                  unused.lines(),
+                  !unused.lines().empty()};
+  for (const std::string& line : error_lines(results)) log_info("{}", line);
   const io::Housing result = to_housing(refined, housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
-  warn(report, refined.bundle, options);
-  write(options, refined, model, frame, result,
-        report_json(report, images, refined.bundle, refined.ports, adjust));
-  log_info("Refined model in {}", options.output.string());
+  warn(done.report, refined.bundle, options.refine, results.unused);
+  write(options, refined, model, frame, result, results);
   return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/unused_input.h"
 
 namespace fs = std::filesystem;
 using axial::fail;
@@ -22,6 +23,9 @@ void check(const Options& options) {
     fail("--poses {}: must be adjust or known", options.poses);
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: --poses known says that the model is in metres", options.scale_from);
+  if (options.scale_from.empty() && axial::given(options.parsed, "scale-sigma"))
+    fail("--scale-sigma {}: --scale-from is missing, of which it is the doubt",
+         options.scale_sigma);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
@@ -68,6 +72,7 @@ Options parse_command_line(int argc, const char* const* argv) {
           "also write colmap-underwater/, the model with its ports for COLMAP-Underwater")
       .add_with_default("min-angle", &options.refine.tracks.min_angle,
                         "points seen under smaller angles are dropped [degrees]");
+  axial::UnusedInput::declare(program.visible, options.allow_missing);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   const axial::CommonOptions& common = options.parsed.common;

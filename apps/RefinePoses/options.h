@@ -16,6 +16,7 @@ struct Options {
   std::filesystem::path output;   // folder
   bool underwater = false;        // also write the model for COLMAP-Underwater
   std::string poses = "adjust";   // "adjust" or "known"
+  bool allow_missing = false;     // go on without a scale that cannot be used
   std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
   double scale_sigma = 0.001;     // [m]
   std::string refine_list;        // see pose/free_numbers.h

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "io/json.h"
@@ -22,6 +23,30 @@ std::vector<std::vector<double>> errors_of_images(const Bundle& bundle) {
   return errors;
 }
 
+std::string doubt(double sigma) {
+  return std::isfinite(sigma) ? fmt::format(" +- {:.2g}", sigma) : " (not known)";
+}
+
+double scale_sigma(const Results& results, double sigma) {
+  return results.scale_lost ? std::numeric_limits<double>::infinity() : sigma;
+}
+
+// JSON has no infinity: null says that nothing tells the number.
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+// What is known before standard deviations are: the noise.
+pose::Uncertainty not_computed(const Results& results) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  pose::Uncertainty none;
+  none.pixel_sigma = pose::observed_pixel_sigma(results.bundle, results.options);
+  none.camera_sigmas.assign(results.bundle.cameras.size(),
+                            pose::HousingChange<double>::Constant(kInfinite));
+  none.scale_sigma = results.options.poses_known ? 0 : kInfinite;
+  return none;
+}
+
 }  // namespace
 
 std::vector<ImageErrors> errors_by_image(const Bundle& before, const Bundle& after) {
@@ -33,58 +58,63 @@ std::vector<ImageErrors> errors_by_image(const Bundle& before, const Bundle& aft
   return rows;
 }
 
-std::vector<std::string> report_lines(const pose::RefineReport& report,
-                                      std::span<const ImageErrors> images, const Bundle& bundle,
-                                      std::span<const std::string> ports,
-                                      const pose::AdjustOptions& options) {
+std::vector<std::string> error_lines(const Results& results) {
+  const pose::RefineReport& report = results.report;
   std::vector<std::string> lines;
   lines.push_back(fmt::format("{:<32} {:>12} {:>11} {:>11}", "image", "observations", "before [px]",
                               "after [px]"));
-  for (const ImageErrors& image : images)
+  for (const ImageErrors& image : results.images)
     lines.push_back(fmt::format("{:<32} {:>12} {:>11.3f} {:>11.3f}", image.name, image.observations,
                                 image.rms_before, image.rms_after));
   lines.push_back(fmt::format("{:<32} {:>12} {:>11.3f} {:>11.3f}", "all", report.observations_after,
                               report.rms_before, report.rms_after));
-  for (std::size_t i = 0; i < bundle.cameras.size(); ++i)
-    for (const pose::FreeValue& value :
-         pose::free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
-      lines.push_back(fmt::format("Camera {} behind {}: {} {:.6g} +- {:.2g} {}", i + 1, ports[i],
-                                  value.name, value.now, value.sigma, value.unit));
-  if (!options.poses_known)
-    lines.push_back(fmt::format("All lengths are known to {:.3g} % (one standard deviation)",
-                                report.uncertainty.scale_sigma * 100));
   return lines;
 }
 
-std::string report_json(const pose::RefineReport& report, std::span<const ImageErrors> images,
-                        const Bundle& bundle, std::span<const std::string> ports,
-                        const pose::AdjustOptions& options) {
+std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i)
+    for (const pose::FreeValue& value :
+         pose::free_values(results.bundle.cameras[i], known.camera_sigmas[i], results.options))
+      lines.push_back(fmt::format("Camera {} behind {}: {} {:.6g}{} {}", i + 1, results.ports[i],
+                                  value.name, value.now, doubt(value.sigma), value.unit));
+  if (results.options.poses_known) return lines;
+  const double scale = scale_sigma(results, known.scale_sigma);
+  lines.push_back(
+      std::isfinite(scale)
+          ? fmt::format("All lengths are known to {:.3g} % (one standard deviation)", scale * 100)
+          : "All lengths: not known: the model has no scale");
+  return lines;
+}
+
+std::string report_json(const Results& results, const pose::Uncertainty* known) {
   using Json = nlohmann::ordered_json;
+  const pose::RefineReport& report = results.report;
+  const pose::Uncertainty uncertainty = known ? *known : not_computed(results);
   Json json{{"rms_before_px", report.rms_before},
             {"rms_after_px", report.rms_after},
-            {"pixel_sigma", report.uncertainty.pixel_sigma},
+            {"pixel_sigma", uncertainty.pixel_sigma},
             {"converged", report.last.converged},
             {"observations_before", report.observations_before},
             {"observations_after", report.observations_after},
             {"points_before", report.points_before},
             {"points_after", report.points_after}};
-  // JSON has no infinity: null says that nothing tells the scale.
-  json["scale_sigma"] = std::isfinite(report.uncertainty.scale_sigma)
-                            ? Json(report.uncertainty.scale_sigma)
-                            : Json(nullptr);
-  for (const ImageErrors& image : images)
+  json["scale_sigma"] = finite_or_null(scale_sigma(results, uncertainty.scale_sigma));
+  if (!known) json["standard_deviations"] = "missing";
+  if (!results.unused.empty()) json["unused"] = results.unused;
+  for (const ImageErrors& image : results.images)
     json["images"].push_back({{"name", image.name},
                               {"observations", image.observations},
                               {"rms_before_px", image.rms_before},
                               {"rms_after_px", image.rms_after}});
-  for (std::size_t i = 0; i < bundle.cameras.size(); ++i) {
-    Json camera{{"id", i + 1}, {"port", ports[i]}, {"free", Json::array()}};
-    for (const pose::FreeValue& value :
-         pose::free_values(bundle.cameras[i], report.uncertainty.camera_sigmas[i], options))
+  for (std::size_t i = 0; i < results.bundle.cameras.size(); ++i) {
+    Json camera{{"id", i + 1}, {"port", results.ports[i]}, {"free", Json::array()}};
+    for (const pose::FreeValue& value : pose::free_values(
+             results.bundle.cameras[i], uncertainty.camera_sigmas[i], results.options))
       camera["free"].push_back({{"name", value.name},
                                 {"unit", value.unit},
                                 {"value", value.now},
-                                {"sigma", value.sigma}});
+                                {"sigma", finite_or_null(value.sigma)}});
     json["cameras"].push_back(camera);
   }
   // Names in another encoding than UTF-8 are not worth the loss of the report.

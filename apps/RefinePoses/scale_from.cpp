@@ -20,6 +20,19 @@ namespace {
 using namespace axial;
 using pose::KnownDistance;
 
+const std::string kOption = "--scale-from ";
+
+// What was given is right, and of no use with this model.
+class NoUse : public Error {
+ public:
+  using Error::Error;
+};
+
+template <class... Args>
+[[noreturn]] void no_use(fmt::format_string<Args...> format, Args&&... args) {
+  throw NoUse(fmt::format(format, std::forward<Args>(args)...));
+}
+
 template <class T>
 T number(const std::string& text, const std::string& where) {
   const std::optional<T> value = parse_number<T>(text);
@@ -40,7 +53,7 @@ std::optional<std::size_t> find_image(const pose::Bundle& bundle, const std::str
 std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
                         const std::string& where) {
   const std::optional<std::size_t> image = find_image(bundle, name);
-  if (!image) fail("{}: the model has no image '{}'", where, name);
+  if (!image) no_use("{}: the model has no image '{}'", where, name);
   return *image;
 }
 
@@ -65,6 +78,20 @@ std::vector<std::string> names_with_commas(const std::vector<std::string>& words
   return found;
 }
 
+std::size_t point_named(const pose::Bundle& bundle, const std::string& word,
+                        const std::string& where) {
+  const auto id = number<std::size_t>(word, where);
+  if (std::ranges::find(bundle.points, id, &pose::BundlePoint::source) == bundle.points.end())
+    no_use("{}: point {} is not in the model", where, id);
+  return id;
+}
+
+Eigen::Vector3d place_of(const pose::Bundle& bundle, KnownDistance::Between between,
+                         std::size_t end) {
+  if (between == KnownDistance::Between::images) return bundle.images[end].pose.centre;
+  return bundle.points[point_of(bundle, end)].position;
+}
+
 KnownDistance known_distance(KnownDistance::Between between, const std::string& list, double sigma,
                              const pose::Bundle& bundle, const std::string& where) {
   std::vector<std::string> words = io::split_list(list, where);
@@ -74,17 +101,17 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   KnownDistance known;
   known.between = between;
   const auto end = [&](const std::string& word) {
-    if (between == KnownDistance::Between::images) return image_named(bundle, word, where);
-    const auto id = number<std::size_t>(word, where);
-    point_of(bundle, id);
-    return id;
+    return between == KnownDistance::Between::images ? image_named(bundle, word, where)
+                                                     : point_named(bundle, word, where);
   };
+  known.metres = number<double>(words[2], where);
   known.first = end(words[0]);
   known.second = end(words[1]);
-  known.metres = number<double>(words[2], where);
   known.sigma = sigma;
   if (!(known.metres > 0)) fail("{}: {} m is no distance", where, words[2]);
   if (known.first == known.second) fail("{}: both ends are the same", where);
+  if (place_of(bundle, between, known.first) == place_of(bundle, between, known.second))
+    no_use("{}: both ends are in one place in the model", where);
   return known;
 }
 
@@ -99,39 +126,37 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
     model.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
   }
   if (relative_width(known) < kLineWidth || relative_width(model) < kLineWidth)
-    fail("{}: the positions lie on one line, which leaves the model free to roll about it",
-         file.string());
+    no_use("{}: the positions lie on one line, which leaves the model free to roll about it",
+           file.string());
 }
 
 // A survey's list names photographs that COLMAP found no pose for, too: they are said and passed
 // over.
-void read_positions(const std::filesystem::path& file, double sigma, const pose::Bundle& bundle,
-                    pose::AdjustOptions& adjust) {
+std::vector<pose::KnownPosition> read_positions(const std::filesystem::path& file, double sigma,
+                                                const pose::Bundle& bundle) {
+  std::vector<pose::KnownPosition> positions;
   std::map<std::string, std::size_t> images;
   for (std::size_t i = 0; i < bundle.images.size(); ++i) images.emplace(bundle.images[i].name, i);
   const auto is_image = [&](const std::string& name) { return images.contains(name); };
   std::vector<std::string> without_pose;
   for (const io::NamedPosition& known : io::read_positions(file, is_image)) {
     if (known.known)
-      adjust.positions.push_back({images.at(known.name), known.position, sigma});
+      positions.push_back({images.at(known.name), known.position, sigma});
     else
       without_pose.push_back(
           fmt::format("{}:{}: the model has no image '{}'", file.string(), known.line, known.name));
   }
-  if (adjust.positions.size() < 3)
-    fail("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),
-         adjust.positions.size(), without_pose.empty() ? "" : "; " + without_pose.front());
+  if (positions.size() < 3)
+    no_use("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),
+           positions.size(), without_pose.empty() ? "" : "; " + without_pose.front());
   for (const std::string& line : without_pose) log_warning("{}", line);
-  check_positions(adjust.positions, bundle, file);
+  check_positions(positions, bundle, file);
+  return positions;
 }
 
-}  // namespace
-
-void add_known(const std::string& scale_from, double sigma,
-               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
-               pose::AdjustOptions& adjust) {
-  if (scale_from.empty()) return;
-  const std::string where = "--scale-from " + scale_from;
+void add(const std::string& scale_from, double sigma, const std::filesystem::path& working_folder,
+         const pose::Bundle& bundle, pose::AdjustOptions& adjust) {
+  const std::string where = kOption + scale_from;
   const std::size_t colon = scale_from.find(':');
   const std::string kind = scale_from.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : scale_from.substr(colon + 1);
@@ -142,7 +167,21 @@ void add_known(const std::string& scale_from, double sigma,
     adjust.distances.push_back(
         known_distance(KnownDistance::Between::points, rest, sigma, bundle, where));
   else if (kind == "positions")
-    read_positions(working_folder / rest, sigma, bundle, adjust);
+    adjust.positions = read_positions(working_folder / rest, sigma, bundle);
   else
     fail("{}: must begin with images:, points: or positions:", where);
+}
+
+}  // namespace
+
+void add_known(const std::string& scale_from, double sigma,
+               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
+               pose::AdjustOptions& adjust, UnusedInput& unused) {
+  if (scale_from.empty()) return;
+  try {
+    add(scale_from, sigma, working_folder, bundle, adjust);
+  } catch (const NoUse& reason) {
+    const std::string what = reason.what();
+    unused.report((what.starts_with(kOption) ? "" : kOption) + what);
+  }
 }

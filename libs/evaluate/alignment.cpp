@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "scene/decompositions.h"
@@ -78,6 +79,20 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
   }
   result.rms = std::sqrt(sum / static_cast<double>(source.size()));
   return result;
+}
+
+std::vector<std::string> not_matched(const CentreAlignment& alignment,
+                                     const io::ColmapModel& reference) {
+  const std::set<std::string> matched(alignment.names.begin(), alignment.names.end());
+  std::size_t count = 0;
+  const std::string* first = nullptr;
+  for (const io::ColmapImage& image : reference.images) {
+    if (matched.contains(image.name)) continue;
+    if (count++ == 0) first = &image.name;
+  }
+  if (count == 0) return {};
+  return {fmt::format("{} of {} centres are of no image of the model, and do not count, first {}",
+                      count, reference.images.size(), *first)};
 }
 
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,

@@ -46,6 +46,11 @@ struct CentreAlignment {
 // by name. Error as fit_similarity.
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
 
+// One line where `reference` has images that `alignment`, of align_centres, found none of the same
+// name for: their number and the first. Empty where all have one.
+std::vector<std::string> not_matched(const CentreAlignment& alignment,
+                                     const io::ColmapModel& reference);
+
 // The similarity of world to world that `similarity` is from coordinates in `from` to those in
 // `to`.
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
@@ -80,6 +81,14 @@ Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
+
+// What the writers make of a placement, for files with further properties: the comment line that
+// says where positions count from (empty in the world), the header's lines of the position, and the
+// bytes of a position.
+std::string geo_comment(const PlyPlacement& placement);
+const char* position_properties(const PlyPlacement& placement);
+void append_position(std::string& bytes, const Eigen::Vector3f& position,
+                     const PlyPlacement& placement);
 
 // True if the header declares a non-empty face element.
 bool ply_has_faces(const std::filesystem::path& path);

@@ -39,17 +39,6 @@ void write_vector(ByteWriter& out, const Eigen::Vector3f& v) {
   out.write(std::span(v.data(), 3));
 }
 
-const char* position_properties(const PlyPlacement& placement) {
-  return placement.world ? kWorldPosition : kPosition;
-}
-
-// The comment line that says where positions count from, where that is not the world's origin.
-std::string geo_comment(const PlyPlacement& placement) {
-  if (placement.world || placement.frame.is_world()) return {};
-  const Eigen::Vector3d& o = placement.frame.origin;
-  return fmt::format("comment geo_offset {} {} {}\n", o.x(), o.y(), o.z());
-}
-
 void write_position(ByteWriter& out, const Eigen::Vector3f& v, const PlyPlacement& placement) {
   if (!placement.world) return write_vector(out, v);
   const Eigen::Vector3d world = placement.frame.to_world(v.cast<double>());
@@ -82,6 +71,23 @@ std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placemen
 }
 
 }  // namespace
+
+const char* position_properties(const PlyPlacement& placement) {
+  return placement.world ? kWorldPosition : kPosition;
+}
+
+std::string geo_comment(const PlyPlacement& placement) {
+  if (placement.world || placement.frame.is_world()) return {};
+  const Eigen::Vector3d& o = placement.frame.origin;
+  return fmt::format("comment geo_offset {} {} {}\n", o.x(), o.y(), o.z());
+}
+
+void append_position(std::string& bytes, const Eigen::Vector3f& position,
+                     const PlyPlacement& placement) {
+  ByteWriter out;
+  write_position(out, position, placement);
+  bytes += out.bytes();
+}
 
 struct CloudWriter::File {
   AtomicFile file;

@@ -68,6 +68,12 @@ void warn_of_other_ports(const Housing& taken, const std::string& taken_from, co
                 taken_from, other_from, image);
 }
 
+bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model) {
+  return !housing.ports.empty() && std::ranges::all_of(model.images, [&](const ColmapImage& image) {
+    return housing.port_of(image.name, image.camera) == "none";
+  });
+}
+
 void warn_of_housing_beside(const Scene& scene, const fs::path& scene_path, const Housing& taken,
                             const fs::path& file) {
   const fs::path beside = housing_beside(scene_path);

@@ -24,6 +24,9 @@ std::string image_with_other_port(const Housing& taken, const Housing& other,
 void warn_of_other_ports(const Housing& taken, const std::string& taken_from, const Housing& other,
                          const std::string& other_from, const ColmapModel& model);
 
+// Whether `housing` has ports, and gives none of the model's images one.
+bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model);
+
 // A warning if the housing file beside `scene_path` is there, is not `file`, from which `taken` was
 // read, and gives some image of the scene another port, or none, or cannot be read.
 void warn_of_housing_beside(const Scene& scene, const std::filesystem::path& scene_path,

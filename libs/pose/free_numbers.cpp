@@ -36,6 +36,10 @@ bool any_behind(const Bundle& bundle) {
 }
 
 void check_ports(const std::string& refine, const Words& words, const Bundle& bundle) {
+  const bool in_air = std::ranges::any_of(
+      bundle.cameras, [](const BundleCamera& camera) { return !camera.measured.port; });
+  if (in_air && words.size() > words.count("focal"))
+    fail("--refine {}: there are images in air, which have no port", refine);
   const bool of_flat = words.contains("normal") || words.contains("distance");
   if (of_flat && words.contains("centre"))
     fail("--refine {}: a flat port has no centre, and a dome only that", refine);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "pose/known.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {
@@ -136,6 +137,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   report.points_before = bundle.points.size();
   AdjustOptions adjusting = options.adjust;
   report.rms_before = root_mean_square(reprojection_errors(bundle));
+  report.lost = lost_knowledge(bundle, adjusting);
+  if (!report.lost.empty()) return report;
 
   // Wide at first: what a pinhole engine left is no outlier yet.
   TrackLimits limits = options.tracks;
@@ -149,6 +152,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");
+    report.lost = lost_knowledge(bundle, adjusting);
+    if (!report.lost.empty()) return report;
     if (progress)
       progress(fmt::format("round {}: {} iterations, RMS {:.3f} px, {} observations dropped",
                            round + 1, report.last.iterations,
@@ -160,7 +165,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   report.last = adjust(bundle, adjusting);
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
-  report.uncertainty = uncertainty(bundle, adjusting);
+  report.lost = lost_knowledge(bundle, adjusting);
   report.rms_after = root_mean_square(reprojection_errors(bundle));
   report.observations_after = bundle.observations.size();
   report.points_after = bundle.points.size();

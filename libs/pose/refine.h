@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "pose/adjust.h"
 #include "pose/tracks.h"
@@ -26,7 +27,9 @@ struct RefineReport {
   DropCounts dropped;        // the others that are not left
   std::size_t points_before = 0, points_after = 0;
   AdjustReport last;
-  Uncertainty uncertainty;
+  // Not empty: refining ended early, because what is known in metres has lost its hold on the
+  // bundle; the lines of lost_knowledge().
+  std::vector<std::string> lost;
 };
 
 // Brings a bundle of any scale to metres, a first guess, and triangulates it anew: a pinhole
@@ -36,7 +39,8 @@ struct RefineReport {
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
 // Rounds of adjusting and filtering a bundle in metres, the later ones with the noise that was
-// found as the observations' weight. Error for a bundle of which nothing is left.
+// found as the observations' weight. How well the result is known, uncertainty() of the bundle and
+// `options.adjust` tells. Error for a bundle of which nothing is left.
 RefineReport refine(Bundle& bundle, const RefineOptions& options,
                     const std::function<void(const std::string&)>& progress = {});
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "without_effect.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+
+#include "base/log.h"
+#include "cloud_exports.h"
+
+namespace densify {
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
+                          "postprocess-dmaps",     "projection", "warp",
+                          "overwrite-dmaps"};
+constexpr Names kFusion{"number-views-fuse", "estimate-colors", "estimate-normals", "crop-to-roi",
+                        "remove-dmaps"};
+constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",
+                        "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
+                        "roi-border",       "view-neighbors-file"};
+
+// Those of `names` that were given, as "--a, --b".
+std::string given_of(const Options& options, Names names) {
+  std::string listed;
+  for (const char* name : names)
+    if (axial::given(options.parsed, name))
+      listed += (listed.empty() ? "--" : ", --") + std::string(name);
+  return listed;
+}
+
+void warn_of(const Options& options, Names names, const std::string& cause) {
+  if (const std::string listed = given_of(options, names); !listed.empty())
+    axial::log_warning("{}: without effect {}", listed, cause);
+}
+
+// The first of the exports is made, and the others are not.
+std::string export_that_is_made(const Options& options) {
+  if (options.filter_point_cloud < 0) return "filter-point-cloud";
+  return options.export_number_views != 0 ? "export-number-views" : "estimate-scale";
+}
+
+void warn_of_rival_exports(const Options& options) {
+  const std::string made = export_that_is_made(options);
+  const std::string with = "with --" + made + ", which writes points that are there already";
+  if (made == "filter-point-cloud")
+    warn_of(options, {"export-number-views", "estimate-scale"}, with);
+  if (made == "export-number-views") warn_of(options, {"estimate-scale"}, with);
+  for (const Names& names : {kMatching, kFusion, kImages}) warn_of(options, names, with);
+  warn_of(options, {"fusion-mode", "output-view-neighbors-file"}, with);
+}
+
+}  // namespace
+
+void warn_of_options_without_effect(const Options& options) {
+  if (options.camera == CameraChoice::pinhole)
+    warn_of(options, {"housing"}, "with --camera-model pinhole");
+  if (only_exports(options)) return warn_of_rival_exports(options);
+  if (!options.neighbour_lists_output.empty()) {
+    for (const Names& names : {kMatching, kFusion})
+      warn_of(options, names, "with --output-view-neighbors-file, which matches nothing");
+    return;
+  }
+  if (!options.make_maps)
+    warn_of(options, kMatching, "with --fusion-mode -1, which takes depth maps as they are");
+  if (!options.fuse)
+    warn_of(options, kFusion, "with --fusion-mode 1, which makes depth maps alone");
+}
+
+void warn_of_options_without_effect(const Project& project, const Options& options) {
+  if (!project.housing) warn_of(options, {"projection"}, "in air: no image is behind a port");
+  if (!project.scene.region)
+    warn_of(options, {"roi-border"}, "for want of a region of interest (see --estimate-roi)");
+}
+
+}  // namespace densify

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/unused_input.h"
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace axial {
+
+void UnusedInput::declare(OptionList& list, bool& allowed) {
+  list.add_switch("allow-missing", &allowed,
+                  "go on, with a warning, where something that was given cannot be used");
+}
+
+void UnusedInput::report(const std::string& line) {
+  if (!allowed_) fail("{} (--allow-missing goes on without it)", line);
+  log_warning("{}; it is not used", line);
+  lines_.push_back(line);
+}
+
+}  // namespace axial

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/known.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "scene/decompositions.h"
+
+namespace axial::pose {
+namespace {
+
+// Sets of images and points that observations connect.
+class Connected {
+ public:
+  explicit Connected(const Bundle& bundle)
+      : parents_(bundle.images.size() + bundle.points.size()), images_(bundle.images.size()) {
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    for (const Observation& observation : bundle.observations)
+      parents_[root(observation.image)] = root(images_ + observation.point);
+  }
+
+  bool images(std::size_t a, std::size_t b) { return root(a) == root(b); }
+  bool points(std::size_t a, std::size_t b) { return root(images_ + a) == root(images_ + b); }
+
+ private:
+  std::size_t root(std::size_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+
+  std::vector<std::size_t> parents_;
+  std::size_t images_;
+};
+
+constexpr const char* kNoChain = "no chain of points leads from one end to the other";
+
+std::string left_out(const BundleImage& image) {
+  return fmt::format("image '{}' is left out: too few of its observations fit", image.name);
+}
+
+std::optional<std::string> why_lost_between_images(const Bundle& bundle,
+                                                   const KnownDistance& known) {
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  for (const std::size_t image : {known.first, known.second})
+    if (counts[image] == 0) return left_out(bundle.images[image]);
+  if (!Connected(bundle).images(known.first, known.second)) return kNoChain;
+  return {};
+}
+
+std::optional<std::string> why_lost_between_points(const Bundle& bundle,
+                                                   const KnownDistance& known) {
+  std::vector<std::size_t> ends;
+  for (const std::size_t source : {known.first, known.second}) {
+    const auto point = std::ranges::find(bundle.points, source, &BundlePoint::source);
+    const auto index = static_cast<std::size_t>(point - bundle.points.begin());
+    if (std::ranges::find(bundle.observations, index, &Observation::point) ==
+        bundle.observations.end())
+      return fmt::format(
+          "point {} is left out: fewer than two of its observations fit, or under too narrow an "
+          "angle",
+          source);
+    ends.push_back(index);
+  }
+  if (!Connected(bundle).points(ends[0], ends[1])) return kNoChain;
+  return {};
+}
+
+std::optional<std::string> why_lost_positions(const Bundle& bundle, const AdjustOptions& options) {
+  const std::vector<std::size_t> lost = lost_positions(bundle, options);
+  if (lost.empty()) return {};
+  const std::string first = left_out(bundle.images[options.positions[lost[0]].image]);
+  const std::size_t left = options.positions.size() - lost.size();
+  if (left < 3) return fmt::format("{} positions can be used, of at least 3: {}", left, first);
+  Eigen::Matrix3Xd places(3, left);
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < options.positions.size(); ++i)
+    if (!std::ranges::binary_search(lost, i)) places.col(column++) = options.positions[i].metres;
+  if (relative_width(places) < kLineWidth)
+    return fmt::format("the {} positions that can be used lie on one line: {}", left, first);
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOptions& options) {
+  const std::vector<std::size_t> counts = observations_by_image(bundle);
+  std::vector<std::size_t> lost;
+  for (std::size_t i = 0; i < options.positions.size(); ++i)
+    if (counts[options.positions[i].image] == 0) lost.push_back(i);
+  return lost;
+}
+
+std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options) {
+  std::vector<std::string> reasons;
+  for (const KnownDistance& known : options.distances) {
+    const bool images = known.between == KnownDistance::Between::images;
+    if (auto why = images ? why_lost_between_images(bundle, known)
+                          : why_lost_between_points(bundle, known))
+      reasons.push_back(*std::move(why));
+  }
+  if (auto why = why_lost_positions(bundle, options)) reasons.push_back(*std::move(why));
+  return reasons;
+}
+
+}  // namespace axial::pose

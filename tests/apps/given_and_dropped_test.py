@@ -1,0 +1,416 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user gives is used, refused, or said to be unused."""
+
+import json
+import math
+import os
+import tempfile
+
+import tiny_scene
+from far_from_origin_test import (FAR, centres_of, image_lines, move_model, points_of, positions,
+                                  split_ply)
+from programs import ProgramTest, cloud_size, files_below, main, read, run, write
+
+
+def thin(source, target, step):
+    """A model with every so manieth of the points: enough, and quickly refined."""
+    kept = [line for line in read(os.path.join(source, "points3D.txt")).decode().split("\n")
+            if line and line[0] != "#"][::step]
+    ids = {line.split(" ")[0] for line in kept}
+    lines = []
+    for pose, observations in image_lines(os.path.join(source, "images.txt")):
+        words = observations.split(" ")
+        words[2::3] = [word if word in ids else "-1" for word in words[2::3]]
+        lines += [pose, " ".join(words)]
+    write(os.path.join(target, "cameras.txt"), read(os.path.join(source, "cameras.txt")))
+    write(os.path.join(target, "images.txt"), "\n".join(lines) + "\n")
+    write(os.path.join(target, "points3D.txt"), "\n".join(kept) + "\n")
+
+
+class Scales(ProgramTest):
+    """RefinePoses with known lengths and places whose images or points do not fit."""
+
+    @classmethod
+    def setUpClass(cls):
+        shared = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(shared.cleanup)
+        cls.scene = os.path.join(shared.name, "scene")
+        made = run("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", 5,
+                   "--width", 320, "--height", 240, "--samples", 1, "-o", cls.scene)
+        assert made.returncode == 0, made.stderr
+        cls.sparse = os.path.join(cls.scene, "few")
+        thin(os.path.join(cls.scene, "sparse"), cls.sparse, 6)
+        cls.centres = centres_of(cls.sparse)
+        cls.names = sorted(cls.centres)
+
+    def model(self, spoiled):
+        """The model with the observations of the image `spoiled` given to other points."""
+        folder = self.path("model")
+        for part in ("cameras.txt", "points3D.txt"):
+            write(os.path.join(folder, part), read(os.path.join(self.sparse, part)))
+        lines = []
+        for pose, observations in image_lines(os.path.join(self.sparse, "images.txt")):
+            words = observations.split(" ")
+            if pose.endswith(" " + spoiled):
+                half = len(words) // 6
+                for k in (0, 1):
+                    words[k::3] = words[k::3][half:] + words[k::3][:half]
+            lines += [pose, " ".join(words)]
+        write(os.path.join(folder, "images.txt"), "\n".join(lines) + "\n")
+        return folder
+
+    def command(self, model, out, *arguments):
+        return ("RefinePoses", "-i", model, "--lens", self.sparse, "--housing",
+                os.path.join(self.scene, "housing.json"), "-o", self.path(out), *arguments)
+
+    def between_images(self, a, b):
+        return f"images:{a},{b},{math.dist(self.centres[a], self.centres[b])!r}"
+
+    def report(self, out):
+        return json.loads(read(self.path(out, "report.json")))
+
+    def assert_has_no_scale(self, result, out):
+        self.assertIn("The model has no scale", result.stdout)
+        self.assertIn("All lengths: not known", result.stdout)
+        self.assertNotIn("lengths are known", result.stdout)
+        self.assertNotIn(" inf", result.stdout)
+        self.assertIsNone(self.report(out)["scale_sigma"])
+        self.assertIn("--scale-from", self.report(out)["unused"][0])
+
+    def test_a_length_between_images_of_which_one_is_left_out(self):
+        for spoiled in (self.names[0], self.names[2]):
+            other = self.names[1]
+            model = self.model(spoiled)
+            for known in (self.between_images(spoiled, other), self.between_images(other, spoiled)):
+                said = self.refuses("--scale-from " + known, *self.command(
+                    model, "out", "--scale-from", known)).stderr
+                self.assertIn(f"image '{spoiled}' is left out", said)
+        result = self.succeeds(*self.command(model, "out", "--allow-missing", "--scale-from", known))
+        self.assert_has_no_scale(result, "out")
+        # As good as without it, and not begun from a scale that the bad image made.
+        self.succeeds(*self.command(model, "without"))
+        for name in ("images.txt", "points3D.txt", "cameras.txt"):
+            self.assertEqual(read(self.path("out", "sparse", name)),
+                             read(self.path("without", "sparse", name)), name)
+
+    def test_a_length_between_points_of_which_one_is_left_out(self):
+        places = points_of(self.sparse)
+        good, bad = sorted(places)[:2]
+        known = f"points:{good},{bad},{math.dist(places[good], places[bad])!r}"
+        model = self.model("")
+        lines = []
+        for pose, observations in image_lines(os.path.join(self.sparse, "images.txt")):
+            words = observations.split(" ")
+            for i in range(0, len(words) - 2, 3):
+                if words[i + 2] == str(bad):
+                    words[i] = repr(320 - float(words[i]))
+            lines += [pose, " ".join(words)]
+        write(os.path.join(model, "images.txt"), "\n".join(lines) + "\n")
+        said = self.refuses("--scale-from " + known, *self.command(
+            model, "out", "--scale-from", known)).stderr
+        self.assertRegex(said, f"point ({good}|{bad}) is left out")
+        self.assert_has_no_scale(self.succeeds(*self.command(
+            model, "out", "--allow-missing", "1", "--scale-from", known)), "out")
+
+    def test_positions(self):
+        spoiled = self.names[3]
+        model = self.model(spoiled)
+        for names in (self.names, self.names[1:4]):
+            write(self.path("known.txt"), "".join(
+                f"{name} " + " ".join(map(repr, self.centres[name])) + "\n" for name in names))
+            command = self.command(model, "out", "--scale-from",
+                                   "positions:" + self.path("known.txt"))
+            if len(names) == 3:
+                os.rename(self.path("out"), self.path("before"))
+                self.assertIn(spoiled, self.refuses("--scale-from positions:", *command).stderr)
+                self.assert_has_no_scale(self.succeeds(*command, "--allow-missing"), "out")
+                continue
+            said = self.succeeds(*command).stdout
+            self.assertIn(f"the position of {spoiled}", said)
+            self.assertIn("All lengths are known to", said)
+            self.assertEqual(self.report("out")["unused"],
+                             [f"--scale-from: the position of {spoiled}"])
+
+    def test_what_the_model_does_not_have(self):
+        write(self.path("lost.txt"), "lost1.jpg 1 0 0\nlost2.jpg 2 0 1\nlost3.jpg 3 0 0\n")
+        for known in (f"images:{self.names[0]},lost.jpg,1", "points:99999999,1,1",
+                      "positions:" + self.path("lost.txt")):
+            command = self.command(self.sparse, "out", "--scale-from", known)
+            self.refuses("--scale-from ", *command)
+            self.assert_has_no_scale(self.succeeds(*command, "--allow-missing"), "out")
+            for name in files_below(self.path("out")):
+                os.remove(self.path("out", name))
+
+    def test_what_is_used_is_not_said_to_be_missing(self):
+        known = self.between_images(self.names[0], self.names[4])
+        plain = self.succeeds(*self.command(self.sparse, "out", "--scale-from", known))
+        self.assertNotIn("not used", plain.stdout)
+        report = self.report("out")
+        self.assertEqual([key for key in report if key in ("unused", "standard_deviations")], [])
+        self.assertLess(report["scale_sigma"], 0.01)
+        self.succeeds(*self.command(self.sparse, "allowed", "--scale-from", known, "--allow-missing"))
+        for name in files_below(self.path("out")):
+            self.assertEqual(read(self.path("out", name)), read(self.path("allowed", name)), name)
+        # The standard deviations come when the model is there.
+        self.assertLess(plain.stdout.index("Refined model in"),
+                        plain.stdout.index("All lengths are known"))
+
+    def test_words_without_their_subject(self):
+        dome = json.loads(read(os.path.join(self.scene, "housing.json")))
+        name = next(iter(dome["ports"]))
+        dome["ports"][name] = {"type": "dome", "center_m": [0, 0, 0.002], "inner_radius_m": 0.05,
+                               "thickness_m": 0.007, "n_air": 1, "n_glass": 1.52, "n_water": 1.333}
+        write(self.path("dome.json"), json.dumps(dome))
+        mixed = json.loads(read(os.path.join(self.scene, "housing.json")))
+        mixed["images"] = {self.names[0]: "none"}
+        write(self.path("mixed.json"), json.dumps(mixed))
+        known = ("--scale-from", self.between_images(self.names[1], self.names[4]))
+        for expected, arguments in (
+                ("--scale-sigma 0.1: --scale-from is missing", ("--scale-sigma", "0.1")),
+                ("--normal-sigma 1: --refine does not name normal", ("--normal-sigma", "1")),
+                ("--focal-sigma 0.1: --refine does not name focal",
+                 ("--refine", "index", "--focal-sigma", "0.1")),
+                ("--refine centre: there is a flat port", ("--refine", "centre")),
+                ("--refine normal: there is a dome",
+                 ("--refine", "normal", "--housing", self.path("dome.json"))),
+                ("--refine index: there are images in air",
+                 ("--refine", "index", "--housing", self.path("mixed.json")))):
+            words = self.command(self.sparse, "out", *known[:0 if "--scale-sigma" in arguments else 2])
+            if "--housing" in arguments:
+                at = words.index("--housing")
+                words = words[:at] + words[at + 2:]
+            self.refuses(expected, *words, *arguments)
+
+
+def tiny(folder, shift=None):
+    """A scene in air and its import; with a shift, one in world coordinates that far away."""
+    tiny_scene.write_colmap(folder)
+    if shift:
+        move_model(os.path.join(folder, "sparse"), os.path.join(folder, "moved"), shift)
+        for part in ("cameras", "images", "points3D"):
+            os.rename(os.path.join(folder, "moved", part + ".txt"),
+                      os.path.join(folder, "sparse", part + ".txt"))
+    made = run("InterfaceCOLMAP", "-i", folder)
+    assert made.returncode == 0, made.stderr
+
+
+QUICK = ("--resolution-level", "0", "--min-resolution", "48")
+
+
+class Housings(ProgramTest):
+    def test_one_that_gives_no_image_a_port(self):
+        tiny(self.path("near"))
+        port = {"type": "flat", "distance_m": 0.02, "thickness_m": 0.014, "normal": [0, 0, 1],
+                "n_air": 1.0, "n_glass": 1.52, "n_water": 1.333}
+        write(self.path("other.json"), json.dumps(
+            {"version": 1, "ports": {"main": port}, "default": "none",
+             "images": {"lost.png": "main"}}))
+        write(self.path("truth.ply"), "ply\nformat ascii 1.0\nelement vertex 3\n"
+              "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+              "property list uchar int vertex_indices\nend_header\n"
+              "-1 -1 1\n1 -1 1\n0 1 1\n3 0 1 2\n")
+        housing = ("--housing", self.path("other.json"))
+        for command in (
+                ("InterfaceCOLMAP", "-i", self.path("near"), "-o", self.path("near", "again.mvs")),
+                ("EvaluateReconstruction", "-i", self.path("truth.ply"), "-m",
+                 self.path("truth.ply"), "--cameras", self.path("near"), "--samples", "100"),
+                ("DensifyPointCloud", "-i", self.path("near", "scene.mvs"), "-w",
+                 self.path("near"), *QUICK)):
+            said = self.refuses("--housing", *command, *housing).stderr
+            self.assertIn("gives no image a port", said)
+            said = self.succeeds(*command, *housing, "--allow-missing").stdout
+            self.assertIn("gives no image a port; it is not used", said)
+
+
+class Clouds(ProgramTest):
+    """-p, exports, and what goes with them."""
+
+    def densify(self, *arguments, name="near"):
+        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name),
+                             *QUICK, *arguments)
+
+    def test_inputs_are_not_written_over(self):
+        tiny(self.path("near"))
+        self.densify()
+        folder = self.path("near")
+        os.rename(os.path.join(folder, "scene_dense.ply"), os.path.join(folder, "given.ply"))
+        self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK,
+                      "--output-view-neighbors-file", "list.txt")
+        write(os.path.join(folder, "list.mvs"), read(os.path.join(folder, "list.txt")))
+        write(os.path.join(folder, "config.mvs"), "Min Views = 2\n")
+        os.link(os.path.join(folder, "list.txt"), os.path.join(folder, "linked.mvs"))
+        command = ("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK)
+        for option, given, out in (("-p", "given.ply", "given.mvs"),
+                                   ("--view-neighbors-file", "list.mvs", "list.mvs"),
+                                   ("--view-neighbors-file", "list.txt", "linked.mvs"),
+                                   ("--dense-config-file", "config.mvs", "config.mvs")):
+            before = read(os.path.join(folder, given))
+            self.refuses("--output-file", *command, option, given, "-o", out)
+            self.assertEqual(read(os.path.join(folder, given)), before)
+        self.refuses("--output-view-neighbors-file", *command, "-p", "given.ply",
+                     "--output-view-neighbors-file", "given.ply")
+        os.rename(os.path.join(folder, "given.ply"), os.path.join(folder, "x_filtered.ply"))
+        self.refuses("--output-file", *command, "-p", "x_filtered.ply", "-o", "x.mvs",
+                     "--filter-point-cloud", "-1")
+
+    def test_exports_of_a_far_scene_say_their_offset(self):
+        tiny(self.path("near"))
+        tiny(self.path("far"), FAR)
+        for arguments, names in ((("--filter-point-cloud", "-1000"), ("_filtered",)),
+                                 (("--export-number-views", "-2"), ("_2views",)),
+                                 (("--estimate-scale", "2"), ("_scale",))):
+            for name in ("near", "far"):
+                self.densify(*arguments, name=name)
+            for suffix in names:
+                near = split_ply(read(self.path("near", f"scene_dense{suffix}.ply")))
+                far = split_ply(read(self.path("far", f"scene_dense{suffix}.ply")))
+                self.assertEqual((near[1], far[1]), (None, FAR))
+                self.assertEqual((near[0], len(near[2])), (far[0], len(far[2])))
+                if suffix == "_scale":
+                    self.assertFalse(os.path.exists(self.path("far", "scene_dense_scale.mvs")))
+                    continue
+                self.assertFalse(os.path.exists(self.path("near", f"scene_dense{suffix}.geo.json")))
+                self.assertEqual(json.loads(read(self.path("far", f"scene_dense{suffix}.geo.json"))),
+                                 {"version": 1, "geo_offset": list(FAR)})
+            self.densify(*arguments, "--output-precision", "double", name="far")
+            world = split_ply(read(self.path("far", f"scene_dense{names[0]}.ply")))
+            self.assertIsNone(world[1])
+            self.assertIn("property float64 x", world[0])
+            self.assertEqual(len(world[2]) - len(far[2]), 12 * 60)  # its points
+
+    def test_a_cloud_given_to_a_far_scene_counts_from_its_own_offset(self):
+        """Local with a comment, double in the world, local without a comment: the same points."""
+        tiny(self.path("far"), FAR)
+        self.densify(name="far")
+        write(self.path("far", "local.ply"), read(self.path("far", "scene_dense.ply")))
+        plain = b"\n".join(line for line in read(self.path("far", "local.ply")).split(b"\n")
+                           if not line.startswith(b"comment geo_offset"))
+        write(self.path("far", "plain.ply"), plain)
+        self.densify("--output-precision", "double", name="far")
+        os.rename(self.path("far", "scene_dense.ply"), self.path("far", "world.ply"))
+        clouds = []
+        for given in ("local.ply", "plain.ply", "world.ply"):
+            self.densify("-p", given, "--filter-point-cloud", "-100000", name="far")
+            clouds.append(read(self.path("far", "scene_dense_filtered.ply")))
+        self.assertGreater(cloud_size(clouds[0]), 100)
+        self.assertEqual(clouds[0], clouds[1])
+        self.assertEqual(clouds[0], clouds[2])
+
+    def test_a_scene_is_exported_to_where_it_is_in_the_world(self):
+        for name, shift in (("near", None), ("far", FAR)):
+            tiny(self.path(name), shift)
+            given = centres_of(self.path(name, "sparse"))
+            self.succeeds("InterfaceCOLMAP", "-i", self.path(name, "scene.mvs"), "-o",
+                          self.path(name, "exported"))
+            found = centres_of(self.path(name, "exported", "sparse"))
+            self.assertEqual(set(found), set(given))
+            for image, centre in given.items():
+                self.assertLess(math.dist(found[image], centre), 1e-6)
+        places = {name: points_of(self.path(name, "exported", "sparse")) for name in ("near", "far")}
+        for point, place in places["near"].items():
+            moved = tuple(a + b for a, b in zip(place, FAR))
+            self.assertLess(math.dist(moved, places["far"][point]), 1e-5)
+
+    def test_a_water_surface_is_exported_with_a_far_scene(self):
+        cameras = []
+        for name, shift in (("near", (0, 0, 0)), ("far", FAR)):
+            tiny(self.path(name), shift if name == "far" else None)
+            write(self.path(name, "lake.json"), json.dumps(
+                {"version": 1, "default": "lake", "ports": {"lake": {
+                    "type": "water-surface", "normal": [0.1, 0, 1],
+                    "point_m": [a + b for a, b in zip(shift, (0, 0, 0.3))], "n_water": 1.333}}}))
+            self.succeeds("InterfaceCOLMAP", "-i", self.path(name), "--housing",
+                          self.path(name, "lake.json"))
+            self.succeeds("InterfaceCOLMAP", "-i", self.path(name, "scene.mvs"), "-o",
+                          self.path(name, "exported"))
+            lines = read(self.path(name, "exported", "sparse", "cameras.txt")).decode().split("\n")
+            cameras.append([[float(w) for w in line.split() if w[0] in "0123456789-."]
+                            for line in lines if line and line[0] != "#"])
+        self.assertEqual(len(cameras[0]), 3)
+        for a, b in zip(*cameras, strict=True):
+            for x, y in zip(a, b, strict=True):
+                self.assertAlmostEqual(x, y, delta=1e-6)
+
+    def test_a_scene_is_exported_with_the_points_of_a_cloud(self):
+        for name, shift in (("near", None), ("far", FAR)):
+            tiny(self.path(name), shift)
+            self.densify(name=name)
+            cloud = read(self.path(name, "scene_dense.ply"))
+            self.succeeds("InterfaceCOLMAP", "-i", self.path(name, "scene.mvs"), "-p",
+                          self.path(name, "scene_dense.ply"), "-o", self.path(name, "exported"))
+            exported = points_of(self.path(name, "exported", "sparse"))
+            self.assertEqual(len(exported), cloud_size(cloud))
+            for place, expected in zip(exported.values(), positions(cloud), strict=True):
+                self.assertLess(math.dist(place, expected), 1e-5)
+            self.refuses("--pointcloud-file", "InterfaceCOLMAP", "-i", self.path(name), "-p",
+                         self.path(name, "scene_dense.ply"))
+
+
+class NoEffect(ProgramTest):
+    """An option that changes nothing with the others is named in a warning."""
+
+    def said(self, *command):
+        return [line for line in self.succeeds(*command).stdout.split("\n")
+                if "without effect" in line]
+
+    def test_in_densify(self):
+        tiny(self.path("near"))
+        command = ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("near"), *QUICK)
+        self.assertEqual(self.said(*command, "--iters", "2", "--estimate-colors", "2"), [])
+        for given, named in (
+                (("--fusion-mode", "1", "--estimate-colors", "1", "--remove-dmaps", "1"),
+                 "--estimate-colors, --remove-dmaps"),
+                (("--fusion-mode", "-1", "--iters", "4"), "--iters"),
+                (("--projection", "line-search"), "--projection"),
+                (("--estimate-roi", "0", "--roi-border", "2"), "--roi-border"),
+                (("--camera-model", "pinhole", "--housing", self.path("none.json")), "--housing"),
+                (("--estimate-scale", "1", "--export-number-views", "2"), "--estimate-scale"),
+                (("--filter-point-cloud", "-1", "--fusion-mode", "1"), "--fusion-mode")):
+            lines = self.said(*command, *given)
+            self.assertTrue(any(named + ": without effect" in line for line in lines), (given, lines))
+
+    def test_in_interface_colmap(self):
+        tiny(self.path("near"))
+        self.assertEqual(self.said("InterfaceCOLMAP", "-i", self.path("near")), [])
+        lines = self.said("InterfaceCOLMAP", "-i", self.path("near", "scene.mvs"), "-o",
+                          self.path("out"), "--undistort", "0", "--normalize", "1")
+        self.assertEqual(len(lines), 2, lines)
+
+    def test_in_evaluation(self):
+        tiny(self.path("near"))
+        self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("near"), *QUICK)
+        mesh = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                "end_header\n-1 -1 1\n1 -1 1\n0 1 1\n3 0 1 2\n")
+        write(self.path("truth.ply"), mesh)
+        command = ("EvaluateReconstruction", "-i", self.path("near", "scene_dense.ply"), "-m",
+                   self.path("truth.ply"), "--samples", "100")
+        self.assertEqual(self.said(*command), [])
+        self.assertEqual(len(self.said(*command, "--min-views", "3", "--picture-width", "100")), 2)
+        self.refuses("--estimated", *command, "--estimated", self.path("near"))
+        # Which of two models is read is said once.
+        for part in ("cameras", "images", "points3D"):
+            write(self.path("near", "sparse", "0", part + ".txt"),
+                  read(self.path("near", "sparse", part + ".txt")))
+        said = self.succeeds(*command, "--cameras", self.path("near")).stdout
+        self.assertEqual(said.count("is the model that is read"), 1, said)
+        said = self.succeeds(*command, "--cameras", self.path("near"), "--align", "centres",
+                             "--estimated", self.path("near", "sparse", "0")).stdout
+        self.assertEqual(said.count("is the model that is read"), 1, said)
+
+    def test_centres_of_other_images(self):
+        tiny(self.path("near"))
+        lines = read(self.path("near", "sparse", "images.txt")).decode().split("\n")
+        write(self.path("more", "images.txt"), "\n".join(
+            lines[:-1] + ["9 1 0 0 0 0 -0.3 0 1 lost.png", ""]) + "\n")
+        for part in ("cameras.txt", "points3D.txt"):
+            write(self.path("more", part), read(self.path("near", "sparse", part)))
+        command = ("AlignModel", "-i", self.path("near"), "-o", self.path("out"), "--reference")
+        said = self.succeeds(*command, self.path("more")).stdout
+        self.assertIn("1 of 4 centres are of no image of the model, and do not count, first lost.png",
+                      said)
+        self.assertNotIn("of no image", self.succeeds(*command, self.path("near")).stdout)
+
+
+if __name__ == "__main__":
+    main()
