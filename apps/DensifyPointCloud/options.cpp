@@ -17,7 +17,7 @@ namespace {
 // What the command line says, before it is checked and sorted into options structs.
 struct Raw {
   std::string input, output, housing, mask_path;
-  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config;
+  std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, report;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -58,6 +58,8 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("output-precision", &raw.precision,
                         "of the cloud's positions: float, counting from the scene's offset where "
                         "it has one (<scene>.geo.json), or double, in world coordinates")
+      .add("report-file", &raw.report,
+           "JSON file for how far depth maps, sparse points and cameras agree")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
@@ -242,6 +244,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.point_cloud = axial::in_working_folder(common, raw.point_cloud);
   options.neighbour_lists = axial::in_working_folder(common, raw.neighbour_lists);
   options.neighbour_lists_output = axial::in_working_folder(common, raw.neighbour_lists_output);
+  options.report = axial::in_working_folder(common, raw.report);
   options.mask_folder = axial::in_working_folder(common, raw.mask_path);
   if (!options.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
     options.ignore_mask_label = 0;
