@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 
+#include "agreement_check.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -60,11 +61,13 @@ class DepthMapRun {
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size())
       axial::log_info("All {} depth maps are there already", project_.references.size());
+    if (first > 0) compare(first - 1);
     for (std::size_t s = first; s < stages_.size(); ++s) {
       // Matching frees and takes large blocks all the time and holds few; afterwards it is the
       // other way round.
       if (!stages_[s].matches) axial::map_large_blocks();
       run_stage(s);
+      if (s == 0) compare(s);
       if (s > 0) remove_stage(s - 1);
       if (s + 1 < stages_.size() && options_.parsed.common.verbosity >= kVerbosityOfStages) draw(s);
     }
@@ -122,6 +125,13 @@ class DepthMapRun {
     if (reused > 0) axial::log_info("{}: {} maps were there already", stages_[stage].title, reused);
     previous_.reset();
     axial::return_freed_memory();
+  }
+
+  // Before the hours that later stages may take.
+  void compare(std::size_t stage) const {
+    check_agreement(project_, options_, plan_, [this, stage](std::size_t image) {
+      return axial::io::read_dmap(path(stage, image)).map;
+    });
   }
 
   void draw(std::size_t stage) const {

@@ -21,6 +21,7 @@ std::filesystem::path depth_map_path(const Project& project, const Options& opti
 //   adjust filter, as --postprocess-dmaps asks for them.
 // Every stage reads only complete files of the stage before, so that an interrupted run gives the
 // same bytes; a file counts only if its side file carries this run's fingerprint and stage.
+// The first stage's maps, or a resumed run's latest, are checked for agreement (agreement_check.h).
 // Several images at a time, as the plan allows. `existing`: the final maps before the run; others
 // than those of this run are overwritten (see check_overwriting).
 void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,

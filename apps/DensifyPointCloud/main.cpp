@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <optional>
 
+#include "agreement_check.h"
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -10,6 +11,7 @@
 #include "existing_maps.h"
 #include "fusion_stage.h"
 #include "image_store.h"
+#include "io/dmap.h"
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "memory_plan.h"
@@ -58,6 +60,15 @@ void say_who_may_read(const densify::Project& project, const densify::Options& o
       name.string(), name.string(), folder);
 }
 
+void check_existing_maps(const densify::Project& project, const densify::Options& options,
+                         const densify::MemoryPlan& plan, const densify::ExistingMaps& existing) {
+  densify::check_agreement(project, options, plan, [&](std::size_t image) {
+    return axial::io::read_dmap(densify::depth_map_path(project, options, image),
+                                densify::side_to_read(existing[image].origin))
+        .map;
+  });
+}
+
 int run(int argc, char** argv) {
   const densify::Options options = densify::parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -87,7 +98,10 @@ int run(int argc, char** argv) {
   densify::check_pinhole_export(project, options);
   std::optional<densify::ImageStore> images(std::in_place, project, options, plan.cached_images);
   images->check_all(plan.decodes);
-  if (options.make_maps) densify::make_depth_maps(project, options, plan, existing, *images);
+  if (options.make_maps)
+    densify::make_depth_maps(project, options, plan, existing, *images);
+  else
+    check_existing_maps(project, options, plan, existing);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");

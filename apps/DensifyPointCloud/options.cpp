@@ -21,6 +21,7 @@ namespace {
 struct Raw {
   std::string input, output, housing, mask_path;
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
+  std::string report;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -64,6 +65,8 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
       .add("pinhole-export", &raw.pinhole_export,
            "folder to write photographs, depth maps, cloud and scene to, resampled into pinhole "
            "cameras for OpenMVS's later programs")
+      .add("report-file", &raw.report,
+           "JSON file for how far depth maps, sparse points and cameras agree")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
@@ -249,6 +252,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.point_cloud = axial::in_working_folder(common, raw.point_cloud);
   options.neighbour_lists = axial::in_working_folder(common, raw.neighbour_lists);
   options.neighbour_lists_output = axial::in_working_folder(common, raw.neighbour_lists_output);
+  options.report = axial::in_working_folder(common, raw.report);
   options.mask_folder = axial::in_working_folder(common, raw.mask_path);
   if (!options.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
     options.ignore_mask_label = 0;

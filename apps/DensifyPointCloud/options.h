@@ -31,8 +31,9 @@ struct Options {
   std::filesystem::path neighbour_lists, neighbour_lists_output;  // empty: none
   std::filesystem::path dense_config;                             // empty: none
   std::filesystem::path mask_folder;
-  int ignore_mask_label = -1;  // below 0: no masks
-  int bit_depth = 0;           // of 16-bit images; 0: found
+  std::filesystem::path report;  // JSON; empty: none
+  int ignore_mask_label = -1;    // below 0: no masks
+  int bit_depth = 0;             // of 16-bit images; 0: found
 
   CameraChoice camera = CameraChoice::automatic;
   bool refractive = false;     // demand a housing

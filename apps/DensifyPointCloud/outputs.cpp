@@ -51,6 +51,10 @@ void check_outputs(const Options& options) {
                                 "--output-view-neighbors-file");
   axial::require_writable(options.output);
   axial::require_writable(cloud_file(options));
+  if (!options.report.empty()) {
+    axial::require_not_an_input(options.report, scene_files(options), "--report-file");
+    axial::require_writable(options.report);
+  }
   axial::require_writable(options.parsed.common.working_folder / "depth0000.dmap");
   axial::remove_abandoned(options.parsed.common.working_folder, "depth");
 }

@@ -61,7 +61,7 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene,
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
   axial::io::warn_of_housing_beside(scene, options.input, housing, file);
-  axial::io::attach_ports(scene, axial::io::in_frame(frame, housing));
+  axial::io::attach_ports(scene, axial::io::in_frame(frame, housing), file.string());
   std::size_t images = 0, wet = 0, flat = 0;
   for (const axial::SceneImage& image : scene.images) {
     const auto& port = image.camera.port;

@@ -12,6 +12,7 @@
 #include "io/calibmar.h"
 #include "io/colmap_folder.h"
 #include "io/colmap_parts.h"
+#include "io/port_values.h"
 
 namespace axial::io {
 namespace {
@@ -127,11 +128,16 @@ ColmapModel read_colmap_model(const fs::path& folder) {
   require_unique_names(model, where);
   check_references(model, where);
   warn_of_rivals(folder, form, model);
+  warn_of_port_values(model.cameras, part_file(folder, "cameras", form).string());
   return model;
 }
 
 std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
-  if (is_calibmar(path)) return {read_calibmar(path)};
+  if (is_calibmar(path)) {
+    const std::vector<ColmapCamera> camera{read_calibmar(path)};
+    warn_of_port_values(camera, path.string());
+    return camera;
+  }
   std::error_code error;
   const bool is_folder = fs::is_directory(path, error);
   const ModelForm form = is_folder                    ? cameras_form(path)
@@ -142,6 +148,7 @@ std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
       form == ModelForm::binary ? read_cameras_binary(file) : read_cameras_text(file);
   require_unique_ids(cameras, "camera", path.string());
   if (is_folder) warn_of_rival_cameras(path, form, cameras);
+  warn_of_port_values(cameras, file.string());
   return cameras;
 }
 

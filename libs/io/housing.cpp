@@ -9,6 +9,7 @@
 #include "io/calibmar.h"
 #include "io/image_names.h"
 #include "io/port_json.h"
+#include "io/port_values.h"
 #include "io/text_reader.h"
 
 namespace axial::io {
@@ -159,7 +160,9 @@ void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
            file.string(), name);
 }
 
-Housing read_housing(const fs::path& path) {
+namespace {
+
+Housing parse_housing(const fs::path& path) {
   if (is_calibmar(path)) return calibmar_housing(path);
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": housing"};
@@ -171,6 +174,16 @@ Housing read_housing(const fs::path& path) {
   housing.default_port = port_name(root, "default", housing);
   if (root.has("cameras")) read_cameras(root.at("cameras"), housing);
   if (root.has("images")) read_images(root.at("images"), housing);
+  return housing;
+}
+
+}  // namespace
+
+Housing read_housing(const fs::path& path, PortValues values) {
+  Housing housing = parse_housing(path);
+  if (values == PortValues::checked)
+    for (const auto& [name, port] : housing.ports)
+      warn_of_port_values(port, fmt::format("{}: housing.ports.{}", path.string(), name));
   return housing;
 }
 
@@ -201,7 +214,7 @@ fs::path housing_beside(const fs::path& scene_path) {
   return path;
 }
 
-void attach_ports(Scene& scene, const Housing& housing) {
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file) {
   std::set<std::string> used;
   for (SceneImage& image : scene.images) {
     const auto entry = housing.entry_of(fs::path(image.path).generic_string());
@@ -219,6 +232,7 @@ void attach_ports(Scene& scene, const Housing& housing) {
   }
   for (const auto& [name, unused] : housing.images)
     if (!used.contains(name)) log_warning("housing: no image goes by images.{}", name);
+  warn_of_ports_in_scene(scene, housing, file);
 }
 
 }  // namespace axial::io

@@ -61,7 +61,10 @@ void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& 
 // water less dense than air), a port name that is not defined, a version other than 1, an unknown
 // port type. A normal off unit length by more than 1e-6 is normalised with a warning. Of Calibmar's
 // calibration.yaml (calibmar.h) the port, for every image; Error if it has none.
-Housing read_housing(const std::filesystem::path& path);
+// Values that no port has under water are warnings (warn_of_port_values), unless `values` passes
+// over them.
+enum class PortValues { checked, passed_over };
+Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked);
 
 void write_housing(const std::filesystem::path& path, const Housing& housing);
 
@@ -70,7 +73,8 @@ std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
 
 // Attaches ports to the scene's calibrated images by their paths, and a water surface as each
 // image's pose has it. `cameras` must be resolved already (InterfaceCOLMAP writes entries by image
-// where cameras differ). Error that names the image, as port_at.
-void attach_ports(Scene& scene, const Housing& housing);
+// where cameras differ). Error that names the image, as port_at; warnings that start with `file`
+// for ports that the scene's sparse points do not go with (warn_of_ports_in_scene).
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file = "housing");
 
 }  // namespace axial::io

@@ -81,7 +81,7 @@ void warn_of_housing_beside(const Scene& scene, const fs::path& scene_path, cons
   if (!fs::exists(beside, error) || fs::equivalent(beside, file, error)) return;
   Housing other;
   try {
-    other = read_housing(beside);
+    other = read_housing(beside, PortValues::passed_over);
   } catch (const Error& unreadable) {
     return log_warning("{}: is not used, but {}: {}", beside.string(), file.string(),
                        unreadable.what());

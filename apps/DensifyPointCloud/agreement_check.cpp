@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "agreement_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/shared_cache.h"
+#include "depth/agreement.h"
+#include "io/json.h"
+
+namespace densify {
+namespace {
+
+constexpr std::size_t kImages = 16;
+constexpr std::size_t kNeighbours = 3;
+
+using axial::depth::Agreement;
+using axial::depth::AgreementLimits;
+using axial::depth::Disagreement;
+using axial::depth::MapAgreement;
+using Maps = axial::SharedCache<axial::DepthMap>;
+
+// Every n-th of the references.
+std::vector<std::size_t> images_to_compare(const Project& project) {
+  const std::size_t count = project.references.size(), taken = std::min(count, kImages);
+  std::vector<std::size_t> images;
+  for (std::size_t i = 0; i < taken; ++i) images.push_back(project.references[i * count / taken]);
+  return images;
+}
+
+MapAgreement compare_image(const Project& project, std::size_t image,
+                           const std::vector<bool>& has_map, Maps& maps) {
+  std::vector<Maps::Pointer> held{maps.get(image)};
+  std::vector<const axial::DepthMap*> neighbours;
+  for (const axial::ViewScore& source : project.sources[image]) {
+    if (!has_map[source.image] || neighbours.size() == kNeighbours) continue;
+    held.push_back(maps.get(source.image));
+    neighbours.push_back(held.back().get());
+  }
+  std::vector<Eigen::Vector3f> points;
+  for (const std::uint32_t point : project.preparations[image].init_points)
+    points.push_back(project.scene.points[point].position);
+  return axial::depth::compare_map(*held.front(), neighbours, points);
+}
+
+Agreement measure(const Project& project, const MemoryPlan& plan,
+                  const std::function<axial::DepthMap(std::size_t)>& read_map) {
+  std::vector<bool> has_map(project.scene.images.size(), false);
+  for (const std::size_t image : project.references) has_map[image] = true;
+  const std::vector<std::size_t> images = images_to_compare(project);
+  std::vector<MapAgreement> found(images.size());
+  Maps maps(read_map, plan.cached_maps);
+  axial::for_each_in_flight(images.size(), plan.in_flight, [&](std::size_t i) {
+    found[i] = compare_image(project, images[i], has_map, maps);
+  });
+  return axial::depth::summarise(found);
+}
+
+std::string likely_causes(const Project& project) {
+  return project.housing
+             ? "the port (its distances, normal or indices), the lens, or poses and points that "
+               "are not in metres"
+             : "a --housing that is missing, the lens, or the poses";
+}
+
+void say(const Project& project, const Agreement& found) {
+  const AgreementLimits limits;
+  const std::string points = fmt::format(
+      "the median of {} sparse points is {:.2f} px ({:.2f} %) off the depth maps, regions of the "
+      "images {:.2f} px",
+      found.points, found.pixels, 100 * found.share, found.systematic);
+  const std::string pixels = fmt::format("{:.0f} % of {} pixels agree with a neighbour's map",
+                                         100 * found.consistent, found.asked);
+  if (!judge(found, limits).any()) return axial::log_info("Agreement: {}; {}", points, pixels);
+  axial::log_warning(
+      "Cameras and photographs do not belong together: {} (usual: below {} and {}); {} (usual: "
+      "over {:.0f} %). Likely causes: {}",
+      points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
+      likely_causes(project));
+}
+
+void write_report(const std::filesystem::path& file, const Agreement& found) {
+  const AgreementLimits limits;
+  const Disagreement wrong = judge(found, limits);
+  axial::io::write_json(file, {{"agreement",
+                                {{"points", found.points},
+                                 {"median_share", found.share},
+                                 {"median_px", found.pixels},
+                                 {"cells", found.cells},
+                                 {"systematic_px", found.systematic},
+                                 {"systematic_sigmas", found.significance},
+                                 {"pixels", found.asked},
+                                 {"consistent_share", found.consistent},
+                                 {"limits",
+                                  {{"median_px", limits.pixels},
+                                   {"systematic_px", limits.systematic},
+                                   {"systematic_sigmas", limits.significance},
+                                   {"consistent_share", limits.consistent}}},
+                                 {"warning", wrong.any()}}}});
+}
+
+}  // namespace
+
+void check_agreement(const Project& project, const Options& options, const MemoryPlan& plan,
+                     const std::function<axial::DepthMap(std::size_t image)>& read_map) {
+  const Agreement found = measure(project, plan, read_map);
+  say(project, found);
+  if (!options.report.empty()) write_report(options.report, found);
+}
+
+}  // namespace densify

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far depth maps agree with the sparse points and with each other. A port, a lens or a unit
+// that is not the photographs' own shows here: points project where the image shows other surface,
+// and rays of one surface point do not meet.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "scene/depth_map.h"
+
+namespace axial::depth {
+
+// A part of the image, of which there are kCellsAcross in each direction.
+inline constexpr int kCellsAcross = 4;
+
+// A sparse point and the depth map at its image.
+struct PointDifference {
+  float share = 0;   // |map - point| of the point's depth, along the pixel's ray
+  float pixels = 0;  // how far apart a neighbour sees the two; negative: the map is nearer
+  int cell = 0;      // where in the image: below kCellsAcross^2
+};
+
+struct MapAgreement {
+  std::vector<PointDifference> points;
+  std::size_t asked = 0;  // pixels whose surface point some neighbour's image shows and has a depth
+  std::size_t consistent = 0;  // of which a neighbour's depth leads back to within a pixel
+};
+
+// Compares a map with `points` [world], which its image sees, and at their pixels with the maps of
+// `neighbours`, best first. Of many points at most `most` are taken, evenly. Points that the map
+// has no depth for or no neighbour sees are passed over. The points' pixels stand for the map's
+// because they have texture: open water has neither. Linear in points times neighbours.
+MapAgreement compare_map(const DepthMap& map, std::span<const DepthMap* const> neighbours,
+                         std::span<const Eigen::Vector3f> points, std::size_t most = 1000);
+
+struct Agreement {
+  std::size_t points = 0;   // compared
+  double share = 0;         // median of PointDifference::share
+  double pixels = 0;        // median of |PointDifference::pixels|
+  std::size_t cells = 0;    // of all images, with enough points
+  double systematic = 0;    // median over cells of |median of pixels| [px]: noise is not in it
+  double significance = 0;  // median over cells of that median in its standard errors
+  std::size_t asked = 0;
+  double consistent = 0;  // share of `asked`
+};
+
+Agreement summarise(std::span<const MapAgreement> maps);
+
+// What is no agreement any more, with the reasons for the numbers beside the measurements in
+// docs/formats.md. Fewer points, cells or pixels than these say nothing.
+struct AgreementLimits {
+  double pixels = 0.75, systematic = 0.15, significance = 2, consistent = 0.6;
+  std::size_t min_points = 50, min_cells = 8, min_asked = 50;
+};
+
+struct Disagreement {
+  bool pixels = false, systematic = false, consistent = false;  // which of the limits is passed
+  bool any() const { return pixels || systematic || consistent; }
+};
+
+Disagreement judge(const Agreement& agreement, const AgreementLimits& limits = {});
+
+}  // namespace axial::depth

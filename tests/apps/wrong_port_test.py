@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A port, a lens or poses that are not the photographs' own: DensifyPointCloud says so, whatever is
+wrong, and says nothing where all is right."""
+
+import json
+import math
+import os
+import re
+import tempfile
+
+from programs import ProgramTest, cloud_size, files_below, main, read, run, write
+
+WARNING = "Cameras and photographs do not belong together"
+# One sweep, no rounds after it, no cloud: what the check needs.
+QUICK = ("--iters", "1", "--geometric-iters", "0", "--postprocess-dmaps", "0", "--fusion-mode", "1")
+
+
+def simulate(folder, *arguments):
+    made = run("SimulateUnderwater", "--coarseness", 4, "--views", 5,
+               "--width", 320, "--height", 240, "--samples", 1, "--truth", 0, *arguments, "-o",
+               folder)
+    assert made.returncode == 0, made.stderr
+
+
+def scaled_model(text, first, scale, every):
+    """The lines of a COLMAP file with three numbers from column `first` on times `scale`."""
+    lines = [line for line in text.decode().splitlines() if not line.startswith("#")]
+    for i in range(0, len(lines), every):
+        words = lines[i].split()
+        words[first:first + 3] = [repr(scale * float(word)) for word in words[first:first + 3]]
+        lines[i] = " ".join(words)
+    return "\n".join(lines) + "\n"
+
+
+class PortTest(ProgramTest):
+    SCENE = None  # arguments of SimulateUnderwater; None: a base of the others
+
+    @classmethod
+    def setUpClass(cls):
+        if cls.SCENE is None:
+            return
+        shared = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(shared.cleanup)
+        cls.truth = os.path.join(shared.name, "scene")
+        simulate(cls.truth, *cls.SCENE)
+
+    def housing(self, **changes):
+        housing = json.loads(read(os.path.join(self.truth, "housing.json")))
+        housing["ports"]["main"].update(changes)
+        return housing
+
+    def scene(self, name, housing=None, medium="water", scale=1, focal=1, camera=None):
+        """A folder with scene.mvs: what is given here is wrong, the photographs are right."""
+        sparse = os.path.join(self.truth, "sparse")
+        files = {part: read(os.path.join(sparse, part + ".txt"))
+                 for part in ("cameras", "images", "points3D")}
+        words = files["cameras"].decode().splitlines()[-1].split()
+        words[4:6] = [repr(focal * float(word)) for word in words[4:6]]
+        if camera:
+            words = camera(words)
+        write(self.path(name, "sparse", "cameras.txt"), " ".join(words) + "\n")
+        write(self.path(name, "sparse", "images.txt"), scaled_model(files["images"], 5, scale, 2))
+        write(self.path(name, "sparse", "points3D.txt"),
+              scaled_model(files["points3D"], 1, scale, 1))
+        arguments = []
+        if housing:
+            write(self.path(name, "port.json"), json.dumps(housing))
+            arguments = ["--housing", self.path(name, "port.json")]
+        self.succeeds("InterfaceCOLMAP", "-i", self.path(name), "--image-folder",
+                      os.path.join(self.truth, medium), "-o", self.path(name, "scene.mvs"),
+                      *arguments)
+        return self.path(name)
+
+    def densify(self, folder, *arguments):
+        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK,
+                             "--report-file", "report.json", *arguments).stdout
+
+    def report(self, folder):
+        return json.loads(read(os.path.join(folder, "report.json")))["agreement"]
+
+    def warns(self, name, *expected, **wrong):
+        folder = self.scene(name, **wrong)
+        said = self.densify(folder)
+        self.assertEqual(said.count(WARNING), 1, f"{name}: {said}")
+        self.assertTrue(self.report(folder)["warning"], name)
+        line = next(line for line in said.splitlines() if WARNING in line)
+        self.assertRegex(line, r"\d px .*\d % of \d+ pixels agree.*Likely causes: ", name)
+        for text in expected:
+            self.assertIn(text, said, name)
+
+    def passes(self, name, **right):
+        folder = self.scene(name, **right)
+        said = self.densify(folder)
+        self.assertNotIn(WARNING, said, name)
+        self.assertIn("Agreement: ", said, name)
+        self.assertNotIn("housing.ports.", said, name)
+        self.assertFalse(self.report(folder)["warning"], name)
+        return said
+
+
+class FlatPort(PortTest):
+    SCENE = ("--preset", "closeup")
+
+    def test_what_is_right(self):
+        self.passes("water", housing=self.housing())
+        self.passes("air", medium="air")
+
+    def test_a_wrong_port(self):
+        self.warns("distance", housing=self.housing(distance_m=0.3))
+        self.warns("normal", "housing.ports.main.normal is [", "45 degrees",
+                   housing=self.housing(normal=[math.sqrt(0.5), 0, math.sqrt(0.5)]))
+        self.warns("n1", "housing.ports.main.n_water is 1,", housing=self.housing(n_water=1.0))
+        self.warns("n149", "housing.ports.main.n_water is 1.49,",
+                   housing=self.housing(n_water=1.49))
+
+    def test_a_wrong_lens(self):
+        self.warns("twice", housing=self.housing(), focal=2)
+        self.warns("absorbed", housing=self.housing(), focal=1.333)
+
+    def test_a_housing_where_there_is_none(self):
+        self.warns("forgotten", "a --housing that is missing")
+        self.warns("in_air", housing=self.housing(), medium="air")
+
+    def test_poses_that_are_not_in_metres(self):
+        for scale in (10, 100, 1000, 0.1):
+            clear = ("more than 40 m of water away",) if scale >= 100 else ()
+            self.warns(f"times_{scale}", *clear, housing=self.housing(), scale=scale)
+        # Here the scene lies inside the housing, and is not seen at all.
+        for scale in (0.01, 0.001):
+            folder = self.scene(f"times_{scale}", housing=self.housing(), scale=scale)
+            result = run("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stdout, r"scene\.housing\.json: housing\.ports\.main\."
+                             r"(distance_m|thickness_m) is .*are port and poses in metres\?")
+
+    def test_one_line_whatever_is_run(self):
+        """Resumed runs, maps that exist, any number of threads, little memory: the same words."""
+        def line(said):
+            return re.search(WARNING + ".*", said)[0]
+        folder = self.scene("wrong", housing=self.housing(n_water=1.38, distance_m=0.1))
+        whole = ("--iters", "1", "--geometric-iters", "1")
+        base = ("-i", "scene.mvs", "-w", folder)
+        first = line(self.succeeds("DensifyPointCloud", *base, *QUICK).stdout)
+        for again in (("--max-threads", "1"), ("--max-memory", "200")):
+            for name in files_below(folder):
+                if name.endswith((".dmap", ".dmap.json")):
+                    os.remove(os.path.join(folder, name))
+            self.assertEqual(
+                line(self.succeeds("DensifyPointCloud", *base, *QUICK, *again).stdout), first)
+        # All maps are there.
+        self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, *QUICK).stdout), first)
+        self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, "--fusion-mode",
+                                            "-1").stdout), first)
+        # Of later stages.
+        self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
+        self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
+        self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 0)
+        self.assertFalse([name for name in files_below(folder) if "report" in name])
+
+    def test_the_report_is_no_input(self):
+        folder = self.scene("right", housing=self.housing())
+        self.refuses("--report-file", "DensifyPointCloud", "-i", "scene.mvs", "-w", folder,
+                     "--report-file", "scene.mvs")
+
+
+class DistortedLens(PortTest):
+    SCENE = ("--preset", "closeup", "--lens", "OPENCV,-0.25,0.08,0.001,0.001")
+
+    def test_distortion(self):
+        def straight(words):
+            return [words[0], "PINHOLE", *words[2:8]]
+        self.passes("right", housing=self.housing())
+        self.warns("straight", housing=self.housing(), camera=straight)
+
+
+class OtherPorts(PortTest):
+    SCENE = ("--preset", "closeup", "--dome-radius", 0.05, "--dome-z", 0.012)
+
+    def test_a_dome(self):
+        self.passes("right", housing=self.housing())
+        self.warns("forgotten")
+
+
+class FarScene(PortTest):
+    """Two to three metres away, through a straight port."""
+    SCENE = ("--preset", "reef")
+
+    def test_right_and_wrong(self):
+        self.passes("right", housing=self.housing())
+        self.warns("distance", housing=self.housing(distance_m=0.2))
+        self.warns("n149", housing=self.housing(n_water=1.49))
+        self.warns("absorbed", housing=self.housing(), focal=1.333)
+        self.warns("forgotten")
+
+
+if __name__ == "__main__":
+    main()

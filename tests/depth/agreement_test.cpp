@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exact depth maps of a plane agree with points on it; one changed number of port, lens or scale
+// shows, and noise without a change does not.
+#include "depth/agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "support/analytic_scene.h"
+
+namespace axial::depth {
+namespace {
+
+constexpr std::size_t kViews = 5;
+
+std::vector<DepthMap> maps_of(const test::AnalyticScene& scene, const CameraModel& camera) {
+  std::vector<DepthMap> maps;
+  for (const Pose& pose : test::circle_of_poses(kViews))
+    maps.push_back(test::exact_map(scene, camera, pose));
+  return maps;
+}
+
+// On the plane, around the middle of what the cameras see.
+std::vector<Eigen::Vector3f> points_on(const test::AnalyticScene& scene, std::size_t count) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> across(-0.6, 0.6);
+  std::vector<Eigen::Vector3f> points;
+  while (points.size() < count) {
+    const Eigen::Vector3d x(across(random), across(random), 0);
+    const double z = scene.plane.signedDistance(x) / -scene.plane.normal().z();
+    points.push_back((x + z * Eigen::Vector3d::UnitZ()).cast<float>());
+  }
+  return points;
+}
+
+Agreement agreement_of(const std::vector<DepthMap>& maps,
+                       const std::vector<Eigen::Vector3f>& points) {
+  std::vector<MapAgreement> found;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    std::vector<const DepthMap*> neighbours;
+    for (std::size_t k = 1; k < 4; ++k) neighbours.push_back(&maps[(i + k) % maps.size()]);
+    found.push_back(compare_map(maps[i], neighbours, points));
+  }
+  return summarise(found);
+}
+
+const test::AnalyticScene kPlane;
+
+TEST(Agreement, ExactMapsAgree) {
+  for (const CameraModel& camera : {test::dry_camera(), test::behind_port(test::dry_camera())}) {
+    const Agreement found = agreement_of(maps_of(kPlane, camera), points_on(kPlane, 800));
+    EXPECT_GT(found.points, 1000u);
+    // Depths are those of the nearest pixel's centre, half a pixel away.
+    EXPECT_LT(found.share, 0.002);
+    EXPECT_LT(found.pixels, 0.1);
+    EXPECT_LT(found.systematic, 0.03);
+    EXPECT_EQ(found.consistent, 1);
+    EXPECT_FALSE(judge(found).any());
+  }
+}
+
+// What a matcher finds that follows another camera than the photographs': here each depth is the
+// right one for the right camera, at the same pixel.
+std::vector<DepthMap> seen_through(std::vector<DepthMap> maps,
+                                   const std::function<void(CameraModel&)>& change) {
+  for (DepthMap& map : maps) change(map.camera);
+  return maps;
+}
+
+refractive::FlatPort<double>& port_of(CameraModel& camera) {
+  return std::get<refractive::FlatPort<double>>(*camera.port);
+}
+
+TEST(Agreement, EachWrongNumberOfTheCameraShows) {
+  const std::vector<DepthMap> right = maps_of(kPlane, test::behind_port(test::dry_camera()));
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  const std::vector<std::pair<std::string, std::function<void(CameraModel&)>>> changes{
+      {"distance", [](CameraModel& c) { port_of(c).distance *= 10; }},
+      {"normal", [](CameraModel& c) { port_of(c).normal = Eigen::Vector3d(1, 0, 1).normalized(); }},
+      {"n_water 1", [](CameraModel& c) { port_of(c).n_water = 1; }},
+      {"n_water 1.49", [](CameraModel& c) { port_of(c).n_water = 1.49; }},
+      {"focal length", [](CameraModel& c) { c.lens.fx *= 1.333, c.lens.fy *= 1.333; }},
+      {"no port", [](CameraModel& c) { c.port.reset(); }}};
+  for (const auto& [name, change] : changes)
+    EXPECT_TRUE(judge(agreement_of(seen_through(right, change), points)).any()) << name;
+}
+
+std::vector<Eigen::Vector3f> moved(std::vector<Eigen::Vector3f> points,
+                                   const std::function<float()>& share) {
+  for (Eigen::Vector3f& point : points) point *= 1 + share();
+  return points;
+}
+
+// Two percent of the depth are a third of a pixel here.
+TEST(Agreement, TellsASystematicDifferenceFromNoise) {
+  const std::vector<DepthMap> maps = maps_of(kPlane, test::behind_port(test::dry_camera()));
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise(0, 0.02f);
+  const Agreement noisy = agreement_of(maps, moved(points, [&] { return noise(random); }));
+  const Agreement shifted = agreement_of(maps, moved(points, [] { return 0.02f; }));
+  EXPECT_GT(noisy.pixels, 0.1);
+  EXPECT_LT(noisy.pixels, shifted.pixels);
+  EXPECT_FALSE(judge(noisy).any()) << noisy.systematic << " " << noisy.significance;
+  EXPECT_TRUE(judge(shifted).systematic) << shifted.systematic << " " << shifted.significance;
+  EXPECT_NEAR(shifted.share, 0.02, 0.004) << "of the depth, as stated";
+  EXPECT_EQ(shifted.consistent, 1) << "the maps are as they were";
+}
+
+// Maps of random depths lead nowhere, whatever the points are.
+TEST(Agreement, CountsPixelsThatNoNeighbourConfirms) {
+  std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> factor(0.4f, 2.5f);
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    for (float& depth : maps[i].depth) depth *= factor(random);
+  const Agreement found = agreement_of(maps, points);
+  EXPECT_LT(found.consistent, 0.4);
+  EXPECT_TRUE(judge(found).consistent);
+}
+
+// No data, no verdict: no point, one without an image, no depth, no neighbour.
+TEST(Agreement, SaysNothingWithoutData) {
+  const std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
+  const DepthMap* const neighbour = &maps[1];
+  const std::vector<Eigen::Vector3f> behind{
+      {0, 0, -1}, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
+  DepthMap empty = maps[0];
+  empty.depth = cv::Mat1f(empty.depth.size(), 0.0f);
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  const std::vector<MapAgreement> found{compare_map(maps[0], std::span(&neighbour, 1), {}),
+                                        compare_map(maps[0], std::span(&neighbour, 1), behind),
+                                        compare_map(empty, std::span(&neighbour, 1), points),
+                                        compare_map(maps[0], {}, points)};
+  const Agreement sum = summarise(found);
+  EXPECT_EQ(sum.points, 0u);
+  EXPECT_EQ(sum.asked, 0u);
+  EXPECT_FALSE(judge(sum).any());
+  EXPECT_FALSE(judge(summarise({})).any());
+}
+
+TEST(Agreement, TakesManyPointsEvenly) {
+  const std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
+  const DepthMap* const neighbour = &maps[1];
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 5000);
+  const MapAgreement all = compare_map(maps[0], std::span(&neighbour, 1), points, 5000);
+  const MapAgreement part = compare_map(maps[0], std::span(&neighbour, 1), points, 500);
+  EXPECT_LE(part.asked, 500u);
+  EXPECT_NEAR(static_cast<double>(part.asked), 0.1 * static_cast<double>(all.asked),
+              0.02 * static_cast<double>(all.asked));
+}
+
+}  // namespace
+}  // namespace axial::depth
