@@ -22,6 +22,8 @@ constexpr double kAgree = 0.5, kClearlyMore = 0.25;
 // A single change may be the cause and not yet the whole truth: the optical axis for a normal that
 // is in truth some degrees off it.
 constexpr double kAgreeWithChange = 0.35;
+// Less than any detector would have matched.
+constexpr double kNothingInCommon = 0.1;
 
 // `in_air` behind the ports of `housing`: a water surface is another port for every pose.
 Bundle behind_ports(const Bundle& in_air, const io::ColmapModel& sample,
@@ -64,7 +66,10 @@ std::string misfit(const PortCheck& check, const Bundle& bundle, bool ports) {
                 "Lens and poses do not fit together: the sparse points are {:.2f} px off, "
                 "where {:.2f} px are expected",
                 check.residual, check.noise);
-  if (!check.explained()) return line + "; no single change of port, lens or scale explains it";
+  if (!check.explained())
+    return line +
+           "; no single change of port, lens or scale explains it. Were the poses "
+           "refined with this lens and housing?";
   return line + fmt::format(". Likely cause: {} ({:.2f} px); {}", cause_of(check.best, bundle),
                             check.best_residual, advice_for(check.best));
 }
@@ -98,22 +103,27 @@ std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapM
   const double behind = pictures.behind(bundle).value_or(0);
   log_details("Photographs: {:.2f} at the tracks, {:.2f} where the cameras predict", *at_tracks,
               behind);
-  if (ports && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)
+  if (ports && !check.fits() && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)
     return fmt::format(
         "The poses were solved without the port, as a pinhole's: the sparse points are {:.2f} px "
         "off behind the ports, {:.2f} px without them, where {:.2f} px are expected, and the "
-        "photographs agree with the tracks ({:.2f}) and not with the ports ({:.2f}). {}",
-        check.residual, check.in_air, check.noise, *at_tracks, behind,
-        "RefinePoses, with the lens calibrated in air, makes refractive poses of them");
+        "photographs agree with the tracks ({:.2f}) and not with the ports ({:.2f}). "
+        "RefinePoses, with the lens calibrated in air, makes refractive poses of them",
+        check.residual, check.in_air, check.noise, *at_tracks, behind);
   if (*at_tracks > kAgree) return {};
   const double given = std::max(ports ? behind : *at_tracks, 0.0);
-  const auto better = change_by_pictures(pictures, bundle, given);
-  if (!better) return {};
-  return fmt::format(
+  const std::string what = fmt::format(
       "The photographs do not show what {} predict: patches around the sparse points correlate by "
-      "{:.2f}, and by {:.2f} with one change. Likely cause: {}; {}",
-      ports ? "poses and ports" : "the poses", given, better->second,
-      cause_of(better->first, bundle), advice_for(better->first));
+      "{:.2f}",
+      ports ? "poses and ports" : "the poses", given);
+  if (const auto better = change_by_pictures(pictures, bundle, given))
+    return fmt::format("{}, and by {:.2f} with one change. Likely cause: {}; {}", what,
+                       better->second, cause_of(better->first, bundle), advice_for(better->first));
+  if (given >= kNothingInCommon || *at_tracks >= kNothingInCommon) return {};
+  return fmt::format(
+      "{}, and no single change of port, lens or scale explains it: are these the photographs, "
+      "and {}?",
+      what, ports ? "this what they were taken through" : "were they taken in air");
 }
 
 }  // namespace

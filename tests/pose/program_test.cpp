@@ -345,6 +345,63 @@ TEST_F(RefinePoses, TakesAModelOfColmapUnderwater) {
   EXPECT_EQ(io::read_housing(folder_ / "again" / "housing.json").ports.size(), 1u);
 }
 
+// The stated index bends all rays by more than poses can make good.
+TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
+  const Outcome right = run(kInput + "-o right --scale-from " + baseline());
+  ASSERT_EQ(right.exit_code, 0) << right.output;
+  EXPECT_THAT(right.output, ::testing::Not(::testing::HasSubstr("fit the photographs")));
+  for (const double n_water : {1.0, 1.5}) {
+    io::Housing wrong = testing::housing();
+    std::get<refractive::FlatPort<double>>(wrong.ports["main"]).n_water = n_water;
+    io::write_housing(folder_ / "wrong.json", wrong);
+    const Outcome outcome =
+        run("-i . --lens lens/cameras.txt --housing wrong.json -o out --scale-from " + baseline());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output,
+                ::testing::ContainsRegex("do not fit the photographs: with index of water at .* "
+                                         "errors are .* px for .* px"));
+  }
+}
+
+// Of photographs with few observations each, most are left out: no fault of the housing.
+TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
+  io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
+  std::map<std::uint32_t, int> kept;
+  for (io::ColmapPoint3D& point : model.points)
+    std::erase_if(point.track, [&](const io::ColmapTrackElement& element) {
+      return ++kept[element.image] > (element.image < model.images[4].id ? 80 : 24);
+    });
+  for (io::ColmapImage& image : model.images)
+    for (io::ColmapPoint2D& point : image.points) point.point3d = io::kNoPoint3D;
+  for (const io::ColmapPoint3D& point : model.points)
+    for (const io::ColmapTrackElement& element : point.track)
+      model.images[element.image - model.images[0].id].points[element.point2d].point3d = point.id;
+  write("sparse", model);
+  const Outcome outcome = run(kInput + "-o out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg: too few observations fit"));
+  EXPECT_THAT(outcome.output, ::testing::HasSubstr("are of images with fewer than 30 that fit"));
+  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("is this the housing")));
+}
+
+// A model that carries ports, aligned to centres in another unit.
+TEST_F(RefinePoses, AlignModelWarnsOfAUnitThatDoesNotFitThePorts) {
+  ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1 --scale-from " + baseline()).exit_code, 0);
+  io::ColmapModel reference = io::read_colmap_model(folder_ / "out" / "sparse");
+  write("metres", reference);
+  for (io::ColmapImage& image : reference.images) image.pose.centre *= 0.1;
+  write("other_unit", reference);
+  const auto aligned = [&](const std::string& to) {
+    const Outcome outcome = run_program(
+        "AlignModel", "-i out/colmap-underwater --reference " + to + " -o aligned_to_" + to);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_THAT(aligned("metres"), ::testing::Not(::testing::HasSubstr("do not fit")));
+  EXPECT_THAT(aligned("other_unit"),
+              ::testing::HasSubstr("the model's lengths are 10 times too small"));
+}
+
 TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   const auto refuses = [&](const std::string& arguments, const std::string& expected) {
     expect_refusal("RefinePoses", arguments, expected);
