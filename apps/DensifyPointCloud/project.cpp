@@ -144,6 +144,7 @@ void use_neighbour_lists(Project& project, const Options& options) {
 
 void select_views(Project& project, const Options& options) {
   axial::Scene& scene = project.scene;
+  if (scene.region) warn_of_region_of_scene(options);
   if (!scene.region) scene.region = axial::estimate_region(scene, options.region);
   if (scene.region) scene.region = axial::with_border(*scene.region, options.roi_border);
   require_memory_to_score(scene, options);

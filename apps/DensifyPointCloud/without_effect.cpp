@@ -75,4 +75,8 @@ void warn_of_options_without_effect(const Project& project, const Options& optio
     warn_of(options, {"roi-border"}, "for want of a region of interest (see --estimate-roi)");
 }
 
+void warn_of_region_of_scene(const Options& options) {
+  warn_of(options, {"estimate-roi"}, "on a scene that has a region of interest already");
+}
+
 }  // namespace densify

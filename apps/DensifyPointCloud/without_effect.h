@@ -12,4 +12,7 @@ void warn_of_options_without_effect(const Options& options);
 // The same for options that a scene without ports leaves without effect. `project` has its ports.
 void warn_of_options_without_effect(const Project& project, const Options& options);
 
+// The same for --estimate-roi where the scene has a region of interest of its own.
+void warn_of_region_of_scene(const Options& options);
+
 }  // namespace densify

@@ -85,8 +85,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   }
   options.normalize = normalize;
   if (!point_cloud.empty())
-    fail("--pointcloud-file {}: only a scene (.mvs) is exported with another cloud's points",
-         point_cloud);
+    fail(
+        "--pointcloud-file {}: is not built for an import: only a scene (.mvs) is exported with "
+        "another cloud's points",
+        point_cloud);
   if (force_points)
     axial::log_warning("--force-points: without effect: sparse points are always written");
   std::error_code error;

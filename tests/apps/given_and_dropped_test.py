@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import struct
 import tempfile
 
 import tiny_scene
@@ -368,6 +369,16 @@ class NoEffect(ProgramTest):
                 (("--filter-point-cloud", "-1", "--fusion-mode", "1"), "--fusion-mode")):
             lines = self.said(*command, *given)
             self.assertTrue(any(named + ": without effect" in line for line in lines), (given, lines))
+
+    def test_in_densify_on_a_scene_with_a_region(self):
+        tiny(self.path("near"))
+        images = [self.path("near", "images", name) for name in tiny_scene.names()]
+        region = struct.pack("<6d", -1, -1, 0.5, 1, 1, 1.5)
+        for name, end in (("without", bytes(48)), ("with", region)):
+            write(self.path("near", name + ".mvs"), tiny_scene.mvs(images)[:-48] + end)
+            lines = self.said("DensifyPointCloud", "-i", name + ".mvs", "-w", self.path("near"),
+                              *QUICK, "--estimate-roi", "1")
+            self.assertEqual(len(lines), int(name == "with"), lines)
 
     def test_in_interface_colmap(self):
         tiny(self.path("near"))

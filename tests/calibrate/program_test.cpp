@@ -205,6 +205,9 @@ TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
   refuses(all + "-o out.json --refine focal", "stays as calibrated in air");
   refuses(all + "-o out.json --refine thickness", "needs --thickness-sigma");
   refuses(all + "-o out.json --index-sigma 0.1", "--refine does not name index");
+  refuses(all + "-o out.json --max-index-sigma 0.1", "--refine normal,distance does not name");
+  refuses(all + "-o out.json --refine distance --max-normal-sigma 1",
+          "--refine distance does not name");
   refuses(all + "-o out.json --max-normal-sigma 0", "--max-normal-sigma 0: must be positive");
   refuses(all + "-o nowhere/out.json", "nowhere/out.json");
   write_lens("two.txt", {kLens, {2, "PINHOLE", 640, 480, {380, 380, 320, 240}}});
