@@ -9,14 +9,18 @@
 #include "refractive/flat_port_camera.h"
 #include "refractive/lens_camera.h"
 #include "refractive/pinhole_camera.h"
+#include "scene/any_camera.h"
 
 namespace axial::depth {
 
+template <class Fielded>
+concept HasFields = requires(Fielded fielded) {
+  fielded.each_field([](auto&) {});
+};
+
 // A camera that can be dealt to lanes, number by number.
 template <class Camera>
-concept InLanes = requires(Camera camera) {
-  camera.each_field([](auto&) {});
-};
+concept InLanes = HasFields<Camera> || std::is_same_v<Camera, AnyCamera<float>>;
 
 // One for each camera that lanes know.
 consteval lanes::CameraKind lane_kind(const refractive::PinholeCamera<float>*) {
@@ -37,10 +41,10 @@ consteval lanes::CameraKind lane_kind(const refractive::LensFlatPortCamera<float
 consteval lanes::CameraKind lane_kind(const refractive::LensDomePortCamera<float>*) {
   return lanes::CameraKind::lens_dome_port;
 }
-template <InLanes Camera>
+template <HasFields Camera>
 inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));
 
-template <InLanes Fielded>
+template <HasFields Fielded>
 lanes::CameraFields fields_of(Fielded from) {
   lanes::CameraFields fields;
   std::size_t k = 0;
@@ -51,6 +55,20 @@ lanes::CameraFields fields_of(Fielded from) {
       fields.value.at(k++) = field;
   });
   return fields;
+}
+
+// visit(camera) with the camera of its own kind.
+template <InLanes Camera, class Visit>
+auto visit_kind(const Camera& camera, Visit&& visit) {
+  if constexpr (HasFields<Camera>)
+    return visit(camera);
+  else
+    return std::visit(visit, camera.kind());
+}
+
+template <InLanes Camera>
+lanes::CameraKind kind_of(const Camera& camera) {
+  return visit_kind(camera, []<class Kind>(const Kind&) { return kLaneKind<Kind>; });
 }
 
 }  // namespace axial::depth

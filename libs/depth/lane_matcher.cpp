@@ -2,6 +2,7 @@
 #include "depth/lane_matcher.h"
 
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "base/error.h"
@@ -21,10 +22,19 @@ using refractive::LensPinholeCamera;
 using refractive::PinholeCamera;
 
 template <class Camera>
+using Sources = std::span<const SourceView<Camera>* const>;
+
+template <class Camera>
+lanes::CameraFields projector_of(const Camera& camera) {
+  return visit_kind(camera, [](const auto& kind) { return fields_of(kind.projector()); });
+}
+
+template <class Camera>
 void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
               bool with_depths) {
-  const lanes::CameraFields fields = fields_of(source.camera.projector());
-  const refractive::Frame<float> frame = source.camera.projector_frame();
+  const lanes::CameraFields fields = projector_of(source.camera);
+  const refractive::Frame<float> frame =
+      visit_kind(source.camera, [](const auto& kind) { return kind.projector_frame(); });
   const Eigen::Matrix3f rotation = frame.rotation * source.from_reference.rotation;
   const Eigen::Vector3f translation =
       frame.rotation * source.from_reference.translation + frame.translation;
@@ -55,31 +65,40 @@ void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std:
               tables.depths.end() - static_cast<std::ptrdiff_t>(pixels));
 }
 
+// Precondition: all `sources` are of one kind.
 template <class Camera>
-std::unique_ptr<lanes::SceneTables> make_tables(const Camera& reference,
-                                                std::span<const SourceView<Camera>> sources,
+std::unique_ptr<lanes::SceneTables> make_tables(Sources<Camera> sources,
                                                 const PatchMatchOptions& options) {
   auto tables = std::make_unique<lanes::SceneTables>();
-  tables->kind = kLaneKind<Camera>;
-  tables->reference = fields_of(reference);
+  tables->kind = kind_of(sources[0]->camera);
   tables->smoothness = options.smoothness;
   tables->geometric_weight = options.geometric_weight;
   tables->geometric_limit = options.geometric_limit;
   // At once: growing step by step would hold everything twice.
   std::size_t pixels = 0;
-  for (const auto& source : sources)
-    pixels += static_cast<std::size_t>(source.image->width()) *
-              static_cast<std::size_t>(source.image->height());
+  for (const auto* source : sources)
+    pixels += static_cast<std::size_t>(source->image->width()) *
+              static_cast<std::size_t>(source->image->height());
   tables->words.reserve(pixels);
   const bool with_depths = std::any_of(sources.begin(), sources.end(),
-                                       [](const auto& source) { return source.depth != nullptr; });
+                                       [](const auto* source) { return source->depth != nullptr; });
   if (with_depths) tables->depths.reserve(pixels);
   for (std::size_t view = 0; view < sources.size(); ++view)
-    add_view(*tables, sources[view], view, with_depths);
-  tables->same_projector = std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
-    return fields_of(source.camera.projector()) == fields_of(sources[0].camera.projector());
+    add_view(*tables, *sources[view], view, with_depths);
+  const lanes::CameraFields first = projector_of(sources[0]->camera);
+  tables->same_projector = std::all_of(sources.begin(), sources.end(), [&](const auto* source) {
+    return projector_of(source->camera) == first;
   });
   return tables;
+}
+
+// The numbers of the views by kind of camera.
+template <class Camera>
+std::map<lanes::CameraKind, std::vector<std::size_t>> views_by_kind(
+    std::span<const SourceView<Camera>> sources) {
+  std::map<lanes::CameraKind, std::vector<std::size_t>> views;
+  for (std::size_t i = 0; i < sources.size(); ++i) views[kind_of(sources[i].camera)].push_back(i);
+  return views;
 }
 
 std::array<float, 3> floats(const Eigen::Vector3f& v) {
@@ -117,12 +136,19 @@ LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
                                  std::span<const SourceView<Camera>> sources,
                                  const PatchMatchOptions& options, lanes::InstructionSet set)
     : pixels_(image, camera, options), caster_(camera, set), views_(sources.size()) {
-  for (std::size_t first = 0; first < sources.size(); first += kLanes) {
-    Group group;
-    group.tables = make_tables(
-        camera, sources.subspan(first, std::min(kLanes, sources.size() - first)), options);
-    group.scorer = lanes::make_scorer(*group.tables, set);
-    groups_.push_back(std::move(group));
+  for (const auto& [kind, views] : views_by_kind(sources)) {
+    for (std::size_t first = 0; first < views.size(); first += kLanes) {
+      std::vector<const SourceView<Camera>*> members;
+      for (std::size_t k = first; k < std::min(first + kLanes, views.size()); ++k) {
+        places_.at(views[k]) = {static_cast<std::uint8_t>(groups_.size()),
+                                static_cast<std::uint8_t>(k - first)};
+        members.push_back(&sources[views[k]]);
+      }
+      Group group;
+      group.tables = make_tables<Camera>(members, options);
+      group.scorer = lanes::make_scorer(*group.tables, set);
+      groups_.push_back(std::move(group));
+    }
   }
 }
 
@@ -150,9 +176,10 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
         scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
     };
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (pairs[i].view / kLanes != g) continue;
+      const Place place = places_[pairs[i].view];
+      if (place.group != g) continue;
       batch.plane[count] = pairs[i].plane;
-      batch.view[count] = pairs[i].view % kLanes;
+      batch.view[count] = place.lane;
       target[count++] = i;
       if (count == kLanes) run();
     }
@@ -166,5 +193,6 @@ template class LaneMatcher<DomePortCamera<float>>;
 template class LaneMatcher<LensPinholeCamera<float>>;
 template class LaneMatcher<LensFlatPortCamera<float>>;
 template class LaneMatcher<LensDomePortCamera<float>>;
+template class LaneMatcher<AnyCamera<float>>;
 
 }  // namespace axial::depth

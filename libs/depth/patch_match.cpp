@@ -95,6 +95,10 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
         else if constexpr (requires { cameras[0].lens(); })
           run_sweeps_with<HomographyWarp>(input, level, cameras, maps, options, first, sweeps,
                                           planes);
+        else if constexpr (std::is_same_v<decltype(cameras[0]), const AnyCamera<float>&>)
+          fail(
+              "the homography is the paper's warp for one kind of port: images behind flat ports "
+              "and behind domes are matched together with the affine one");
         else
           fail(
               "the homography is the paper's warp for straight lenses: undistort the images "

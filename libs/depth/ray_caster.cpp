@@ -17,8 +17,8 @@ using refractive::PinholeCamera;
 template <InLanes Camera>
 RayCaster<Camera>::RayCaster(const Camera& camera, lanes::InstructionSet set) {
   auto tables = std::make_unique<lanes::SceneTables>();
-  tables->kind = kLaneKind<Camera>;
-  tables->reference = fields_of(camera);
+  tables->kind = kind_of(camera);
+  tables->reference = visit_kind(camera, [](const auto& kind) { return fields_of(kind); });
   scorer_ = lanes::make_scorer(*tables, set);
   tables_ = std::move(tables);
 }
@@ -44,5 +44,6 @@ template class RayCaster<DomePortCamera<float>>;
 template class RayCaster<LensPinholeCamera<float>>;
 template class RayCaster<LensFlatPortCamera<float>>;
 template class RayCaster<LensDomePortCamera<float>>;
+template class RayCaster<AnyCamera<float>>;
 
 }  // namespace axial::depth

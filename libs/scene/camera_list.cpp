@@ -32,6 +32,13 @@ std::vector<refractive::LensPinholeCamera<T>> with_distortion(std::span<const Ca
   return cameras;
 }
 
+template <class T>
+std::vector<AnyCamera<T>> each_of_its_kind(std::span<const CameraModel> models) {
+  std::vector<AnyCamera<T>> cameras;
+  for (const CameraModel& model : models) cameras.emplace_back(make_camera<T>(model));
+  return cameras;
+}
+
 template <class Port>
 bool any_behind(std::span<const CameraModel> models) {
   return std::ranges::any_of(models, [](const CameraModel& model) {
@@ -45,8 +52,6 @@ template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMethod method) {
   const bool flat = any_behind<refractive::FlatPort<double>>(models);
   const bool dome = any_behind<refractive::DomePort<double>>(models);
-  if (flat && dome)
-    fail("images behind a flat port or a water surface cannot be matched with ones behind a dome");
   const bool distorted = std::ranges::any_of(
       models, [](const CameraModel& model) { return model.distortion.has_value(); });
   if (distorted && method == ProjectionMethod::line_search)
@@ -63,6 +68,7 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
     fail(
         "the line search is the paper's projection through flat ports: a dome has only the exact "
         "one");
+  if (flat && dome) return each_of_its_kind<T>(models);
   const refractive::FlatPort<double> no_port;
   // Points inside a dome are not seen: it has to be smaller than any distance.
   const refractive::DomePort<double> no_dome{{0, 0, 0}, 1e-4};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "refractive/line_search.h"
+#include "scene/any_camera.h"
 #include "scene/camera_model.h"
 
 namespace axial {
@@ -22,13 +23,13 @@ using CameraList = std::variant<
     std::vector<refractive::PinholeCamera<T>>, std::vector<refractive::FlatPortCamera<T>>,
     std::vector<refractive::DomePortCamera<T>>, std::vector<refractive::LineSearchCamera<T>>,
     std::vector<refractive::LensPinholeCamera<T>>, std::vector<refractive::LensFlatPortCamera<T>>,
-    std::vector<refractive::LensDomePortCamera<T>>>;
+    std::vector<refractive::LensDomePortCamera<T>>, std::vector<AnyCamera<T>>>;
 
 // All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
 // ones is a port of index 1, which is the pinhole exactly. In the same way straight lenses pay
-// nothing for distortion, and one among distorted ones is a distortion of nothing. Same order as
-// `models`. Error: flat ports and domes together, or the line search with a dome or a distorted
-// lens.
+// nothing for distortion, and one among distorted ones is a distortion of nothing. Where some are
+// behind flat ports and others behind domes, each is of its own kind. Same order as `models`.
+// Error: the line search with a dome or a distorted lens.
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models,
                                ProjectionMethod method = ProjectionMethod::exact);

@@ -97,6 +97,25 @@ LensDomePortCamera<float> make_camera_of(float focal, int index) {
   return {distorted_lens_of(focal, index), dome_port_of(index)};
 }
 
+// A kind after the other.
+template <>
+AnyCamera<float> make_camera_of(float focal, int index) {
+  switch (index % 6) {
+    case 0:
+      return AnyCamera<float>(make_camera_of<PinholeCamera<float>>(focal, index));
+    case 1:
+      return AnyCamera<float>(make_camera_of<FlatPortCamera<float>>(focal, index));
+    case 2:
+      return AnyCamera<float>(make_camera_of<DomePortCamera<float>>(focal, index));
+    case 3:
+      return AnyCamera<float>(make_camera_of<LensPinholeCamera<float>>(focal, index));
+    case 4:
+      return AnyCamera<float>(make_camera_of<LensFlatPortCamera<float>>(focal, index));
+    default:
+      return AnyCamera<float>(make_camera_of<LensDomePortCamera<float>>(focal, index));
+  }
+}
+
 cv::Mat1b smooth_image(unsigned seed) {
   std::mt19937 random(seed);
   cv::Mat1b coarse(kHeight / 4, kWidth / 4), image;
@@ -169,9 +188,9 @@ std::vector<Question> questions() {
 }
 
 template <class Matcher>
-std::vector<ViewScore> answers(const Matcher& matcher) {
+std::vector<ViewScore> answers(const Matcher& matcher, const std::vector<Question>& asked) {
   std::vector<ViewScore> all;
-  for (const Question& question : questions()) {
+  for (const Question& question : asked) {
     ReferencePixel pixel = matcher.pixels().prepare(question.x, question.y);
     matcher.pixels().set_prior(pixel, question.prior);
     const auto surface = [&](std::size_t k) {
@@ -188,15 +207,20 @@ std::vector<ViewScore> answers(const Matcher& matcher) {
   return all;
 }
 
+template <class Matcher>
+std::vector<ViewScore> answers(const Matcher& matcher) {
+  return answers(matcher, questions());
+}
+
 std::uint32_t bits(float value) {
   return std::bit_cast<std::uint32_t>(value);
 }
 
 template <class Camera>
 class Lanes : public testing::Test {};
-using Cameras =
-    testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>,
-                   LensPinholeCamera<float>, LensFlatPortCamera<float>, LensDomePortCamera<float>>;
+using Cameras = testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>,
+                               LensPinholeCamera<float>, LensFlatPortCamera<float>,
+                               LensDomePortCamera<float>, AnyCamera<float>>;
 TYPED_TEST_SUITE(Lanes, Cameras);
 
 TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {
@@ -276,6 +300,63 @@ TYPED_TEST(Lanes, VisitTheRayOfEveryPixelOnce) {
     ASSERT_LT((ray.origin - expected.origin).norm(), 1e-7f);
   });
   EXPECT_EQ(visited, kOddWidth * 3);
+}
+
+// Source views that can be of any kind, and the views of one of these kinds.
+template <class Camera>
+struct OneOfKinds {
+  std::vector<std::size_t> numbers;  // among all views
+  std::vector<SourceView<Camera>> views;
+
+  explicit OneOfKinds(const Setup<AnyCamera<float>>& all) {
+    for (std::size_t i = 0; i < all.sources.size(); ++i) {
+      const SourceView<AnyCamera<float>>& view = all.sources[i];
+      const Camera* camera = std::get_if<Camera>(&view.camera.kind());
+      if (!camera) continue;
+      numbers.push_back(i);
+      views.push_back({*camera, view.from_reference, view.image, view.depth});
+    }
+  }
+};
+
+template <class Camera>
+class MixedKinds : public testing::Test {};
+using Kinds =
+    testing::Types<PinholeCamera<float>, FlatPortCamera<float>, DomePortCamera<float>,
+                   LensPinholeCamera<float>, LensFlatPortCamera<float>, LensDomePortCamera<float>>;
+TYPED_TEST_SUITE(MixedKinds, Kinds);
+
+// A pair of views of one kind gets the same score, to the byte, whatever kinds are matched beside.
+TYPED_TEST(MixedKinds, LeaveThePairsOfOneKindAsTheyAre) {
+  for (const bool geometric : {false, true}) {
+    const Setup<AnyCamera<float>> setup(geometric);
+    const auto reference = make_camera_of<TypeParam>(90, 1);
+    const OneOfKinds<TypeParam> one(setup);
+    ASSERT_GE(one.views.size(), 3u);
+    std::vector<Question> among_all, alone;
+    for (Question question : questions()) {
+      question.pairs.clear();
+      Question of_one = question;
+      for (std::size_t p = 0; p < question.planes.size(); ++p)
+        for (std::size_t v = 0; v < one.views.size(); ++v) {
+          const auto plane = static_cast<std::uint8_t>(p);
+          question.pairs.push_back({plane, static_cast<std::uint8_t>(one.numbers[v])});
+          of_one.pairs.push_back({plane, static_cast<std::uint8_t>(v)});
+        }
+      among_all.push_back(question);
+      alone.push_back(of_one);
+    }
+    const LaneMatcher<AnyCamera<float>> mixed(setup.image, AnyCamera<float>(reference),
+                                              setup.sources, setup.options);
+    const LaneMatcher<TypeParam> single(setup.image, reference, one.views, setup.options);
+    const auto expected = answers(single, alone), found = answers(mixed, among_all);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(bits(found[i].cost), bits(expected[i].cost));
+      ASSERT_EQ(bits(found[i].motion), bits(expected[i].motion));
+      ASSERT_EQ(bits(found[i].smoothness), bits(expected[i].smoothness));
+    }
+  }
 }
 
 TEST(Fading, IsCloseToTheExponential) {

@@ -35,7 +35,14 @@ CameraModel small_camera() {
   return camera;
 }
 
-enum class Kind { pinhole, flat_port, dome_port, fisheye_behind_flat_port, folding_lens };
+enum class Kind {
+  pinhole,
+  flat_port,
+  dome_port,
+  flat_ports_and_domes,
+  fisheye_behind_flat_port,
+  folding_lens
+};
 
 refractive::DomePort<double> dome() {
   return {{0.004, -0.003, -0.006}, 0.05, 0.008, 1, 1.49, 1.333};
@@ -61,6 +68,8 @@ Survey make_survey(Kind kind) {
     view.camera = small_camera();
     if (kind == Kind::flat_port) view.camera.port = thick_port();
     if (kind == Kind::dome_port) view.camera.port = dome();
+    if (kind == Kind::flat_ports_and_domes && i % 2) view.camera.port = dome();
+    if (kind == Kind::flat_ports_and_domes && i % 2 == 0) view.camera.port = thick_port();
     if (kind == Kind::fisheye_behind_flat_port) {
       view.camera.port = thick_port();
       view.camera.distortion.emplace();
@@ -122,11 +131,13 @@ class PatchMatchOn : public testing::TestWithParam<Kind> {};
 std::string name_of(const testing::TestParamInfo<Kind>& test) {
   if (test.param == Kind::pinhole) return "Pinhole";
   if (test.param == Kind::fisheye_behind_flat_port) return "FisheyeBehindFlatPort";
+  if (test.param == Kind::flat_ports_and_domes) return "FlatPortsAndDomes";
   return test.param == Kind::flat_port ? "FlatPort" : "DomePort";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, PatchMatchOn,
                          testing::Values(Kind::pinhole, Kind::flat_port, Kind::dome_port,
+                                         Kind::flat_ports_and_domes,
                                          Kind::fisheye_behind_flat_port),
                          name_of);
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera of any kind as one type, for lists that mix kinds. The kind is looked up at every call:
+// work on many pixels or points visits kind() once instead.
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include "scene/camera_model.h"
+
+namespace axial {
+
+template <class T>
+class AnyCamera {
+ public:
+  using Scalar = T;
+
+  explicit AnyCamera(CameraVariant<T> camera) : camera_(std::move(camera)) {}
+
+  const CameraVariant<T>& kind() const { return camera_; }
+
+  // As those of the camera itself.
+  refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const {
+    return std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
+  }
+  refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel,
+                              refractive::AxialRayJacobian<T>& jacobian) const {
+    return std::visit([&](const auto& camera) { return camera.ray(pixel, jacobian); }, camera_);
+  }
+  refractive::Projection<T> project(const refractive::Vector3<T>& X,
+                                    refractive::Matrix23<T>* jacobian = nullptr,
+                                    refractive::Vector3<T>* origin = nullptr) const {
+    return std::visit([&](const auto& camera) { return camera.project(X, jacobian, origin); },
+                      camera_);
+  }
+
+ private:
+  CameraVariant<T> camera_;
+};
+
+}  // namespace axial
