@@ -52,7 +52,7 @@ Agreement summarise(std::span<const MapAgreement> maps);
 // What is no agreement any more, with the reasons for the numbers beside the measurements in
 // docs/formats.md. Fewer points, cells or pixels than these say nothing.
 struct AgreementLimits {
-  double pixels = 0.75, systematic = 0.15, significance = 2, consistent = 0.6;
+  double pixels = 0.75, systematic = 0.15, significance = 2, consistent = 0.7;
   std::size_t min_points = 50, min_cells = 8, min_asked = 50;
 };
 

@@ -24,7 +24,7 @@ void warn_of_port_values(std::span<const ColmapCamera> cameras, const std::strin
 // A warning, starting with "`file`: housing.ports.NAME", for each port of the scene's images
 //   that reaches farther than half of the sparse points that they see (the scene would be inside
 //   the housing, or above the water), or
-//   through which half of the points are farther than 40 m: no water is that clear.
+//   through which half of the points are farther than 25 m: hardly any water is clear enough.
 // Ports as they are attached to the images; one warning a port, in the order of their names.
 void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const std::string& file);
 

@@ -123,7 +123,7 @@ class FlatPort(PortTest):
 
     def test_poses_that_are_not_in_metres(self):
         for scale in (10, 100, 1000, 0.1):
-            clear = ("more than 40 m of water away",) if scale >= 100 else ()
+            clear = ("more than 25 m of water away",) if scale >= 100 else ()
             self.warns(f"times_{scale}", *clear, housing=self.housing(), scale=scale)
         # Here the scene lies inside the housing, and is not seen at all.
         for scale in (0.01, 0.001):
@@ -191,6 +191,14 @@ class FarScene(PortTest):
         self.warns("n149", housing=self.housing(n_water=1.49))
         self.warns("absorbed", housing=self.housing(), focal=1.333)
         self.warns("forgotten")
+
+    def test_a_unit_that_hardly_moves_a_point(self):
+        """A port of 3 cm as seen from 3 m counts for a ninth of a pixel here; the distance tells."""
+        for scale in (10, 100, 1000):
+            folder = self.scene(f"times_{scale}", housing=self.housing(), scale=scale)
+            said = self.densify(folder)
+            self.assertEqual(said.count("more than 25 m of water away: are the poses in metres?"), 1)
+            self.assertLess(self.report(folder)["systematic_px"], 0.15)
 
 
 if __name__ == "__main__":

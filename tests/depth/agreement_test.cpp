@@ -59,17 +59,57 @@ TEST(Agreement, ExactMapsAgree) {
     EXPECT_LT(found.share, 0.002);
     EXPECT_LT(found.pixels, 0.1);
     EXPECT_LT(found.systematic, 0.03);
-    EXPECT_EQ(found.consistent, 1);
+    EXPECT_GT(found.consistent, 0.99);
     EXPECT_FALSE(judge(found).any());
   }
 }
 
-// What a matcher finds that follows another camera than the photographs': here each depth is the
-// right one for the right camera, at the same pixel.
-std::vector<DepthMap> seen_through(std::vector<DepthMap> maps,
+// The rays of a camera at a pose, in the world.
+template <class Camera>
+refractive::AxialRay<double> world_ray(const Camera& camera, const Pose& pose,
+                                       const Eigen::Vector2d& pixel) {
+  const auto ray = camera.ray(pixel);
+  return {pose.to_world(ray.origin), pose.rotation.transpose() * ray.direction};
+}
+
+// Where on `a` the two rays come nearest to each other.
+double nearest_to(const refractive::AxialRay<double>& a, const refractive::AxialRay<double>& b) {
+  const Eigen::Vector3d between = b.origin - a.origin;
+  const double cosine = a.direction.dot(b.direction);
+  return (between.dot(a.direction) - cosine * between.dot(b.direction)) / (1 - cosine * cosine);
+}
+
+// `map` as a perfect matcher with the camera `wrong` makes it: of each pixel it knows the one that
+// shows the same surface to the image at `other`, and meets the two pixels' rays.
+DepthMap matched(const DepthMap& map, const Pose& other, const CameraModel& wrong) {
+  DepthMap result = map;
+  result.camera = wrong;
+  result.depth = map.depth.clone();
+  std::visit(
+      [&](const auto& truly, const auto& wrongly) {
+        for (int y = 0; y < map.height(); ++y)
+          for (int x = 0; x < map.width(); ++x) {
+            const Eigen::Vector2d pixel(x, y);
+            const Eigen::Vector3d surface =
+                world_ray(truly, map.pose, pixel).at(static_cast<double>(map.depth(y, x)));
+            const auto seen = truly.project(other.to_camera(surface));
+            const double depth = nearest_to(world_ray(wrongly, map.pose, pixel),
+                                            world_ray(wrongly, other, seen.pixel));
+            result.depth(y, x) = seen.visible && depth > 0 ? static_cast<float>(depth) : 0;
+          }
+      },
+      make_camera<double>(map.camera), make_camera<double>(wrong));
+  return result;
+}
+
+std::vector<DepthMap> seen_through(const std::vector<DepthMap>& maps,
                                    const std::function<void(CameraModel&)>& change) {
-  for (DepthMap& map : maps) change(map.camera);
-  return maps;
+  CameraModel wrong = maps.front().camera;
+  change(wrong);
+  std::vector<DepthMap> result;
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    result.push_back(matched(maps[i], maps[(i + 1) % maps.size()].pose, wrong));
+  return result;
 }
 
 refractive::FlatPort<double>& port_of(CameraModel& camera) {
@@ -79,6 +119,7 @@ refractive::FlatPort<double>& port_of(CameraModel& camera) {
 TEST(Agreement, EachWrongNumberOfTheCameraShows) {
   const std::vector<DepthMap> right = maps_of(kPlane, test::behind_port(test::dry_camera()));
   const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  EXPECT_FALSE(judge(agreement_of(seen_through(right, [](CameraModel&) {}), points)).any());
   const std::vector<std::pair<std::string, std::function<void(CameraModel&)>>> changes{
       {"distance", [](CameraModel& c) { port_of(c).distance *= 10; }},
       {"normal", [](CameraModel& c) { port_of(c).normal = Eigen::Vector3d(1, 0, 1).normalized(); }},
@@ -109,7 +150,7 @@ TEST(Agreement, TellsASystematicDifferenceFromNoise) {
   EXPECT_FALSE(judge(noisy).any()) << noisy.systematic << " " << noisy.significance;
   EXPECT_TRUE(judge(shifted).systematic) << shifted.systematic << " " << shifted.significance;
   EXPECT_NEAR(shifted.share, 0.02, 0.004) << "of the depth, as stated";
-  EXPECT_EQ(shifted.consistent, 1) << "the maps are as they were";
+  EXPECT_GT(shifted.consistent, 0.99) << "the maps are as they were";
 }
 
 // Maps of random depths lead nowhere, whatever the points are.

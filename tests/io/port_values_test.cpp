@@ -124,7 +124,7 @@ std::string said_in_scene(const HousingPort& port, double distance, double outli
 }
 
 TEST(PortsInScene, PortsBeforeTheScenePass) {
-  for (const double distance : {0.15, 0.8, 8.0, 35.0})
+  for (const double distance : {0.15, 0.8, 8.0, 24.0})
     for (const HousingPort& port : {HousingPort(flat()), HousingPort(dome())}) {
       EXPECT_EQ(said_in_scene(port, distance), "") << distance;
       EXPECT_EQ(said_in_scene(port, distance, 0.3), "") << "a third of the points are wrong";
@@ -141,7 +141,7 @@ TEST(PortsInScene, PortsThatReachBeyondTheSceneAreNamed) {
 
 TEST(PortsInScene, NoWaterIsThatClear) {
   for (const HousingPort& port : {HousingPort(flat()), HousingPort(dome())})
-    EXPECT_THAT(said_in_scene(port, 80), HasSubstr("more than 40 m of water away"));
+    EXPECT_THAT(said_in_scene(port, 30), HasSubstr("more than 25 m of water away"));
 }
 
 TEST(PortsInScene, SceneAboveTheWater) {
