@@ -292,6 +292,18 @@ TEST(PatchMatch, ThePublishedMethodsAreForStraightLenses) {
   EXPECT_THROW(estimate_depth_map(input, options), Error);
 }
 
+TEST(PatchMatch, ThePublishedMethodsAreForOneKindOfPort) {
+  const Survey survey = make_survey(Kind::flat_ports_and_domes);
+  std::vector<const MatchImage*> sources;
+  MatchInput input = survey.input(0, sources);
+  PatchMatchOptions options;
+  options.warp = Warp::homography;
+  EXPECT_THROW(estimate_depth_map(input, options), Error);
+  options.warp = Warp::affine;
+  input.projection = ProjectionMethod::line_search;
+  EXPECT_THROW(estimate_depth_map(input, options), Error);
+}
+
 // e (1 - e^2) is largest at e = 1/sqrt(3), 57.7 pixels from the centre.
 TEST(PatchMatch, LeavesPixelsBeyondTheLensAlone) {
   const Survey survey = make_survey(Kind::folding_lens);

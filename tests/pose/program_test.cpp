@@ -27,8 +27,14 @@ class RefinePoses : public test::ProgramTest {
 
   void SetUp() override {
     ProgramTest::SetUp();
+    write_input();
+    io::write_housing(folder_ / "housing.json", testing::housing());
+  }
+
+  // The survey as COLMAP knows it, and the lens.
+  void write_input() {
     Bundle absorbed = truth_;
-    absorbed.cameras[0].measured.port.reset();
+    for (BundleCamera& camera : absorbed.cameras) camera.measured.port.reset();
     AdjustOptions options;
     options.free[kFocalNumber] = true;
     options.loss_sigmas = 10;
@@ -38,7 +44,6 @@ class RefinePoses : public test::ProgramTest {
     io::ColmapModel lens;
     lens.cameras = {testing::kLens};
     write("lens", lens);
-    io::write_housing(folder_ / "housing.json", testing::housing());
   }
 
   void write(const std::string& name, const io::ColmapModel& model) {
@@ -71,6 +76,31 @@ TEST_F(RefinePoses, MakesAModelThatInterfaceColmapReads) {
   EXPECT_LT(errors.largest_angle, 0.05);
   const io::Housing housing = io::read_housing(folder_ / "out" / "housing.json");
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(housing.ports.at("main")).distance, 0.02);
+}
+
+TEST_F(RefinePoses, RefinesImagesBehindFlatPortsAndDomesTogether) {
+  truth_ = testing::mixed_survey(camera_behind(flat_port(2)), camera_behind(testing::dome_port()),
+                                 {.noise = 0.2});
+  write_input();
+  io::Housing housing = testing::housing();
+  housing.ports["dome"] = testing::dome_port();
+  for (std::size_t i = 1; i < truth_.images.size(); i += 2)
+    housing.images[truth_.images[i].name] = "dome";
+  io::write_housing(folder_ / "housing.json", housing);
+  const Outcome outcome =
+      run(kInput + "-o out --refine index --index-sigma 0.001 --scale-from " + baseline());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
+  EXPECT_EQ(refined.cameras.size(), 2u);
+  Bundle found = truth_;
+  for (std::size_t i = 0; i < found.images.size(); ++i)
+    found.images[i].pose = refined.images[i].pose;
+  const auto errors = testing::pose_errors(found, truth_, false);
+  EXPECT_LT(errors.centre_rms, 0.001);
+  EXPECT_LT(errors.largest_angle, 0.05);
+  const auto report = io::read_json(folder_ / "out" / "report.json");
+  EXPECT_NEAR(report["pixel_sigma"].get<double>(), 0.2, 0.01);
+  EXPECT_EQ(report["images"].size(), 12u);
 }
 
 TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {

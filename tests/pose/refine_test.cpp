@@ -12,6 +12,7 @@ namespace {
 using testing::camera_behind;
 using testing::dome_port;
 using testing::flat_port;
+using testing::mixed_survey;
 using testing::pose_errors;
 using testing::survey;
 using testing::SurveyOptions;
@@ -30,7 +31,7 @@ std::ostream& operator<<(std::ostream& out, const Case& one) {
 // The survey as a pinhole engine with a free focal length knows it, in a scale of its own.
 Bundle absorbed(const Bundle& truth) {
   Bundle bundle = truth;
-  bundle.cameras[0].measured.port.reset();
+  for (BundleCamera& camera : bundle.cameras) camera.measured.port.reset();
   AdjustOptions options;
   options.free[kFocalNumber] = true;
   options.loss_sigmas = 10;
@@ -108,6 +109,30 @@ INSTANTIATE_TEST_SUITE_P(Ports, RefineBehind,
                                            Case{"FarPort", flat_port(0, 0.1), 2.5},
                                            Case{"Dome", dome_port(), 2.5, false}),
                          [](const auto& tested) { return tested.param.name; });
+
+// Half of the images behind a flat port, the others behind a dome: each by its own camera.
+TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
+  const Bundle truth = mixed_survey(camera_behind(flat_port(3)), camera_behind(dome_port()),
+                                    {.distance = 0.8, .points = 400, .noise = 0.2});
+  const RefineOptions options = with_known_length(truth);
+  const auto refined = [&](bool swapped) {
+    Bundle bundle = absorbed(truth);
+    if (swapped) std::swap(bundle.cameras[0], bundle.cameras[1]);
+    bring_to_metres(bundle, options.adjust);
+    const RefineReport report = refine(bundle, options);
+    return std::pair(bundle, report);
+  };
+  const auto [bundle, report] = refined(false);
+  EXPECT_LT(report.rms_after, 0.2 * std::sqrt(2.0) * 1.02);
+  EXPECT_GT(report.rms_after, 0.2 * std::sqrt(2.0) * 0.8);
+  EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
+  const auto before = pose_errors(absorbed(truth), truth), after = pose_errors(bundle, truth);
+  EXPECT_LT(after.centre_rms, 0.001 * 0.8);
+  EXPECT_LT(after.largest_angle, 0.05);
+  EXPECT_NEAR(after.scale, 1, 1e-3);
+  EXPECT_GT(before.centre_rms, 5 * after.centre_rms);
+  EXPECT_GT(pose_errors(refined(true).first, truth).centre_rms, 5 * after.centre_rms);
+}
 
 TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
   const Bundle truth = survey(camera_behind(flat_port()), {});

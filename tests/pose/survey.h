@@ -88,6 +88,28 @@ inline Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
   return bundle;
 }
 
+// As survey(), with every second image taken by `second` in place of `first`.
+inline Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
+                           const SurveyOptions& options) {
+  Bundle bundle = survey(first, options);
+  bundle.cameras.push_back({second, HousingChange<double>::Zero()});
+  const auto seeing = make_camera<double>(second);
+  std::mt19937_64 random(options.seed + 1);
+  std::normal_distribution<double> noise(0, 1);
+  for (std::size_t i = 1; i < bundle.images.size(); i += 2) bundle.images[i].camera = 1;
+  std::erase_if(bundle.observations, [&](Observation& observation) {
+    const BundleImage& image = bundle.images[observation.image];
+    if (image.camera == 0) return false;
+    const Eigen::Vector3d X = image.pose.to_camera(bundle.points[observation.point].position);
+    const auto seen = std::visit([&](const auto& c) { return c.project(X); }, seeing);
+    observation.pixel = seen.pixel + options.noise * Eigen::Vector2d(noise(random), noise(random));
+    const Eigen::Vector2d& p = seen.pixel;
+    return !seen.visible || p.x() < 0 || p.y() < 0 || p.x() > second.width - 1 ||
+           p.y() > second.height - 1;
+  });
+  return bundle;
+}
+
 // Poses and points moved at random: `angle` [rad] and `shift` [m] are standard deviations.
 inline void disturb(Bundle& bundle, double angle, double shift, unsigned seed) {
   std::mt19937_64 random(seed);

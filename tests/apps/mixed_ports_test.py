@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One scene photographed behind a flat port, behind a dome and in air: five views of 320 x 240 of the
+close-up scene, on true poses."""
+
+import json
+import os
+import shutil
+import tempfile
+
+from programs import ProgramTest, depth_rows, main, read, run, write
+
+SCENE = ("--preset", "closeup", "--coarseness", 4, "--views", 5, "--width", 320, "--height", 240,
+         "--seed", 1, "--samples", 1, "--truth", 0)
+DOME = ("--dome-radius", 0.05, "--dome-x", 0.003, "--dome-y", -0.004, "--dome-z", 0.006)
+VIEWS = [f"{i:04}.jpg" for i in range(5)]
+PORTS = ["flat", "dome", "none", "flat", "dome"]  # of the mixed scene's views
+FULL = ("--resolution-level", 0, "--number-views-fuse", 2)
+QUICK = ("--resolution-level", 1, "--min-resolution", 100, "--geometric-iters", 1)
+
+
+class MixedPortsTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        shared = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(shared.cleanup)
+        cls.flat, cls.dome, cls.mixed = (os.path.join(shared.name, name)
+                                         for name in ("flat", "dome", "mixed"))
+        for folder, port in ((cls.flat, ()), (cls.dome, (*DOME, "--medium", "water"))):
+            made = run("SimulateUnderwater", *SCENE, *port, "-o", folder)
+            assert made.returncode == 0, made.stderr
+        cls.make_mixed()
+
+    @classmethod
+    def make_mixed(cls):
+        shutil.copytree(os.path.join(cls.flat, "sparse"), os.path.join(cls.mixed, "sparse"))
+        os.mkdir(os.path.join(cls.mixed, "water"))
+        source = {"flat": (cls.flat, "water"), "dome": (cls.dome, "water"), "none": (cls.flat, "air")}
+        for view, port in zip(VIEWS, PORTS):
+            shutil.copy(os.path.join(*source[port], view), os.path.join(cls.mixed, "water", view))
+        ports = {name: json.loads(read(os.path.join(folder, "housing.json")))["ports"]["main"]
+                 for name, folder in (("flat", cls.flat), ("dome", cls.dome))}
+        write(os.path.join(cls.mixed, "housing.json"), json.dumps(
+            {"version": 1, "ports": ports, "default": "none", "images": dict(zip(VIEWS, PORTS))}))
+
+    def import_scene(self, truth, folder, model=None):
+        self.succeeds("InterfaceCOLMAP", "-i", model or truth, "--image-folder", os.path.join(truth, "water"),
+                      "--housing", os.path.join(truth, "housing.json"), "-o",
+                      self.path(folder, "scene.mvs"))
+
+    def densify(self, folder, *arguments):
+        return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(folder),
+                             "--refractive", *arguments).stdout
+
+    def result(self, truth, folder):
+        """Median distance to the true surface [m], recall at 4 mm, which is one pixel's width."""
+        self.succeeds("EvaluateReconstruction", "-i", self.path(folder, "scene_dense.ply"), "-m",
+                      os.path.join(self.flat, "mesh.ply"), "--cameras",
+                      os.path.join(truth, "sparse"), "--housing",
+                      os.path.join(truth, "housing.json"), "--tolerance", "0.004", "--samples", "20000", "--json",
+                      self.path(folder, "evaluation.json"))
+        report = json.loads(read(self.path(folder, "evaluation.json")))
+        median, recall = report["accuracy"]["median"], report["scores"][0]["recall"]
+        print(f"measured: {folder} median {1e3 * median:.3f} mm, recall {recall:.3f}")
+        return median, recall
+
+    def swap_kinds(self, folder):
+        file = self.path(folder, "scene.housing.json")
+        housing = json.loads(read(file))
+        swapped = {"flat": "dome", "dome": "flat", "none": "none"}
+        housing["images"] = {view: swapped[port] for view, port in zip(VIEWS, PORTS)}
+        write(file, json.dumps(housing))
+
+    def test_a_mixed_scene_is_as_good_as_those_of_one_kind(self):
+        results = {}
+        for name, truth in (("flat", self.flat), ("dome", self.dome), ("mixed", self.mixed),
+                            ("swapped", self.mixed)):
+            self.import_scene(truth, name)
+            if name == "swapped":
+                self.swap_kinds(name)
+            self.densify(name, *FULL)
+            results[name] = self.result(truth, name)
+        (flat_median, flat_recall), (dome_median, dome_recall) = results["flat"], results["dome"]
+        median, recall = results["mixed"]
+        self.assertLess(median, 1.1 * max(flat_median, dome_median))
+        # The views' fields differ with their ports, and with them what is seen twice.
+        self.assertGreater(recall, 0.95 * min(flat_recall, dome_recall))
+        # And it is each view's own port that does it.
+        self.assertGreater(results["swapped"][0], 5 * median)
+
+    def test_the_same_bytes_for_any_number_of_threads_and_when_taken_up_again(self):
+        for name, threads in (("one", 1), ("two", 2)):
+            self.import_scene(self.mixed, name)
+            self.densify(name, *QUICK, "--postprocess-dmaps", 7, "--max-threads", threads)
+        os.remove(self.path("two", "depth0001.dmap"))
+        os.remove(self.path("two", "scene_dense.ply"))
+        self.densify("two", *QUICK, "--postprocess-dmaps", 7)
+        for name in ("scene_dense.ply", *(f"depth{i:04}.dmap" for i in range(5))):
+            self.assertEqual(read(self.path("one", name)), read(self.path("two", name)), name)
+
+    def test_views_whose_sources_are_of_their_kind_have_the_maps_of_a_scene_of_that_kind(self):
+        """Each view has one source view of its own kind, beside images of other kinds."""
+        write(self.path("neighbours.txt"), "0 3\n1 4\n3 0\n4 1\n")
+        # Depth maps begin with the sparse points: the same for all, whoever else sees them.
+        write(self.path("dense.ini"), "Min Views Trust Point = 1\n")
+        for name in ("mixed", "flat", "dome"):
+            self.import_scene(getattr(self, name), name, model=self.flat)
+            self.densify(name, *QUICK, "--view-neighbors-file", self.path("neighbours.txt"),
+                         "--dense-config-file", self.path("dense.ini"))
+        for view, port in enumerate(PORTS):
+            if port == "none":
+                continue
+            found, alone = (depth_rows(read(self.path(folder, f"depth{view:04}.dmap")))
+                            for folder in ("mixed", port))
+            self.assertTrue(found == alone, view)
+            self.assertGreater(sum(depth > 0 for row in found for depth in row), 5000)
+
+    def test_the_published_methods_are_refused_in_one_line(self):
+        self.import_scene(self.mixed, "scene")
+        for option, reason in ((("--projection", "line-search"), "a dome has only the exact one"),
+                               (("--warp", "homography"), "matched together with the affine one")):
+            self.refuses(reason, "DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("scene"),
+                         "--refractive", *option)
+
+
+if __name__ == "__main__":
+    main()
