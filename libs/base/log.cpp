@@ -9,8 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <memory>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/log_file.h"
@@ -32,9 +35,27 @@ std::shared_ptr<spdlog::sinks::sink>& file_sink() {
   return sink;
 }
 
+// Whether lines of a log may be added to `file`: it begins with a date, is empty, is not there, or
+// is no regular file.
+bool may_hold_a_log(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return true;
+  std::array<char, 20> start{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), start.size());
+  const std::string_view read(start.data(), static_cast<std::size_t>(stream.gcount()));
+  const std::string_view form = "0000-00-00 00:00:00 ";
+  const auto fits = [](char c, char wanted) {
+    return wanted == '0' ? '0' <= c && c <= '9' : c == wanted;
+  };
+  return read.empty() || std::ranges::equal(read, form, fits);
+}
+
 }  // namespace
 
 void log_to_file_too(const std::filesystem::path& file) {
+  if (!may_hold_a_log(file))
+    fail("--log-file {}: is no log, and nothing is added to it", file.string());
   try {
     const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     sink->set_pattern("%Y-%m-%d %H:%M:%S [%n] %v");

@@ -8,7 +8,8 @@
 namespace axial {
 
 // From now on the log's lines also go to the end of `file`, which is made if it is not there, with
-// their dates. Error that names it if it cannot be written.
+// their dates. Error that names it if it cannot be written, or if it is not empty and does not begin
+// with such a line: it is no log then, but a scene or a photograph.
 void log_to_file_too(const std::filesystem::path& file);
 
 // A line for that file alone; nothing without one.

@@ -439,6 +439,9 @@ class Options(Scene):
         for line in said.splitlines() + [error.strip().replace("DensifyPointCloud: ", "] ")]:
             self.assertIn(line.split("] ", 1)[1], log)
         self.refuses("no/log", *self.command(folder, "--log-file", "/proc/no/log"))
+        scene = read(self.path(folder, "scene.mvs"))
+        self.refuses("is no log", *self.command(folder, "--log-file", "scene.mvs"))
+        self.assertEqual(read(self.path(folder, "scene.mvs")), scene)
         for program in ("InterfaceCOLMAP", "SimulateUnderwater", "EvaluateReconstruction"):
             self.assertIn("--log-file", run(program, "--help").stdout)
 
