@@ -80,7 +80,8 @@ void say(const Project& project, const Agreement& found) {
                                          100 * found.consistent, found.asked);
   if (!judge(found, limits).any()) return axial::log_info("Agreement: {}; {}", points, pixels);
   axial::log_warning(
-      "Cameras and photographs do not belong together: {} (usual: below {} and {}); {} (usual: "
+      "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
+      "(usual: "
       "over {:.0f} %). Likely causes: {}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
       likely_causes(project));
