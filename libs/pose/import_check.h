@@ -13,10 +13,10 @@ namespace axial::pose {
 
 // A warning for a model whose lenses look through `housing`, or nothing where all fits or nothing
 // can be told (port_check.h says what can). Points are triangulated anew, a bounded sample of them.
-// Where tracks fit in air and not behind the ports, or there are no ports, up to six photographs of
-// `image_folder` decide what the tracks are of (of ports that the model itself carries, they are);
-// an empty path says that there are none to ask, and then nothing is said. The line is the same for
-// any number of threads. Nothing is thrown for files that cannot be read.
+// Where tracks fit in air they may be of photographs in air, and up to six photographs of
+// `image_folder` decide; with an empty path nothing is said then. (Tracks of a model that carries
+// ports itself are of photographs through them.) The line is the same for any number of threads.
+// Nothing is thrown for files that cannot be read.
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
                                           const std::filesystem::path& image_folder);
 

@@ -4,8 +4,10 @@
 // and then only the pictures tell whether a port is right.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "io/colmap.h"
