@@ -2,8 +2,8 @@
 #include "pinhole_folder.h"
 
 #include <map>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -47,10 +47,16 @@ void check_folder(const Project& project, const Options& options) {
   if (!fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error))
     fail("--pinhole-export {}: is a file, not a folder", folder.string());
-  std::vector<fs::path> inputs = {options.input.parent_path(),
-                                  options.parsed.common.working_folder};
+  // Folders that inputs lie in, at any depth.
+  std::set<fs::path> inputs;
+  const auto add = [&](fs::path above) {
+    for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {
+    }
+  };
+  add(options.input.parent_path());
+  add(options.parsed.common.working_folder);
   for (const axial::SceneImage& image : project.scene.images)
-    inputs.push_back(fs::path(image.path).parent_path());
+    add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
       fail("--pinhole-export {}: this run's inputs lie there", folder.string());
