@@ -19,6 +19,7 @@
 #include "options.h"
 #include "outputs.h"
 #include "pinhole_export.h"
+#include "pinhole_folder.h"
 #include "project.h"
 
 namespace {

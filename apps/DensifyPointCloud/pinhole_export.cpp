@@ -2,13 +2,10 @@
 #include "pinhole_export.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
-#include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -24,59 +21,13 @@
 #include "io/masks.h"
 #include "io/mvs.h"
 #include "io/ply.h"
+#include "pinhole_folder.h"
 #include "scene/resolution.h"
 
 namespace densify {
 namespace fs = std::filesystem;
-using axial::fail;
 
 namespace {
-
-constexpr const char* kMarker = "pinhole_export.json";
-
-bool is_jpeg(const fs::path& file) {
-  const std::string extension = axial::lower_extension(file);
-  return extension == ".jpg" || extension == ".jpeg";
-}
-
-// Below images/: the way from the deepest folder of all photographs. JPEGs and PNGs keep their
-// names.
-fs::path exported_name(const axial::SceneImage& image, const fs::path& photographs) {
-  fs::path name = fs::path(image.path).lexically_normal().lexically_relative(photographs);
-  if (!is_jpeg(name) && name.extension() != ".png") name += ".png";
-  return name;
-}
-
-void check_names(const Project& project) {
-  const fs::path photographs = axial::io::common_image_folder(project.scene);
-  std::map<fs::path, const std::string*> taken;
-  for (const std::size_t image : project.references) {
-    const std::string& path = project.scene.images[image].path;
-    const fs::path name = exported_name(project.scene.images[image], photographs);
-    for (const fs::path& file : {name, axial::io::mask_beside(name)})
-      if (const auto [other, added] = taken.try_emplace(file, &path); !added)
-        fail("--pinhole-export: {} and {} would both be exported as images/{}", *other->second,
-             path, file.string());
-  }
-}
-
-void check_folder(const Project& project, const Options& options) {
-  const fs::path& folder = options.pinhole_export;
-  std::error_code error;
-  if (!fs::exists(folder, error)) return;
-  if (!fs::is_directory(folder, error))
-    fail("--pinhole-export {}: is a file, not a folder", folder.string());
-  std::vector<fs::path> inputs = {options.input.parent_path(),
-                                  options.parsed.common.working_folder};
-  for (const axial::SceneImage& image : project.scene.images)
-    inputs.push_back(fs::path(image.path).parent_path());
-  for (const fs::path& input : inputs)
-    if (fs::equivalent(folder, input, error))
-      fail("--pinhole-export {}: this run's inputs lie there", folder.string());
-  if (!fs::is_empty(folder, error) && !fs::exists(folder / kMarker, error))
-    fail("--pinhole-export {}: holds other files: name an empty folder, or a new one",
-         folder.string());
-}
 
 struct Exported {
   axial::cloud::PinholeView view;  // at the photograph's resolution
@@ -162,7 +113,7 @@ class Export {
   void write_image(std::size_t image, const axial::cloud::PinholeImage& pinhole) {
     constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
     const fs::path file = image_file(image);
-    if (is_jpeg(file))
+    if (is_jpeg_name(file))
       axial::io::write_jpeg(file, pinhole.color, kQuality);
     else
       axial::io::write_png(file, pinhole.color);
@@ -264,10 +215,10 @@ class Export {
            {"centre_in_camera_m", {as.view.centre.x(), as.view.centre.y(), as.view.centre.z()}},
            {"exact_share", as.exact}});
     }
-    axial::io::write_json(folder_ / kMarker, {{"version", 1},
-                                              {"made_from", made_from()},
-                                              {"scene", options_.input.string()},
-                                              {"images", images}});
+    axial::io::write_json(folder_ / kPinholeMarker, {{"version", 1},
+                                                     {"made_from", made_from()},
+                                                     {"scene", options_.input.string()},
+                                                     {"images", images}});
   }
 
   void report() const {
@@ -299,18 +250,6 @@ class Export {
 };
 
 }  // namespace
-
-void check_pinhole_export(const Project& project, const Options& options) {
-  if (options.pinhole_export.empty()) return;
-  if (all_pinholes(project))
-    fail(
-        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS may take what "
-        "this run writes as it is",
-        options.pinhole_export.string(), options.input.string());
-  check_folder(project, options);
-  check_names(project);
-  axial::require_writable_folder(options.pinhole_export);
-}
 
 std::uint64_t bytes_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };

@@ -9,11 +9,6 @@
 
 namespace densify {
 
-// Before hours of work: Error if all cameras are pinholes already, if the folder holds files of
-// others or is one that inputs lie in, if it cannot be written, or if two images would get one
-// name. Nothing without the option.
-void check_pinhole_export(const Project& project, const Options& options);
-
 // What an image takes in memory while it is resampled [bytes], at most.
 std::uint64_t bytes_to_resample(const View& view);
 

@@ -338,10 +338,12 @@ class Refusals(Exports):
         write(os.path.join(work, "other", "notes.txt"), "mine\n")
         write(os.path.join(work, "a_file"), "mine\n")
         os.symlink(work, os.path.join(work, "link"))
+        write(os.path.join(self.truth, "pinhole_export.json"), "{}\n")  # as if it were ours
         for folder, expected in (("other", "holds other files"), (".", "inputs lie there"),
                                  ("link", "inputs lie there"), ("a_file", "is a file"),
                                  ("a_file/below", "a_file"),
-                                 (os.path.join(self.truth, "water"), "inputs lie there")):
+                                 (os.path.join(self.truth, "water"), "inputs lie there"),
+                                 (self.truth, "inputs lie there")):
             self.refuses(expected, *self.command(work, "--pinhole-export", folder))
         self.assertEqual(read(os.path.join(work, "other", "notes.txt")), b"mine\n")
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pinhole_folder.h"
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "io/colmap_export.h"
+#include "io/masks.h"
+
+namespace densify {
+namespace fs = std::filesystem;
+using axial::fail;
+
+bool is_jpeg_name(const fs::path& file) {
+  const std::string extension = axial::lower_extension(file);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+fs::path exported_name(const axial::SceneImage& image, const fs::path& photographs) {
+  fs::path name = fs::path(image.path).lexically_normal().lexically_relative(photographs);
+  if (!is_jpeg_name(name) && name.extension() != ".png") name += ".png";
+  return name;
+}
+
+namespace {
+
+void check_names(const Project& project) {
+  const fs::path photographs = axial::io::common_image_folder(project.scene);
+  std::map<fs::path, const std::string*> taken;
+  for (const std::size_t image : project.references) {
+    const std::string& path = project.scene.images[image].path;
+    const fs::path name = exported_name(project.scene.images[image], photographs);
+    for (const fs::path& file : {name, axial::io::mask_beside(name)})
+      if (const auto [other, added] = taken.try_emplace(file, &path); !added)
+        fail("--pinhole-export: {} and {} would both be exported as images/{}", *other->second,
+             path, file.string());
+  }
+}
+
+void check_folder(const Project& project, const Options& options) {
+  const fs::path& folder = options.pinhole_export;
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error))
+    fail("--pinhole-export {}: is a file, not a folder", folder.string());
+  // Folders that inputs lie in, at any depth.
+  std::set<fs::path> inputs;
+  const auto add = [&](fs::path above) {
+    for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {
+    }
+  };
+  add(options.input.parent_path());
+  add(options.parsed.common.working_folder);
+  for (const axial::SceneImage& image : project.scene.images)
+    add(fs::path(image.path).parent_path());
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(folder, input, error))
+      fail("--pinhole-export {}: this run's inputs lie there", folder.string());
+  if (!fs::is_empty(folder, error) && !fs::exists(folder / kPinholeMarker, error))
+    fail("--pinhole-export {}: holds other files: name an empty folder, or a new one",
+         folder.string());
+}
+
+}  // namespace
+
+void check_pinhole_export(const Project& project, const Options& options) {
+  if (options.pinhole_export.empty()) return;
+  if (all_pinholes(project))
+    fail(
+        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS may take what "
+        "this run writes as it is",
+        options.pinhole_export.string(), options.input.string());
+  check_folder(project, options);
+  check_names(project);
+  axial::require_writable_folder(options.pinhole_export);
+}
+
+}  // namespace densify

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The folder of --pinhole-export: whether it may be written, and what files in it are called.
+#pragma once
+
+#include <filesystem>
+
+#include "project.h"
+
+namespace densify {
+
+// The file that says that a folder is an earlier export.
+inline constexpr const char* kPinholeMarker = "pinhole_export.json";
+
+bool is_jpeg_name(const std::filesystem::path& file);
+
+// An image's name below images/: the way from `photographs`, the deepest folder of all. JPEGs and
+// PNGs keep their names.
+std::filesystem::path exported_name(const axial::SceneImage& image,
+                                    const std::filesystem::path& photographs);
+
+// Before hours of work: Error if all cameras are pinholes already, if the folder holds files of
+// others or is one that inputs lie in, if it cannot be written, or if two images would get one
+// name. Nothing without the option.
+void check_pinhole_export(const Project& project, const Options& options);
+
+}  // namespace densify
