@@ -117,7 +117,8 @@ TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
   const RefineOptions options = with_known_length(truth);
   const auto refined = [&](bool swapped) {
     Bundle bundle = absorbed(truth);
-    if (swapped) std::swap(bundle.cameras[0], bundle.cameras[1]);
+    for (BundleImage& image : bundle.images)
+      if (swapped) image.camera = 1 - image.camera;
     bring_to_metres(bundle, options.adjust);
     const RefineReport report = refine(bundle, options);
     return std::pair(bundle, report);
