@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -221,7 +222,9 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
-    log_warning("{}", pose::warning_of(*freed, known.scale_sigma));
+    log_warning(
+        "{}", pose::warning_of(*freed, results.scale_lost ? std::numeric_limits<double>::infinity()
+                                                          : known.scale_sigma));
 }
 
 int run(int argc, char** argv) {

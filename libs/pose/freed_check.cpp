@@ -118,13 +118,19 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma) {
   const auto value = [&](double number) {
     return fmt::format("{:.4g}{}{}", number, freed.unit.empty() ? "" : " ", freed.unit);
   };
+  const std::string deviations = freed.deviations < 100 ? fmt::format("{:.0f}", freed.deviations)
+                                                        : std::string("more than 100");
+  const std::string lengths =
+      std::isfinite(scale_sigma)
+          ? fmt::format("Lengths are then known worse than the {:.2g} % claimed. ",
+                        100 * scale_sigma)
+          : std::string();
   return fmt::format(
-      "Lens, port and scale do not fit the photographs: with {} at {} (stated: {}, {:.0f} standard "
-      "deviations away) errors are {:.3f} px for {:.3f} px (RMS). Lengths are then known worse "
-      "than "
-      "the {:.2g} % claimed; measure it again, or --refine it",
-      freed.name, value(freed.found), value(freed.stated), freed.deviations, freed.rms_found,
-      freed.rms_stated, 100 * scale_sigma);
+      "Lens, port and scale do not fit the photographs: with {} at {} (stated: {}, {} standard "
+      "deviations away) errors are {:.3f} px for {:.3f} px (RMS). {}Measure it again, or --refine "
+      "it",
+      freed.name, value(freed.found), value(freed.stated), deviations, freed.rms_found,
+      freed.rms_stated, lengths);
 }
 
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits) {

@@ -27,7 +27,8 @@ struct FreedNumber {
 std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options);
 
-// The warning of it. `scale_sigma`: what the adjustment claims to know lengths to, relative.
+// The warning of it. `scale_sigma`: what the adjustment claims to know lengths to, relative;
+// infinite if it claims nothing.
 std::string warning_of(const FreedNumber& freed, double scale_sigma);
 
 // Where a quarter of the observations or more were dropped: the reason of most. Only errors ask for
