@@ -18,10 +18,14 @@ namespace {
 
 constexpr std::size_t kViews = 5;
 
+// All cameras look along z, as a survey's do. Cameras that turn to one point of a flat scene see a
+// wrong angle of view as a flat scene, too.
 std::vector<DepthMap> maps_of(const test::AnalyticScene& scene, const CameraModel& camera) {
   std::vector<DepthMap> maps;
-  for (const Pose& pose : test::circle_of_poses(kViews))
+  for (Pose pose : test::circle_of_poses(kViews)) {
+    pose.rotation.setIdentity();
     maps.push_back(test::exact_map(scene, camera, pose));
+  }
   return maps;
 }
 
@@ -128,7 +132,8 @@ TEST(Agreement, EachWrongNumberOfTheCameraShows) {
       {"focal length", [](CameraModel& c) { c.lens.fx *= 1.333, c.lens.fy *= 1.333; }},
       {"no port", [](CameraModel& c) { c.port.reset(); }}};
   for (const auto& [name, change] : changes)
-    EXPECT_TRUE(judge(agreement_of(seen_through(right, change), points)).any()) << name;
+    EXPECT_TRUE(judge(agreement_of(seen_through(right, change), points)).any())
+        << name << " " << agreement_of(seen_through(right, change), points).systematic;
 }
 
 std::vector<Eigen::Vector3f> moved(std::vector<Eigen::Vector3f> points,
