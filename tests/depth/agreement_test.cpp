@@ -132,7 +132,8 @@ TEST(Agreement, EachWrongNumberOfTheCameraShows) {
       {"focal length", [](CameraModel& c) { c.lens.fx *= 1.333, c.lens.fy *= 1.333; }},
       {"no port", [](CameraModel& c) { c.port.reset(); }}};
   for (const auto& [name, change] : changes)
-    EXPECT_TRUE(judge(agreement_of(seen_through(right, change), points)).any()) << name;
+    EXPECT_TRUE(judge(agreement_of(seen_through(right, change), points)).any())
+        << name << " " << agreement_of(seen_through(right, change), points).systematic;
 }
 
 std::vector<Eigen::Vector3f> moved(std::vector<Eigen::Vector3f> points,
