@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "existing_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -123,11 +125,13 @@ void check_overwriting(const Project& project, const Options& options, const Exi
 
 void keep_images_with_maps(Project& project, const Options& options, const ExistingMaps& maps) {
   std::vector<std::size_t> kept;
+  std::filesystem::path missing;  // the first
   std::size_t foreign = 0;
   for (const std::size_t image : project.references) {
     const DmapOrigin origin = maps[image].origin;
     if (origin == DmapOrigin::none) {
       axial::log_info("{}: has no depth map, left out", project.scene.images[image].path);
+      if (missing.empty()) missing = depth_map_path(project, options, image);
       continue;
     }
     project.views[image].camera = camera_of_map(project, options, image, origin);
@@ -137,8 +141,12 @@ void keep_images_with_maps(Project& project, const Options& options, const Exist
   if (kept.empty())
     fail("--fusion-mode -1: no depth map is there: {} is none",
          depth_map_path(project, options, project.references.front()).string());
-  axial::log_info("{} of {} images have a depth map, {} by other programs", kept.size(),
-                  project.references.size(), foreign);
+  const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
+                                       kept.size(), project.references.size(), foreign);
+  if (kept.size() < project.references.size())
+    axial::log_warning("{}; {}, for one, is not there", line, missing.string());
+  else
+    axial::log_info("{}", line);
   project.references = std::move(kept);
 }
 

@@ -154,13 +154,17 @@ Similarity align_by_icp(const Options& options, const Input& input,
   return result.transform;
 }
 
-// Of two places that have nothing to do with each other nothing can be said, and that slowly.
-void warn_if_far(const Options& options, const Input& input, const Mesh& truth) {
-  constexpr double kFar = 1e5;
-  const double apart = (input.positions().front() - truth.vertices.front()).cast<double>().norm();
-  if (apart > kFar)
-    log_warning("{}: is {:.0f} m away from {}: are both in the same coordinates?",
-                options.input.string(), apart, options.truth.string());
+// Of two places that have nothing to do with each other nothing can be said, and that slowly: no
+// part of a search tree is nearer than the others.
+void refuse_if_far(const Options& options, const Input& input, const Mesh& truth) {
+  constexpr float kFar = 1e5;
+  const auto is_far = [&](const Eigen::Vector3f& x) {
+    return !((x - truth.vertices.front()).norm() <= kFar);
+  };
+  const std::span<const Eigen::Vector3f> all = input.positions();
+  if (2 * std::ranges::count_if(all, is_far) > std::ssize(all))
+    fail("{}: most of it is more than {:.0f} km away from {}: they are not in the same coordinates",
+         options.input.string(), kFar / 1000, options.truth.string());
 }
 
 // The input goes from its own frame to the truth's.
@@ -236,7 +240,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   report["align"] = align(options, input, surface, models);
-  warn_if_far(options, input, truth);
+  refuse_if_far(options, input, truth);
 
   evaluate::CloudOptions settings;
   settings.tolerances = options.tolerances;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -10,6 +13,7 @@
 #include "io/colmap_scene.h"
 #include "io/geo_offset.h"
 #include "io/housing.h"
+#include "io/json.h"
 #include "io/lenses.h"
 #include "io/mvs.h"
 #include "io/point_source.h"
@@ -63,13 +67,20 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model, b
   return carried;
 }
 
+// All that a COLMAP model's folder may hold of it.
+std::vector<fs::path> model_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const char* part : {"cameras", "images", "points3D", "rigs", "frames"})
+    for (const char* extension : {".txt", ".bin"})
+      files.push_back(folder / (std::string(part) + extension));
+  return files;
+}
+
 // Neither the model nor the photographs nor the housing file is written over.
 void check_outputs(const Options& options, const fs::path& model_folder,
                    const io::ColmapModel& model) {
-  std::vector<fs::path> inputs{options.housing_file};
-  for (const char* part : {"cameras", "images", "points3D", "rigs", "frames"})
-    for (const char* extension : {".txt", ".bin"})
-      inputs.push_back(model_folder / (std::string(part) + extension));
+  std::vector<fs::path> inputs = model_files(model_folder);
+  inputs.push_back(options.housing_file);
   for (const io::ColmapImage& image : model.images)
     inputs.push_back(options.image_folder / image.name);
   const std::vector<fs::path> outputs{options.scene_file, io::housing_beside(options.scene_file),
@@ -96,6 +107,22 @@ ProgressSink progress_of_many(const std::string& title) {
   };
 }
 
+// Marks a model as exported: the next export may take its place.
+constexpr const char* kExportMarker = "export.json";
+
+// The model that a scene was made from usually lies where exports go, too. Binary files are none of
+// an export, and COLMAP would read them instead of it.
+void check_export_folder(const fs::path& folder) {
+  std::error_code error;
+  const bool exported = fs::exists(folder / kExportMarker, error);
+  for (const fs::path& file : model_files(folder))
+    if (fs::exists(file, error) && !(exported && file.extension() == ".txt"))
+      fail(
+          "{}: is of a model that is no export, and is not overwritten: name another folder with "
+          "--output-file",
+          file.string());
+}
+
 // A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
 int export_scene(const Options& options) {
   Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
@@ -111,17 +138,18 @@ int export_scene(const Options& options) {
   io::ColmapModel model = io::export_colmap_model(scene, images);
   io::leave(frame, model);
   const fs::path folder = options.export_folder / "sparse";
-  make_folder(folder);
+  check_export_folder(folder);
   const std::size_t behind_ports = count_behind_ports(scene);
-  if (behind_ports > 0) {
+  if (behind_ports > 0)
     log_warning(
         "{} of {} images are behind ports, which are written behind their cameras as "
         "COLMAP-Underwater reads them: COLMAP itself does not",
         behind_ports, scene.images.size());
-    io::write_underwater_text(folder, model);
-  } else {
-    io::write_colmap_text(folder, model);
-  }
+  write_folder(folder, [&](const fs::path& staging) {
+    (behind_ports > 0 ? io::write_underwater_text : io::write_colmap_text)(staging, model);
+    io::write_json(staging / kExportMarker,
+                   {{"version", 1}, {"scene", options.scene_file.string()}});
+  });
   log_info("{}: {} images below {}, {} cameras, {} points", folder.string(), model.images.size(),
            images.string(), model.cameras.size(), model.points.size());
   return 0;

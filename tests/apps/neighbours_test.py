@@ -213,6 +213,9 @@ class FusingWhatExists(Scene):
     def test_only_some_images(self):
         folder = self.copy("air", "_dense.ply", "depth0004.dmap", "depth0004.dmap.json")
         said = self.fuse(folder)
+        quiet = self.fuse(folder, "-v", "0")
+        self.assertIn("4 of 5 images have a depth map", quiet)
+        self.assertIn("depth0004.dmap", quiet)
         self.assertIn("4 of 5 images have a depth map", said)
         self.assertIn("0004.png: has no depth map", said.replace(".jpg", ".png"))
         self.assertGreater(cloud_size(self.cloud(folder)), 1000)
@@ -524,6 +527,22 @@ class Export(Scene):
     def test_in_air(self):
         # Observations of the truth have noise of about a pixel at most, ours none.
         self.assertLess(self.check_round_trip("air", True), 3)
+
+    def test_only_an_export_is_overwritten(self):
+        folder = self.copy("air")
+        command = ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder)
+        for part in ("cameras.txt", "points3D.bin", "frames.txt"):
+            mine = os.path.join(folder, "sparse", part)
+            write(mine, "mine")
+            self.refuses(part, *command)
+            self.assertEqual(os.listdir(os.path.dirname(mine)), [part])
+            os.remove(mine)
+        self.succeeds(*command)
+        first = self.model(os.path.join(folder, "sparse"))
+        self.succeeds(*command)
+        self.assertEqual(self.model(os.path.join(folder, "sparse")), first)
+        write(os.path.join(folder, "sparse", "images.bin"), "COLMAP would read it")
+        self.refuses("images.bin", *command)
 
     def test_behind_a_port(self):
         folder = self.copy("water")

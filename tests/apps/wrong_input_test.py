@@ -322,6 +322,13 @@ class OtherPrograms(ProgramTest):
         write(self.path("garbage.ply"), b"ply\nformat binary\n\xff\xff")
         self.refuses("garbage.ply", "EvaluateReconstruction", "-i", self.path("garbage.ply"), "-m",
                      self.path("garbage.ply"))
+        triangle = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                    "end_header\n{0} 0 1\n{0} 1 1\n{0} 0 2\n3 0 1 2\n")
+        for name, place in (("here.ply", 0), ("elsewhere.ply", 600000)):
+            write(self.path(name), triangle.format(place))
+        self.refuses("not in the same coordinates", "EvaluateReconstruction", "-i",
+                     self.path("elsewhere.ply"), "-m", self.path("here.ply"))
         self.refuses("no-such.ply", "EvaluateReconstruction", "-i", self.path("no-such.ply"), "-m",
                      self.path("garbage.ply"))
         self.refuses("'--no-such-option'", "EvaluateReconstruction", "--no-such-option", "1")
