@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
   io::ColmapModel model = io::read_colmap_model(folder);
   auto reference = io::read_colmap_model(reference_folder);
   require_not_an_input(options.output, std::vector{folder, reference_folder}, "--output-folder");
+  io::require_no_binary_model(options.output);
   require_writable_folder(options.output);
   io::enter_local_frame(model);
   const LocalFrame frame = io::enter_local_frame(reference);

@@ -57,7 +57,7 @@ void say_who_may_read(const densify::Project& project, const densify::Options& o
   axial::log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
       "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
-      "depth maps give wrong results there; --pinhole-export {} writes what they can take",
+      "depth maps give wrong results there; --pinhole-export {} writes files that they can take",
       name.string(), name.string(), folder);
 }
 
@@ -83,8 +83,9 @@ int run(int argc, char** argv) {
     return 0;
   }
   if (!options.neighbour_lists_output.empty()) {
-    densify::write_neighbour_lists(options.neighbour_lists_output,
-                                   densify::load_project(options).scene);
+    const densify::Project project = densify::load_project(options);
+    densify::check_outputs(project, options);
+    densify::write_neighbour_lists(options.neighbour_lists_output, project.scene);
     return 0;
   }
   densify::Project loaded = densify::load_project(options);

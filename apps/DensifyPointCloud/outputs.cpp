@@ -2,9 +2,11 @@
 #include "outputs.h"
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/same_file.h"
 #include "depth_stage.h"
 #include "io/geo_offset.h"
+#include "io/housing.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -30,6 +32,26 @@ std::vector<fs::path> depth_outputs(const Project& project, const Options& optio
       if (pictures) files.push_back(fs::path(map).replace_extension(picture));
   }
   return files;
+}
+
+// Whether both name one file, which need not be there yet.
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  return a.filename() == b.filename() &&
+         fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+// Files that go beside the reconstruction are none of those that it reads, writes or takes up
+// again.
+void check_side_output(const char* option, const fs::path& output,
+                       const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+  if (output.empty()) return;
+  axial::require_not_an_input(output, inputs, option);
+  for (const fs::path& other : outputs)
+    if (is_one_file(output, other))
+      axial::fail("{} {}: is where the run's {} belongs", option, output.string(),
+                  other.filename().string());
 }
 
 }  // namespace
@@ -66,7 +88,14 @@ void check_outputs(const Project& project, const Options& options) {
     inputs.push_back(project.views[i].mask);
   }
   axial::require_no_inputs(cloud_outputs(options), inputs, "--output-file");
-  axial::require_no_inputs(depth_outputs(project, options), inputs, "--working-folder");
+  std::vector<fs::path> outputs = depth_outputs(project, options);
+  axial::require_no_inputs(outputs, inputs, "--working-folder");
+  for (const fs::path& file : cloud_outputs(options)) outputs.push_back(file);
+  outputs.push_back(axial::io::housing_beside(options.output));
+  outputs.push_back(axial::io::geo_offset_beside(options.output));
+  check_side_output("--report-file", options.report, inputs, outputs);
+  check_side_output("--output-view-neighbors-file", options.neighbour_lists_output, inputs,
+                    outputs);
 }
 
 }  // namespace densify

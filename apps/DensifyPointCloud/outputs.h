@@ -15,7 +15,8 @@ std::vector<std::filesystem::path> scene_files(const Options& options);
 void check_outputs(const Options& options);
 
 // The same for the photographs and masks of the scene, and for depth maps and their pictures. Maps
-// of earlier runs are no inputs.
+// of earlier runs are no inputs; but --report-file and --output-view-neighbors-file name neither
+// them nor another file of the reconstruction.
 void check_outputs(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -113,7 +114,7 @@ class Export {
   void write_image(std::size_t image, const axial::cloud::PinholeImage& pinhole) {
     constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
     const fs::path file = image_file(image);
-    if (is_jpeg_name(file))
+    if (axial::is_jpeg_name(file))
       axial::io::write_jpeg(file, pinhole.color, kQuality);
     else
       axial::io::write_png(file, pinhole.color);

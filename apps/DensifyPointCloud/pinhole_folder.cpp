@@ -15,14 +15,9 @@ namespace densify {
 namespace fs = std::filesystem;
 using axial::fail;
 
-bool is_jpeg_name(const fs::path& file) {
-  const std::string extension = axial::lower_extension(file);
-  return extension == ".jpg" || extension == ".jpeg";
-}
-
 fs::path exported_name(const axial::SceneImage& image, const fs::path& photographs) {
   fs::path name = fs::path(image.path).lexically_normal().lexically_relative(photographs);
-  if (!is_jpeg_name(name) && name.extension() != ".png") name += ".png";
+  if (!axial::is_jpeg_name(name) && name.extension() != ".png") name += ".png";
   return name;
 }
 

@@ -11,8 +11,6 @@ namespace densify {
 // The file that says that a folder is an earlier export.
 inline constexpr const char* kPinholeMarker = "pinhole_export.json";
 
-bool is_jpeg_name(const std::filesystem::path& file);
-
 // An image's name below images/: the way from `photographs`, the deepest folder of all. JPEGs and
 // PNGs keep their names.
 std::filesystem::path exported_name(const axial::SceneImage& image,

@@ -16,6 +16,8 @@ using Names = std::initializer_list<const char*>;
 constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
                           "postprocess-dmaps",     "projection", "warp",
                           "overwrite-dmaps"};
+constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution",
+                         "number-views",     "mask-path",      "ignore-mask-label"};
 constexpr Names kFusion{"number-views-fuse", "estimate-colors", "estimate-normals", "crop-to-roi",
                         "remove-dmaps"};
 constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",
@@ -64,7 +66,8 @@ void warn_of_options_without_effect(const Options& options) {
     return;
   }
   if (!options.make_maps)
-    warn_of(options, kMatching, "with --fusion-mode -1, which takes depth maps as they are");
+    for (const Names& names : {kMatching, kMapSize})
+      warn_of(options, names, "with --fusion-mode -1, which takes depth maps as they are");
   if (!options.fuse)
     warn_of(options, kFusion, "with --fusion-mode 1, which makes depth maps alone");
 }

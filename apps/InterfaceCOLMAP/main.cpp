@@ -118,7 +118,8 @@ void check_export_folder(const fs::path& folder) {
   for (const fs::path& file : model_files(folder))
     if (fs::exists(file, error) && !(exported && file.extension() == ".txt"))
       fail(
-          "{}: is of a model that is no export, and is not overwritten: name another folder with "
+          "{}: belongs to a model that is no export, and is not overwritten: name another folder "
+          "with "
           "--output-file",
           file.string());
 }

@@ -130,6 +130,7 @@ void check_output(const Options& options, const fs::path& model) {
       fs::equivalent(options.output / "sparse", model.parent_path(), error))
     fail("--output-folder {}: its sparse/ is the model that is read", options.output.string());
   require_no_inputs(outputs_of(options), inputs_of(options, model), "--output-folder");
+  io::require_no_binary_model(options.output / "sparse");
   require_writable_folder(options.output);
 }
 
@@ -269,8 +270,7 @@ int run(int argc, char** argv) {
     frame = set_known(options, refined.bundle, frame_of_model, unused);
     done = refine(options, refined, model);
   }
-  if (!unused.lines().empty())
-    log_warning("The model has no scale: what --scale-from says is not used");
+  if (!unused.lines().empty()) log_warning("The model has no scale: --scale-from is not used");
   Results results{done.report,
                   errors_by_image(done.before, refined.bundle),
                   refined.bundle,

@@ -24,7 +24,7 @@ void check(const Options& options) {
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: --poses known says that the model is in metres", options.scale_from);
   if (options.scale_from.empty() && axial::given(options.parsed, "scale-sigma"))
-    fail("--scale-sigma {}: --scale-from is missing, of which it is the doubt",
+    fail("--scale-sigma {}: --scale-from is missing, whose standard deviation it is",
          options.scale_sigma);
   if (options.output.empty()) fail("--output-folder is missing");
 }

@@ -73,8 +73,8 @@ std::vector<std::string> names_with_commas(const std::vector<std::string>& words
     found = {first, second, words.back()};
   }
   if (found.empty())
-    fail("{}: the model has no two images of these names; put names with commas in double quotes",
-         where);
+    no_use("{}: the model has no two images of these names; put names with commas in double quotes",
+           where);
   return found;
 }
 

@@ -16,4 +16,10 @@ inline std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
+// Whether the file's name says that it is a JPEG.
+inline bool is_jpeg_name(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
 }  // namespace axial

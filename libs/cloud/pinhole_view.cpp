@@ -4,7 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
+
+#include "refractive/nearest_point.h"
 
 namespace axial::cloud {
 namespace {
@@ -50,15 +53,8 @@ Rays rays_of(const Camera& camera, const CameraModel& model, double distance) {
 }
 
 Eigen::Vector3d nearest_point(const std::vector<Ray>& rays) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const Ray& ray : rays) {
-    const Eigen::Matrix3d across =
-        Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose();
-    normal += across;
-    right += across * ray.origin;
-  }
-  return normal.inverse() * right;
+  const auto equations = refractive::nearest_point_equations(std::span<const Ray>(rays));
+  return equations.normal.inverse() * equations.right;
 }
 
 Eigen::Vector2d tangents(const Ray& ray, double distance, const Eigen::Vector3d& centre) {

@@ -12,6 +12,8 @@ namespace {
 // A cell with fewer points has no median to speak of.
 constexpr std::size_t kLeastInCell = 8;
 constexpr double kConsistentPixels = 1;
+// One neighbour alone, with a wrong depth there, would make a right pixel count as inconsistent.
+constexpr int kLeastNeighbours = 2;
 
 using Ray = refractive::AxialRay<double>;
 using Pixel = Eigen::Vector2d;
@@ -78,17 +80,19 @@ double pixels_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 // Asks the neighbours for the surface point `x` of a pixel of `map`.
 void ask(const SeenMap& map, const Pixel& pixel, const Eigen::Vector3d& x,
          std::span<const SeenMap> neighbours, MapAgreement& result) {
-  bool asked = false, consistent = false;
+  int asked = 0;
+  bool consistent = false;
   for (const SeenMap& neighbour : neighbours) {
     Pixel there, back;
     if (!neighbour.shows(x, there)) continue;
     const double depth = neighbour.depth_at(there);
     if (!(depth > 0)) continue;
-    asked = true;
+    ++asked;
     consistent |= map.shows(neighbour.ray(there).at(depth), back) &&
                   (back - pixel).norm() < kConsistentPixels;
   }
-  result.asked += asked ? 1 : 0;
+  if (asked < kLeastNeighbours) return;
+  ++result.asked;
   result.consistent += consistent ? 1 : 0;
 }
 

@@ -25,8 +25,9 @@ struct PointDifference {
 
 struct MapAgreement {
   std::vector<PointDifference> points;
-  std::size_t asked = 0;  // pixels whose surface point some neighbour's image shows and has a depth
-  std::size_t consistent = 0;  // of which a neighbour's depth leads back to within a pixel
+  // Pixels whose surface point lies where the maps of two neighbours or more have a depth, and
+  // those of them that a neighbour's depth leads back to within a pixel.
+  std::size_t asked = 0, consistent = 0;
 };
 
 // Compares a map with `points` [world], which its image sees, and at their pixels with the maps of

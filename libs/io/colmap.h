@@ -77,6 +77,9 @@ ColmapModel read_colmap_model(const std::filesystem::path& folder);
 // that extension, or Calibmar's, with its port (calibmar.h).
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
+// Error if `folder` holds a whole binary model: readers would take it before a text model there.
+void require_no_binary_model(const std::filesystem::path& folder);
+
 // For COLMAP: ports are left out, which its readers cannot read. Error if a text model would go
 // into a folder that holds a binary one, which readers take first.
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);

@@ -190,10 +190,14 @@ void write_text(const fs::path& folder, const ColmapModel& model, Dialect dialec
 
 }  // namespace
 
-void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
+void require_no_binary_model(const fs::path& folder) {
   if (holds_model(folder, ModelForm::binary))
     fail("{}: holds a binary model, which would be read instead of the text model to write",
          folder.string());
+}
+
+void write_colmap_text(const fs::path& folder, const ColmapModel& model) {
+  require_no_binary_model(folder);
   write_text(folder, model, Dialect::colmap);
 }
 

@@ -29,11 +29,6 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool is_jpeg(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".jpg" || extension == ".jpeg";
-}
-
 // The maps of cv::remap that undistort images, each in memory from the first of its camera's images
 // to the last.
 class UndistortionMaps {
@@ -100,7 +95,7 @@ void undistort(const DistortedImage& image, const cv::Mat2f& map, const fs::path
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
   constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
-  if (is_jpeg(target))
+  if (is_jpeg_name(target))
     write_jpeg(target, straight, kQuality);
   else
     write_png(target, straight);
@@ -111,7 +106,7 @@ void undistort(const DistortedImage& image, const cv::Mat2f& map, const fs::path
 
 fs::path undistorted_name(const DistortedImage& image) {
   fs::path undistorted = fs::path(image.name).lexically_normal();
-  const bool jpeg = image.fits_jpeg && is_jpeg(undistorted);
+  const bool jpeg = image.fits_jpeg && is_jpeg_name(undistorted);
   if (!jpeg && undistorted.extension() != ".png") undistorted += ".png";
   return undistorted;
 }

@@ -100,7 +100,9 @@ std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapM
   const TrackPictures pictures(sample, in_air, image_folder);
   const auto at_tracks = pictures.at_tracks();
   if (!at_tracks) return {};
-  const double behind = pictures.behind(bundle).value_or(0);
+  const auto agreement = pictures.behind(bundle);
+  if (!agreement) return {};
+  const double behind = *agreement;
   log_details("Photographs: {:.2f} at the tracks, {:.2f} where the cameras predict", *at_tracks,
               behind);
   if (ports && !check.fits() && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)

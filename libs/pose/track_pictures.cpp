@@ -106,6 +106,15 @@ std::optional<double> correlation(const cv::Mat1f& a, const Patch& in_a, const c
   return (sab / n - sa * sb / (n * n)) / std::sqrt(var_a * var_b);
 }
 
+// At most `most` of them: the first of them may lie side by side in the image.
+template <class T>
+std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
+  if (all.size() <= most) return all;
+  std::vector<T> taken;
+  for (std::size_t i = 0; i < most; ++i) taken.push_back(all[i * all.size() / most]);
+  return taken;
+}
+
 }  // namespace
 
 TrackPictures::TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
@@ -145,7 +154,7 @@ void TrackPictures::choose_pairs() {
     if (pairs_.size() == kPairs) break;
     if (taken.contains(pair.first) || taken.contains(pair.second)) continue;
     taken.insert({pair.first, pair.second});
-    pair.shared.resize(std::min(pair.shared.size(), kPointsOfPair));
+    pair.shared = evenly(pair.shared, kPointsOfPair);
     pairs_.push_back(std::move(pair));
   }
 }

@@ -7,6 +7,8 @@
 #include <map>
 #include <numbers>
 
+#include "refractive/nearest_point.h"
+
 namespace axial::pose {
 namespace {
 
@@ -83,18 +85,11 @@ void drop_weak_images(Bundle& bundle, std::size_t min_observations) {
 }  // namespace
 
 std::optional<Eigen::Vector3d> triangulate(std::span<const Ray> rays) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const Ray& ray : rays) {
-    const Eigen::Matrix3d across =
-        Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose();
-    normal += across;
-    right += across * ray.origin;
-  }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+  const auto equations = refractive::nearest_point_equations(rays);
+  const Eigen::LDLT<Eigen::Matrix3d> solver(equations.normal);
   constexpr double kParallel = 1e-8;  // squared sine of an angle of 0.006 degrees
   if (rays.size() < 2 || !(solver.vectorD().minCoeff() > kParallel)) return {};
-  const Eigen::Vector3d point = solver.solve(right);
+  const Eigen::Vector3d point = solver.solve(equations.right);
   for (const Ray& ray : rays)
     if (!(ray.direction.dot(point - ray.origin) > 0)) return {};
   return point;

@@ -135,6 +135,7 @@ class Scales(ProgramTest):
     def test_what_the_model_does_not_have(self):
         write(self.path("lost.txt"), "lost1.jpg 1 0 0\nlost2.jpg 2 0 1\nlost3.jpg 3 0 0\n")
         for known in (f"images:{self.names[0]},lost.jpg,1", "points:99999999,1,1",
+                      f"images:{self.names[0]},with,commas.jpg,1",
                       "positions:" + self.path("lost.txt")):
             command = self.command(self.sparse, "out", "--scale-from", known)
             self.refuses("--scale-from ", *command)
@@ -362,6 +363,8 @@ class NoEffect(ProgramTest):
                 (("--fusion-mode", "1", "--estimate-colors", "1", "--remove-dmaps", "1"),
                  "--estimate-colors, --remove-dmaps"),
                 (("--fusion-mode", "-1", "--iters", "4"), "--iters"),
+                (("--fusion-mode", "-1", "--number-views", "2"),
+                 "--resolution-level, --min-resolution, --number-views"),
                 (("--projection", "line-search"), "--projection"),
                 (("--estimate-roi", "0", "--roi-border", "2"), "--roi-border"),
                 (("--camera-model", "pinhole", "--housing", self.path("none.json")), "--housing"),

@@ -60,6 +60,38 @@ class Import(ProgramTest):
         os.mkdir(self.folder)
         self.is_silent(medium="air")
 
+    def pair_of(self, first):
+        """The model of the images `first` and the next one, and of the points that both see."""
+        lines = {part: [line for line in read(os.path.join(self.scene, "sparse", part + ".txt"))
+                        .decode().splitlines() if not line.startswith("#")]
+                 for part in ("cameras", "images", "points3D")}
+        images = list(zip(lines["images"][::2], lines["images"][1::2]))[first:first + 2]
+        ids = {head.split()[0] for head, _ in images}
+        points = []
+        for words in map(str.split, lines["points3D"]):
+            track = [pair for pair in zip(words[8::2], words[9::2]) if pair[0] in ids]
+            if {image for image, _ in track} == ids:
+                points.append((words[0], " ".join(words[:8] + [w for pair in track for w in pair])))
+        kept = {point for point, _ in points}
+        model = self.path(f"pair{first}")
+        write(os.path.join(model, "cameras.txt"), "\n".join(lines["cameras"]) + "\n")
+        write(os.path.join(model, "points3D.txt"), "\n".join(line for _, line in points) + "\n")
+        text = ""
+        for head, observations in images:
+            words = observations.split()
+            for k in range(2, len(words), 3):
+                words[k] = words[k] if words[k] in kept else "-1"
+            text += head + "\n" + " ".join(words) + "\n"
+        write(os.path.join(model, "images.txt"), text)
+        return model
+
+    def test_correct_pairs_of_images(self):
+        """Whichever of a pair's points are looked at, the port moves some out of the image."""
+        for first in range(4):
+            self.is_silent(housing={}, model=self.pair_of(first))
+            os.remove(self.path("scene.mvs"))
+            os.remove(self.path("scene.housing.json"))
+
     def test_a_distance_ten_times_too_large(self):
         port = json.loads(read(os.path.join(self.scene, "housing.json")))["ports"]["main"]
         self.warns("distance is 10 times too large",

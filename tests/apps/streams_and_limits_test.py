@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 import tiny_scene
-from programs import BIN, ProgramTest, files_below, main, read, run, write
+from programs import BIN, ProgramTest, files_below, grey_png, main, read, run, write
 
 DENSIFY = ("DensifyPointCloud", "--max-threads", "1", "--resolution-level", "0", "--iters", "1",
            "--geometric-iters", "0", "--number-views-fuse", "2")
@@ -118,6 +118,27 @@ class Overwriting(TinyScene):
         self.succeeds(*self.densify("-v", "2"))  # draws nothing
         self.assertEqual([read(image) for image in images], before)
 
+    def test_files_beside_the_reconstruction(self):
+        mask = os.path.splitext(self.images[1])[0] + ".mask.png"
+        write(mask, grey_png([bytes(96)] * 72))
+        masked = ("--ignore-mask-label", "7")
+        self.succeeds(*self.densify(*masked))
+        taken = [self.images[0], mask, self.path("work", "depth0001.dmap"),
+                 self.path("work", "depth0001.dmap.json"), self.path("work", "scene_dense.mvs"),
+                 self.path("work", "scene_dense.ply")]
+        for option in ("--report-file", "--output-view-neighbors-file"):
+            for output in taken:
+                self.refuses_and_keeps(f"{option} {output}: is ",
+                                       *self.densify(*masked, option, output))
+        # Where files of this run will be.
+        os.remove(taken[2])
+        os.remove(taken[5])
+        for output in (taken[2], taken[5]):
+            self.refuses_and_keeps(f"--report-file {output}: is ",
+                                   *self.densify(*masked, "--report-file", output))
+        for option in ("--report-file", "--output-view-neighbors-file"):
+            self.succeeds(*self.densify(*masked, option, self.path("work", "beside")))
+
     def test_housing(self):
         text = '{"version": 1,\n "ports": {"main": {"type": "flat", "distance_m": 0.001, ' \
                '"thickness_m": 0.001, "normal": [0, 0, 1],\n "n_air": 1, "n_glass": 1.5, ' \
@@ -144,6 +165,11 @@ class Overwriting(TinyScene):
             self.refuses_and_keeps("--output-folder", "AlignModel", "-i", sparse, "--reference",
                                    reference, "-o", output)
         self.succeeds("AlignModel", "-i", sparse, "--reference", reference, "-o", self.path("new"))
+        # Whoever reads the folder would take the binary model.
+        for part in ("cameras", "images", "points3D"):
+            write(self.path("new", part + ".bin"), "of COLMAP")
+        self.refuses_and_keeps("holds a binary model", "AlignModel", "-i", sparse, "--reference",
+                               reference, "-o", self.path("new"))
 
     def test_evaluation(self):
         mesh, model = self.path("mesh.ply"), self.path("colmap", "sparse")
@@ -176,6 +202,11 @@ class Overwriting(TinyScene):
                            "positions:" + positions)):
             self.refuses_and_keeps("--output-folder " + out, "RefinePoses", "-i",
                                    self.path("colmap"), *arguments, "-o", out)
+        for part in ("cameras", "images", "points3D"):
+            write(self.path("refined", "sparse", part + ".bin"), "of COLMAP")
+        self.refuses_and_keeps("holds a binary model", "RefinePoses", "-i", self.path("colmap"),
+                               "--lens", other_lens, "--housing", other_housing, "-o",
+                               self.path("refined"))
 
     def test_calibration(self):
         lens, housing = self.path("colmap", "sparse", "cameras.txt"), self.path("housing.json")

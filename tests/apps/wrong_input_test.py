@@ -327,8 +327,9 @@ class OtherPrograms(ProgramTest):
                     "end_header\n{0} 0 1\n{0} 1 1\n{0} 0 2\n3 0 1 2\n")
         for name, place in (("here.ply", 0), ("elsewhere.ply", 600000)):
             write(self.path(name), triangle.format(place))
-        self.refuses("not in the same coordinates", "EvaluateReconstruction", "-i",
-                     self.path("elsewhere.ply"), "-m", self.path("here.ply"))
+        for align in ("none", "icp"):
+            self.refuses("not in the same coordinates", "EvaluateReconstruction", "-i",
+                         self.path("elsewhere.ply"), "-m", self.path("here.ply"), "--align", align)
         self.refuses("no-such.ply", "EvaluateReconstruction", "-i", self.path("no-such.ply"), "-m",
                      self.path("garbage.ply"))
         self.refuses("'--no-such-option'", "EvaluateReconstruction", "--no-such-option", "1")

@@ -171,6 +171,20 @@ TEST(Agreement, CountsPixelsThatNoNeighbourConfirms) {
   EXPECT_TRUE(judge(found).consistent);
 }
 
+// A right map beside one whose depths are wrong: nobody knows which of the two is.
+TEST(Agreement, OneNeighbourDoesNotTellWhichMapIsWrong) {
+  std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
+  maps[1].depth *= 1.5f;
+  const DepthMap* const neighbours[] = {&maps[1], &maps[2]};
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  const MapAgreement one = compare_map(maps[0], std::span(neighbours, 1), points);
+  EXPECT_EQ(one.asked, 0u);
+  EXPECT_GT(one.points.size(), 100u);
+  const MapAgreement two = compare_map(maps[0], neighbours, points);
+  EXPECT_GT(two.asked, 100u);
+  EXPECT_GT(two.consistent, two.asked * 9 / 10);
+}
+
 // No data, no verdict: no point, one without an image, no depth, no neighbour.
 TEST(Agreement, SaysNothingWithoutData) {
   const std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
@@ -193,10 +207,11 @@ TEST(Agreement, SaysNothingWithoutData) {
 
 TEST(Agreement, TakesManyPointsEvenly) {
   const std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
-  const DepthMap* const neighbour = &maps[1];
+  const DepthMap* const neighbours[] = {&maps[1], &maps[2]};
   const std::vector<Eigen::Vector3f> points = points_on(kPlane, 5000);
-  const MapAgreement all = compare_map(maps[0], std::span(&neighbour, 1), points, 5000);
-  const MapAgreement part = compare_map(maps[0], std::span(&neighbour, 1), points, 500);
+  const MapAgreement all = compare_map(maps[0], neighbours, points, 5000);
+  const MapAgreement part = compare_map(maps[0], neighbours, points, 500);
+  EXPECT_GT(all.asked, 1000u);
   EXPECT_LE(part.asked, 500u);
   EXPECT_NEAR(static_cast<double>(part.asked), 0.1 * static_cast<double>(all.asked),
               0.02 * static_cast<double>(all.asked));
