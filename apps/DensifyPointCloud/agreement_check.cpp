@@ -78,7 +78,14 @@ void say(const Project& project, const Agreement& found) {
       found.points, found.pixels, 100 * found.share, found.systematic);
   const std::string pixels = fmt::format("{:.0f} % of {} pixels agree with a neighbour's map",
                                          100 * found.consistent, found.asked);
-  if (!judge(found, limits).any()) return axial::log_info("Agreement: {}; {}", points, pixels);
+  const Disagreement wrong = judge(found, limits);
+  if (!wrong.cameras()) axial::log_info("Agreement: {}; {}", points, pixels);
+  if (!wrong.cameras() && wrong.score)
+    axial::log_warning(
+        "The photographs do not seem to show the scene: patches at {} sparse points match with a "
+        "median score of {:.2f} (usual: over {}). Are these the photographs of these poses?",
+        found.scored, found.score, limits.score);
+  if (!wrong.cameras()) return;
   axial::log_warning(
       "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
       "(usual: "
@@ -99,19 +106,24 @@ void write_report(const std::filesystem::path& file, const Agreement& found) {
                                  {"systematic_sigmas", found.significance},
                                  {"pixels", found.asked},
                                  {"consistent_share", found.consistent},
+                                 {"scored_points", found.scored},
+                                 {"median_score", found.score},
                                  {"limits",
                                   {{"median_px", limits.pixels},
                                    {"systematic_px", limits.systematic},
                                    {"systematic_sigmas", limits.significance},
-                                   {"consistent_share", limits.consistent}}},
+                                   {"consistent_share", limits.consistent},
+                                   {"median_score", limits.score}}},
                                  {"warning", wrong.any()}}}});
 }
 
 }  // namespace
 
 void check_agreement(const Project& project, const Options& options, const MemoryPlan& plan,
+                     bool photometric,
                      const std::function<axial::DepthMap(std::size_t image)>& read_map) {
-  const Agreement found = measure(project, plan, read_map);
+  Agreement found = measure(project, plan, read_map);
+  if (!photometric) found.scored = 0;
   say(project, found);
   if (!options.report.empty()) write_report(options.report, found);
 }

@@ -129,7 +129,7 @@ class DepthMapRun {
 
   // Before the hours that later stages may take.
   void compare(std::size_t stage) const {
-    check_agreement(project_, options_, plan_, [this, stage](std::size_t image) {
+    check_agreement(project_, options_, plan_, stage == 0, [this, stage](std::size_t image) {
       return axial::io::read_dmap(path(stage, image)).map;
     });
   }

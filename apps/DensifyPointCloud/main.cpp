@@ -63,7 +63,7 @@ void say_who_may_read(const densify::Project& project, const densify::Options& o
 
 void check_existing_maps(const densify::Project& project, const densify::Options& options,
                          const densify::MemoryPlan& plan, const densify::ExistingMaps& existing) {
-  densify::check_agreement(project, options, plan, [&](std::size_t image) {
+  densify::check_agreement(project, options, plan, false, [&](std::size_t image) {
     return axial::io::read_dmap(densify::depth_map_path(project, options, image),
                                 densify::side_to_read(existing[image].origin))
         .map;

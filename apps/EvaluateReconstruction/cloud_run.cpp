@@ -108,7 +108,8 @@ std::vector<evaluate::View> read_views(const Options& options, const Models& mod
   if (options.cameras.empty()) return {};
   std::optional<io::Housing> housing;
   if (!options.housing.empty()) {
-    housing = io::in_frame(models.frames.truth, io::read_housing(options.housing));
+    housing =
+        io::in_frame(models.frames.truth, io::read_housing(options.housing, models.reference));
     for (const std::string& entry : io::unused_entries(*housing, models.reference))
       log_warning("{}: no image goes by {}", options.housing.string(), entry);
     io::warn_of_other_ports(*housing, options.housing.string(),

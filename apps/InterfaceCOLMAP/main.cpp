@@ -45,7 +45,7 @@ std::size_t count_distorted(const Scene& scene) {
 io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned) {
   const io::Housing carried = io::housing_of(model.cameras);
   if (!options.housing_file.empty()) {
-    io::Housing housing = io::read_housing(options.housing_file);
+    io::Housing housing = io::read_housing(options.housing_file, model);
     io::warn_of_other_ports(housing, options.housing_file.string(), carried,
                             "the model in " + options.colmap_folder.string(), model);
     if (io::gives_no_image_a_port(housing, model))
@@ -132,7 +132,8 @@ int export_scene(const Options& options) {
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code error;
   if (fs::exists(housing_file, error))
-    io::attach_ports(scene, io::in_frame(frame, io::read_housing(housing_file)));
+    io::attach_ports(scene, io::in_frame(frame, io::read_housing(housing_file)),
+                     housing_file.string());
   if (!options.point_cloud.empty()) io::use_point_cloud(scene, frame, options.point_cloud);
   const fs::path images =
       options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
@@ -195,7 +196,9 @@ int run(int argc, char** argv) {
     io::warn_of_housing_beside(
         scene, options.scene_file, by_image,
         options.housing_file.empty() ? options.colmap_folder : options.housing_file);
-    io::attach_ports(scene, io::in_frame(frame, by_image));
+    // Ports that the model carries are found in the file that is written here.
+    const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
+    io::attach_ports(scene, io::in_frame(frame, by_image), ports_from.string());
     io::write_housing(housing_file, by_image);
     log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
              scene.images.size());

@@ -69,7 +69,7 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model,
   const std::string of_model = "the model in " + options.model.string();
   const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
   if (!options.housing.empty()) {
-    io::Housing housing = io::read_housing(options.housing);
+    io::Housing housing = io::read_housing(options.housing, model);
     io::refuse_water_surfaces(housing, options.housing);
     io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model);
     return housing;

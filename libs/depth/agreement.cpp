@@ -42,10 +42,9 @@ class SeenMap {
            pixel.y() <= size_.height - 1;
   }
 
-  double depth_at(const Pixel& pixel) const {
-    return static_cast<double>(map_.depth(static_cast<int>(std::floor(pixel.y() + 0.5)),
-                                          static_cast<int>(std::floor(pixel.x() + 0.5))));
-  }
+  double depth_at(const Pixel& pixel) const { return static_cast<double>(at(map_.depth, pixel)); }
+  bool has_confidence() const { return !map_.confidence.empty(); }
+  float confidence_at(const Pixel& pixel) const { return at(map_.confidence, pixel); }
 
   // In the world.
   Ray ray(const Pixel& pixel) const {
@@ -56,6 +55,11 @@ class SeenMap {
   }
 
  private:
+  static float at(const cv::Mat1f& values, const Pixel& pixel) {
+    return values(static_cast<int>(std::floor(pixel.y() + 0.5)),
+                  static_cast<int>(std::floor(pixel.x() + 0.5)));
+  }
+
   const DepthMap& map_;
   CameraVariant<double> camera_;
   cv::Size size_;
@@ -102,6 +106,7 @@ void compare_point(const SeenMap& map, const Eigen::Vector3d& point,
   if (!point.allFinite() || !map.shows(point, pixel)) return;
   const double depth = map.depth_at(pixel);
   if (!(depth > 0)) return;
+  if (map.has_confidence()) result.scores.push_back(map.confidence_at(pixel));
   const Ray ray = map.ray(pixel);
   const double of_point = (point - ray.origin).dot(ray.direction);
   const Eigen::Vector3d on_map = ray.at(depth);
@@ -162,7 +167,7 @@ MapAgreement compare_map(const DepthMap& map, std::span<const DepthMap* const> n
 
 Agreement summarise(std::span<const MapAgreement> maps) {
   Agreement result;
-  std::vector<double> shares, pixels, sizes, ratios;
+  std::vector<double> shares, pixels, sizes, ratios, scores;
   std::size_t consistent = 0;
   for (const MapAgreement& map : maps) {
     for (const PointDifference& point : map.points) {
@@ -170,6 +175,7 @@ Agreement summarise(std::span<const MapAgreement> maps) {
       pixels.push_back(static_cast<double>(std::abs(point.pixels)));
     }
     add_cells(map, sizes, ratios);
+    scores.insert(scores.end(), map.scores.begin(), map.scores.end());
     result.asked += map.asked;
     consistent += map.consistent;
   }
@@ -177,6 +183,8 @@ Agreement summarise(std::span<const MapAgreement> maps) {
   result.share = median(shares);
   result.pixels = median(pixels);
   result.cells = sizes.size();
+  result.scored = scores.size();
+  result.score = median(scores);
   result.systematic = median(sizes);
   result.significance = median(ratios);
   if (result.asked > 0)
@@ -190,6 +198,7 @@ Disagreement judge(const Agreement& agreement, const AgreementLimits& limits) {
   result.systematic = agreement.cells >= limits.min_cells &&
                       agreement.systematic > limits.systematic &&
                       agreement.significance > limits.significance;
+  result.score = agreement.scored >= limits.min_points && agreement.score < limits.score;
   result.consistent =
       agreement.asked >= limits.min_asked && agreement.consistent < limits.consistent;
   return result;

@@ -28,6 +28,7 @@ struct MapAgreement {
   // Pixels whose surface point lies where the maps of two neighbours or more have a depth, and
   // those of them that a neighbour's depth leads back to within a pixel.
   std::size_t asked = 0, consistent = 0;
+  std::vector<float> scores;  // the map's confidence at the points, where it has one
 };
 
 // Compares a map with `points` [world], which its image sees, and at their pixels with the maps of
@@ -46,6 +47,8 @@ struct Agreement {
   double significance = 0;  // median over cells of that median in its standard errors
   std::size_t asked = 0;
   double consistent = 0;  // share of `asked`
+  std::size_t scored = 0;
+  double score = 0;  // median of MapAgreement::scores
 };
 
 Agreement summarise(std::span<const MapAgreement> maps);
@@ -54,12 +57,17 @@ Agreement summarise(std::span<const MapAgreement> maps);
 // docs/formats.md. Fewer points, cells or pixels than these say nothing.
 struct AgreementLimits {
   double pixels = 0.75, systematic = 0.15, significance = 2, consistent = 0.7;
+  // Of photometric maps, whose confidence is 1 less the matching cost. Where photographs show
+  // nothing of the scene at all, maps may keep to the sparse points that they began with and agree.
+  double score = 0.65;
   std::size_t min_points = 50, min_cells = 8, min_asked = 50;
 };
 
 struct Disagreement {
   bool pixels = false, systematic = false, consistent = false;  // which of the limits is passed
-  bool any() const { return pixels || systematic || consistent; }
+  bool score = false;  // of photometric maps only: other maps' confidences are other numbers
+  bool cameras() const { return pixels || systematic || consistent; }
+  bool any() const { return cameras() || score; }
 };
 
 Disagreement judge(const Agreement& agreement, const AgreementLimits& limits = {});

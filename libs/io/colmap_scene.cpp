@@ -259,18 +259,25 @@ Housing housing_of(std::span<const ColmapCamera> cameras) {
   return housing;
 }
 
+Housing read_housing(const fs::path& path, const ColmapModel& model) {
+  std::vector<NamedCamera> images;
+  for (const ColmapImage& image : model.images) images.push_back({image.name, image.camera});
+  return for_images(read_housing(path), images, path.string());
+}
+
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
                          const ColmapImport& import) {
   Housing resolved;
   resolved.ports = housing.ports;
   resolved.default_port = housing.default_port;
-  std::vector<std::string> names, ports;
+  std::vector<std::string> names, paths, ports;
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const ColmapImage& image = model.images[i];
     names.push_back(scene_name(image, scene.images[i].path, import));
+    paths.push_back(fs::path(scene.images[i].path).generic_string());
     ports.push_back(housing.port_of(image.name, image.camera));
   }
-  resolved.images = entries_for(names, ports, housing.default_port);
+  resolved.images = entries_for(names, paths, ports, housing.default_port);
   check_ports(resolved, scene, ports);
   return resolved;
 }

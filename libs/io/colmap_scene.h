@@ -37,6 +37,9 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
 // on. No port if none does.
 Housing housing_of(std::span<const ColmapCamera> cameras);
 
+// The housing file for the images of a model (for_images).
+Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
+
 // `housing` with an entry for every image that would not get its port by the default, and none by
 // camera id: what attach_ports and programs that no longer know COLMAP's ids need. `scene` is the
 // one imported from `model`. Error if an image's path ends in the name of another one with another

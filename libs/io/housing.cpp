@@ -55,11 +55,12 @@ void read_images(const JsonPlace& place, Housing& housing) {
   }
 }
 
-void attach(SceneImage& image, const std::string& name, const Housing& housing) {
+void attach(SceneImage& image, const std::string& name, const Housing& housing,
+            const std::string& file) {
   image.camera.port.reset();
   image.port_name.clear();
   if (name == kDry || !image.calibrated) return;
-  image.camera.port = housing.port_at(name, image.pose, image.path);
+  image.camera.port = housing.port_at(name, image.pose, file + ": " + image.path);
   image.port_name = name;
 }
 
@@ -214,24 +215,45 @@ fs::path housing_beside(const fs::path& scene_path) {
   return path;
 }
 
+Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
+                   const std::string& file) {
+  std::vector<std::string> names;
+  for (const NamedCamera& image : images) names.push_back(image.name);
+  const auto entries = entries_of_all(housing.images, names, file + ": housing.images.");
+  Housing result = housing;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (entries[i] == housing.entry_of(names[i])) continue;
+    // The longest end of its name is another image's whole name.
+    const auto camera = housing.cameras.find(images[i].camera);
+    result.images[names[i]] = entries[i] != housing.images.end() ? entries[i]->second
+                              : camera != housing.cameras.end()  ? camera->second
+                                                                 : housing.default_port;
+  }
+  return result;
+}
+
 void attach_ports(Scene& scene, const Housing& housing, const std::string& file) {
+  std::vector<std::string> names;
+  for (const SceneImage& image : scene.images)
+    names.push_back(fs::path(image.path).generic_string());
+  const auto entries = entries_of_all(housing.images, names, file + ": housing.images.");
   std::set<std::string> used;
-  for (SceneImage& image : scene.images) {
-    const auto entry = housing.entry_of(fs::path(image.path).generic_string());
-    if (entry != housing.images.end()) {
-      used.insert(entry->first);
-      attach(image, entry->second, housing);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SceneImage& image = scene.images[i];
+    if (entries[i] != housing.images.end()) {
+      used.insert(entries[i]->first);
+      attach(image, entries[i]->second, housing, file);
     } else if (housing.cameras.empty()) {
-      attach(image, housing.default_port, housing);
+      attach(image, housing.default_port, housing, file);
     } else {
       fail(
-          "{}: the housing names ports by COLMAP camera, which a scene does not know: give this "
-          "image an entry under 'images' (InterfaceCOLMAP --housing writes them)",
-          image.path);
+          "{}: housing.cameras names ports by COLMAP camera, which a scene does not know: give "
+          "{} an entry under housing.images (InterfaceCOLMAP --housing writes them)",
+          file, image.path);
     }
   }
   for (const auto& [name, unused] : housing.images)
-    if (!used.contains(name)) log_warning("housing: no image goes by images.{}", name);
+    if (!used.contains(name)) log_warning("{}: no image goes by images.{}", file, name);
   warn_of_ports_in_scene(scene, housing, file);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -28,7 +29,8 @@ struct Housing {
   std::map<std::string, std::string> images;     // image name -> port name
 
   // The entry of `images` for an image, by its name or any path that ends in it: the longest one
-  // that matches the end in whole components. `images.end()` if there is none.
+  // that matches the end in whole components. `images.end()` if there is none. Only for_images and
+  // attach_ports tell whether another image goes by it, too.
   std::map<std::string, std::string>::const_iterator entry_of(const std::string& image_name) const;
 
   // The port name for an image: its own entry, else its camera's, else the default.
@@ -71,10 +73,22 @@ void write_housing(const std::filesystem::path& path, const Housing& housing);
 // "<scene without extension>.housing.json".
 std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
 
+struct NamedCamera {
+  std::string name;          // of an image, relative to the image folder
+  std::uint32_t camera = 0;  // COLMAP's id
+};
+
+// `housing` for these images and no others. An entry that is an image's whole name is that image's
+// alone: others that end in it get an entry of their own. Error that names `file`, the entry and
+// two images, if an entry is the end of several images' names and the whole name of none.
+Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
+                   const std::string& file);
+
 // Attaches ports to the scene's calibrated images by their paths, and a water surface as each
 // image's pose has it. `cameras` must be resolved already (InterfaceCOLMAP writes entries by image
-// where cameras differ). Error that names the image, as port_at; warnings that start with `file`
-// for ports that the scene's sparse points do not go with (warn_of_ports_in_scene).
-void attach_ports(Scene& scene, const Housing& housing, const std::string& file = "housing");
+// where cameras differ). Every line starts with `file`: errors that name the image, as port_at and
+// for_images; warnings for entries that no image goes by, and for ports that the scene's sparse
+// points do not go with (warn_of_ports_in_scene).
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file);
 
 }  // namespace axial::io

@@ -1,26 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/image_names.h"
 
-namespace axial::io {
+#include <set>
 
-ByImage::const_iterator entry_of(const ByImage& entries, const std::string& image_name) {
-  auto entry = entries.find(image_name);
-  for (std::size_t slash = image_name.find('/');
-       entry == entries.end() && slash != std::string::npos;
-       slash = image_name.find('/', slash + 1))
-    entry = entries.find(image_name.substr(slash + 1));
-  return entry;
+#include "base/error.h"
+
+namespace axial::io {
+namespace {
+
+// Of the ends of `name`, the longest first, the entry that is none of `taken`.
+ByImage::const_iterator longest_entry(const ByImage& entries, const std::string& name,
+                                      const std::set<std::string>& taken) {
+  for (std::size_t begin = 0;;) {
+    const std::string end = name.substr(begin);
+    const auto entry = entries.find(end);
+    if (entry != entries.end() && (begin == 0 || !taken.contains(end))) return entry;
+    const std::size_t slash = name.find('/', begin);
+    if (slash == std::string::npos) return entries.end();
+    begin = slash + 1;
+  }
 }
 
-ByImage entries_for(const std::vector<std::string>& names, const std::vector<std::string>& values,
-                    const std::string& otherwise) {
+}  // namespace
+
+ByImage::const_iterator entry_of(const ByImage& entries, const std::string& image_name) {
+  return longest_entry(entries, image_name, {});
+}
+
+std::vector<ByImage::const_iterator> entries_of_all(const ByImage& entries,
+                                                    std::span<const std::string> names,
+                                                    const std::string& where) {
+  std::vector<ByImage::const_iterator> found(names.size(), entries.end());
+  if (entries.empty()) return found;
+  const std::set<std::string> whole(names.begin(), names.end());
+  std::map<std::string, std::string> image_of;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    found[i] = longest_entry(entries, names[i], whole);
+    if (found[i] == entries.end()) continue;
+    const auto [image, first] = image_of.emplace(found[i]->first, names[i]);
+    if (!first && image->second != names[i])
+      fail("{}{} could be {} or {}: write as much of the path as tells them apart", where,
+           found[i]->first, image->second, names[i]);
+  }
+  return found;
+}
+
+ByImage entries_for(const std::vector<std::string>& names, const std::vector<std::string>& paths,
+                    const std::vector<std::string>& values, const std::string& otherwise) {
   ByImage entries;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (values[i] != otherwise) entries[names[i]] = values[i];
   // Without an entry of its own an image would take that of a shorter name.
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (values[i] == otherwise && entry_of(entries, names[i]) != entries.end())
-      entries[names[i]] = values[i];
+    if (const auto entry = entry_of(entries, names[i]);
+        values[i] == otherwise && entry != entries.end())
+      entries[entry->first == names[i] ? paths[i] : names[i]] = values[i];
+  std::set<std::string> taken;
+  ByImage of_paths;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto entry = entry_of(entries, paths[i]);
+    if (entry == entries.end() || entry->second != values[i]) continue;
+    if (entry->first != names[i] || !taken.insert(names[i]).second) of_paths[paths[i]] = values[i];
+  }
+  entries.merge(of_paths);
   return entries;
 }
 

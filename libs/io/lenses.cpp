@@ -118,26 +118,35 @@ void write_lenses(const fs::path& path, const Lenses& lenses) {
 
 Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
   Lenses lenses;
-  std::vector<std::string> names, values;
-  for (const SceneImage& image : scene.images) {
-    if (!image.calibrated) continue;
+  std::vector<std::string> names, paths, values;
+  const auto add = [&](const SceneImage& image, const std::string& lens) {
     names.push_back(name_beside(scene_path, image.path));
-    values.push_back(named(lenses, image.camera.distortion));
-  }
+    paths.push_back(fs::path(image.path).generic_string());
+    values.push_back(lens);
+  };
+  for (const SceneImage& image : scene.images)
+    if (image.calibrated) add(image, named(lenses, image.camera.distortion));
   if (!values.empty()) lenses.default_lens = values.front();
-  lenses.images = entries_for(names, values, lenses.default_lens);
+  // They have no lens, but must not go by the entries of others.
+  for (const SceneImage& image : scene.images)
+    if (!image.calibrated) add(image, lenses.default_lens);
+  lenses.images = entries_for(names, paths, values, lenses.default_lens);
   check_names(lenses, scene, lenses_beside(scene_path));
   return lenses;
 }
 
 void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
+  std::vector<std::string> names;
+  for (const SceneImage& image : scene.images)
+    names.push_back(fs::path(image.path).generic_string());
+  const auto entries = entries_of_all(lenses.images, names, file.string() + ": lenses.images.");
   std::set<std::string> used;
-  for (SceneImage& image : scene.images) {
-    const std::string path = fs::path(image.path).generic_string();
-    if (const auto entry = entry_of(lenses.images, path); entry != lenses.images.end())
-      used.insert(entry->first);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SceneImage& image = scene.images[i];
+    const bool has_entry = entries[i] != lenses.images.end();
+    if (has_entry) used.insert(entries[i]->first);
     if (!image.calibrated) continue;
-    const std::string& name = name_for(lenses, path);
+    const std::string& name = has_entry ? entries[i]->second : lenses.default_lens;
     image.camera.distortion.reset();
     if (name == kStraight) continue;
     image.camera.distortion = lenses.lenses.at(name);

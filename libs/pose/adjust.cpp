@@ -34,6 +34,13 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
 
 }  // namespace
 
+const Unknowns& AdjustOptions::unknowns(const BundleCamera& camera) const {
+  const auto& port = camera.measured.port;
+  const bool dome = port && std::holds_alternative<refractive::DomePort<double>>(*port);
+  if (dome && of_domes) return *of_domes;
+  return *this;
+}
+
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options) {
   AdjustProblem adjusted(bundle, options);
   ceres::Solver::Summary summary;

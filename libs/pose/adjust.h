@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "pose/bundle.h"
@@ -24,11 +25,18 @@ struct KnownPosition {
   double sigma = 0;  // [m], above 0
 };
 
-struct AdjustOptions {
-  // Which of the cameras' numbers are unknown (housing_change.h), and how well each was measured
-  // [its own unit]; 0: nothing is known.
+// Which of a camera's numbers are unknown (housing_change.h), and how well each was measured [its
+// own unit]; 0: nothing is known.
+struct Unknowns {
   std::array<bool, kHousingNumbers> free{};
   std::array<double, kHousingNumbers> prior_sigma{};
+};
+
+struct AdjustOptions : Unknowns {  // those of all cameras
+  // Those of domes, where they are not those of all: a flat port's first numbers are others.
+  std::optional<Unknowns> of_domes;
+
+  const Unknowns& unknowns(const BundleCamera& camera) const;
 
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;  // three or more also hold the model in place

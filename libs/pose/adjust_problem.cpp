@@ -68,11 +68,12 @@ void check(const Bundle& bundle, const AdjustOptions& options) {
       fail("bundle adjustment: a known distance of {} +- {} m", known.metres, known.sigma);
   for (const KnownPosition& known : options.positions)
     if (!(known.sigma > 0)) fail("bundle adjustment: a known position +- {} m", known.sigma);
-  const bool port_is_free = std::find(options.free.begin(), options.free.begin() + kFocalNumber,
-                                      true) != options.free.begin() + kFocalNumber;
-  for (const BundleCamera& camera : bundle.cameras)
-    if (port_is_free && !camera.measured.port)
+  for (const BundleCamera& camera : bundle.cameras) {
+    const auto& free = options.unknowns(camera).free;
+    const auto end = free.begin() + kFocalNumber;
+    if (!camera.measured.port && std::find(free.begin(), end, true) != end)
       fail("bundle adjustment: a camera in air has no port to adjust");
+  }
 }
 
 }  // namespace
@@ -111,15 +112,17 @@ void AdjustProblem::add_known() {
     problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<PositionResidual, 3, kPoseNumbers>(
                                    new PositionResidual{known.metres, known.sigma}),
                                nullptr, image_block(known.image));
-  for (HousingChange<double>& change : changes_)
+  for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
+    const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
     for (int k = 0; k < kHousingNumbers; ++k) {
       const auto number = static_cast<std::size_t>(k);
-      if (options_.free[number] && is_known(options_.prior_sigma[number]))
+      if (unknowns.free[number] && is_known(unknowns.prior_sigma[number]))
         problem_->AddResidualBlock(
             new ceres::AutoDiffCostFunction<MeasuredResidual, 1, kHousingNumbers>(
-                new MeasuredResidual{k, options_.prior_sigma[number]}),
-            nullptr, change.data());
+                new MeasuredResidual{k, unknowns.prior_sigma[number]}),
+            nullptr, change_block(camera));
     }
+  }
 }
 
 void AdjustProblem::add_known_distance(const KnownDistance& known) {
@@ -160,10 +163,12 @@ void AdjustProblem::fix_what_stays() {
   if (options_.poses_known) fix_poses();
   if (!options_.points_known && !options_.poses_known && options_.positions.size() < 3)
     problem_->SetParameterBlockConstant(image_block(anchor()));
-  std::vector<int> fixed;
-  for (int k = 0; k < kHousingNumbers; ++k)
-    if (!options_.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
-  for (HousingChange<double>& change : changes_) {
+  for (std::size_t camera = 0; camera < changes_.size(); ++camera) {
+    const Unknowns& unknowns = options_.unknowns(bundle_.cameras[camera]);
+    std::vector<int> fixed;
+    for (int k = 0; k < kHousingNumbers; ++k)
+      if (!unknowns.free[static_cast<std::size_t>(k)]) fixed.push_back(k);
+    HousingChange<double>& change = changes_[camera];
     if (!problem_->HasParameterBlock(change.data()) || fixed.empty()) continue;
     if (fixed.size() == kHousingNumbers)
       problem_->SetParameterBlockConstant(change.data());

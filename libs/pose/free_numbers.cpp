@@ -13,6 +13,8 @@ namespace axial::pose {
 namespace {
 
 using Words = std::set<std::string>;
+using Flat = refractive::FlatPort<double>;
+using Dome = refractive::DomePort<double>;
 
 Words words_of(const std::string& list) {
   const Words known{"normal", "distance", "centre", "thickness", "index", "focal"};
@@ -35,18 +37,24 @@ bool any_behind(const Bundle& bundle) {
   });
 }
 
+bool all_behind_domes(const Bundle& bundle) {
+  return std::ranges::all_of(bundle.cameras, [](const BundleCamera& camera) {
+    return camera.measured.port && std::holds_alternative<Dome>(*camera.measured.port);
+  });
+}
+
 void check_ports(const std::string& refine, const Words& words, const Bundle& bundle) {
   const bool in_air = std::ranges::any_of(
       bundle.cameras, [](const BundleCamera& camera) { return !camera.measured.port; });
   if (in_air && words.size() > words.count("focal"))
     fail("--refine {}: there are images in air, which have no port", refine);
   const bool of_flat = words.contains("normal") || words.contains("distance");
-  if (of_flat && words.contains("centre"))
-    fail("--refine {}: a flat port has no centre, and a dome only that", refine);
-  if (of_flat && any_behind<refractive::DomePort<double>>(bundle))
-    fail("--refine {}: there is a dome, which has a centre instead", refine);
-  if (words.contains("centre") && any_behind<refractive::FlatPort<double>>(bundle))
-    fail("--refine {}: there is a flat port, which has a normal and a distance instead", refine);
+  if (of_flat && !any_behind<Flat>(bundle))
+    fail("--refine {}: there is a dome, which has a centre instead, and no flat port", refine);
+  if (words.contains("centre") && !any_behind<Dome>(bundle))
+    fail(
+        "--refine {}: there is a flat port, which has a normal and a distance instead, and no dome",
+        refine);
 }
 
 void check_known(const std::string& refine, const Words& words, const Sigmas& sigmas,
@@ -65,26 +73,26 @@ void check_known(const std::string& refine, const Words& words, const Sigmas& si
 }
 
 void set(const Words& words, const std::string& word, double sigma, double scale,
-         std::initializer_list<std::size_t> numbers, AdjustOptions& adjust) {
+         std::initializer_list<std::size_t> numbers, Unknowns& unknowns) {
   if (!(sigma >= 0 && std::isfinite(sigma))) fail("--{}-sigma {}: must be 0 or more", word, sigma);
   if (sigma > 0 && !words.contains(word))
     fail("--{}-sigma {}: --refine does not name {}", word, sigma, word);
   if (!words.contains(word)) return;
   for (const std::size_t number : numbers) {
-    adjust.free[number] = true;
-    adjust.prior_sigma[number] = sigma * scale;
+    unknowns.free[number] = true;
+    unknowns.prior_sigma[number] = sigma * scale;
   }
 }
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct PlaceWords {
-  const char* operator()(const refractive::FlatPort<double>&) const { return "normal,distance"; }
-  const char* operator()(const refractive::DomePort<double>&) const { return "centre"; }
+  const char* operator()(const Flat&) const { return "normal,distance"; }
+  const char* operator()(const Dome&) const { return "centre"; }
 };
 
 struct ValuesOfPort {
-  std::vector<FreeValue> operator()(const refractive::FlatPort<double>& port) const {
+  std::vector<FreeValue> operator()(const Flat& port) const {
     const double tilt_x = std::atan2(port.normal.x(), port.normal.z()) * kDegrees;
     const double tilt_y = std::atan2(port.normal.y(), port.normal.z()) * kDegrees;
     return {
@@ -94,7 +102,7 @@ struct ValuesOfPort {
         {kIndexNumber, Quantity::index, "index of water", "", port.n_water, 0, 1},
         {kThicknessNumber, Quantity::thickness, "thickness", "mm", port.thickness * 1e3, 0, 1e3}};
   }
-  std::vector<FreeValue> operator()(const refractive::DomePort<double>& port) const {
+  std::vector<FreeValue> operator()(const Dome& port) const {
     return {
         {0, Quantity::place, "centre x", "mm", port.centre.x() * 1e3, 0, 1e3},
         {1, Quantity::place, "centre y", "mm", port.centre.y() * 1e3, 0, 1e3},
@@ -123,12 +131,19 @@ void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bun
                       AdjustOptions& adjust) {
   const Words words = words_of(refine);
   check_ports(refine, words, bundle);
-  set(words, "normal", sigmas.normal_degrees, 1 / kDegrees, {0, 1}, adjust);
-  set(words, "distance", sigmas.distance, 1, {2}, adjust);
-  set(words, "centre", sigmas.centre, 1, {0, 1, 2}, adjust);
-  set(words, "thickness", sigmas.thickness, 1, {kThicknessNumber}, adjust);
-  set(words, "index", sigmas.index, 1, {kIndexNumber}, adjust);
-  set(words, "focal", sigmas.focal, 1, {kFocalNumber}, adjust);
+  Unknowns flat, dome;
+  set(words, "normal", sigmas.normal_degrees, 1 / kDegrees, {0, 1}, flat);
+  set(words, "distance", sigmas.distance, 1, {2}, flat);
+  set(words, "centre", sigmas.centre, 1, {0, 1, 2}, dome);
+  for (Unknowns* const unknowns : {&flat, &dome}) {
+    set(words, "thickness", sigmas.thickness, 1, {kThicknessNumber}, *unknowns);
+    set(words, "index", sigmas.index, 1, {kIndexNumber}, *unknowns);
+    set(words, "focal", sigmas.focal, 1, {kFocalNumber}, *unknowns);
+  }
+  const bool domes = any_behind<Dome>(bundle), others = !all_behind_domes(bundle);
+  static_cast<Unknowns&>(adjust) = others ? flat : dome;
+  adjust.of_domes.reset();
+  if (domes && others) adjust.of_domes = dome;
   check_known(refine, words, sigmas, adjust);
 }
 
@@ -139,7 +154,8 @@ std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChan
   if (now.port) values = std::visit(ValuesOfPort{}, *now.port);
   const double factor = std::exp(camera.change(kFocalNumber));
   values.push_back({kFocalNumber, Quantity::focal, "focal length, factor", "", factor, 0, factor});
-  std::erase_if(values, [&](const FreeValue& value) { return !options.free[value.number]; });
+  const auto& free = options.unknowns(camera).free;
+  std::erase_if(values, [&](const FreeValue& value) { return !free[value.number]; });
   for (FreeValue& value : values)
     value.sigma = sigmas(static_cast<Eigen::Index>(value.number)) * value.scale;
   return values;

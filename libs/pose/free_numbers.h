@@ -23,8 +23,9 @@ struct Sigmas {
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
 // What --refine says, a list of normal, distance, centre, thickness, index and focal, and how well
-// that was measured, into `adjust`. Error for another word; for normal or distance of a dome, the
-// centre of a flat port, or any number of a port where there are cameras in air; for a sigma that
+// that was measured, into `adjust`: normal and distance of the flat ports, the centre of the domes,
+// the others of all. Error for another word; for normal or distance without a flat port, the centre
+// without a dome, or any number of a port where there are cameras in air; for a sigma that
 // is negative, or of what is not refined; for a thickness without one, since it looks like
 // distance; for the distance of a flat port where neither it nor any length is known, since only
 // their ratio is seen.

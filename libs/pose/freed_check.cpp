@@ -92,7 +92,9 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
     const AdjustOptions held = options_for(part, options);
     const double stated = adjusted_rms(part, held);
     for (const auto& group : candidates(part)) {
-      if (std::ranges::any_of(group, [&](std::size_t k) { return options.free[k]; })) continue;
+      if (std::ranges::any_of(
+              group, [&](std::size_t k) { return options.unknowns(part.cameras.front()).free[k]; }))
+        continue;
       AdjustOptions freeing = held;
       for (const std::size_t number : group) freeing.free[number] = true;
       Bundle trial = part;

@@ -16,6 +16,8 @@ namespace axial::pose {
 // Where tracks fit in air they may be of photographs in air, and up to six photographs of
 // `image_folder` decide; with an empty path nothing is said then. (Tracks of a model that carries
 // ports itself are of photographs through them.) The line is the same for any number of threads.
+// Poses that are too large are not told there: points move by a pixel, which patches hardly show.
+// DensifyPointCloud's depth maps tell (depth/agreement.h).
 // Nothing is thrown for files that cannot be read.
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
                                           const std::filesystem::path& image_folder);

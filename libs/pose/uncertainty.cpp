@@ -20,8 +20,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   const std::size_t points = options.points_known ? 0 : bundle.points.size();
-  const auto free =
-      static_cast<std::size_t>(std::count(options.free.begin(), options.free.end(), true));
+  std::size_t free = 0;
+  for (const BundleCamera& camera : bundle.cameras)
+    free += static_cast<std::size_t>(std::ranges::count(options.unknowns(camera).free, true));
   // Images without observations are no unknowns.
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   auto images = counts.size() -
@@ -29,7 +30,7 @@ std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   const bool held = options.points_known || options.positions.size() >= 3;
   if (!held) --images;
   if (options.poses_known) images = 0;
-  return kPoseNumbers * images + free * bundle.cameras.size() + 3 * points;
+  return kPoseNumbers * images + free + 3 * points;
 }
 
 Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {
@@ -122,8 +123,9 @@ class Normal {
     const auto found = columns_.find(problem_.change_block(camera));
     const bool observed = found != columns_.end();
     Eigen::Index column = observed ? found->second : 0;
+    const auto& free = options_.unknowns(bundle_.cameras[camera]).free;
     for (int k = 0; k < kHousingNumbers; ++k) {
-      if (!options_.free[static_cast<std::size_t>(k)]) continue;
+      if (!free[static_cast<std::size_t>(k)]) continue;
       sigmas(k) = kInfinite;
       if (observed)
         sigmas(k) =

@@ -5,11 +5,13 @@ wrong, and says nothing where all is right."""
 import json
 import math
 import os
+import random
 import re
 import tempfile
 
-from programs import ProgramTest, cloud_size, files_below, main, read, run, write
+from programs import ProgramTest, cloud_size, files_below, grey_png, main, read, run, write
 
+NO_SCENE = "The photographs do not seem to show the scene"
 WARNING = "Cameras and photographs do not seem to belong together"
 # No rounds after the first pass and no cloud: what the check needs.
 QUICK = ("--geometric-iters", "0", "--postprocess-dmaps", "0", "--fusion-mode", "1")
@@ -92,6 +94,7 @@ class PortTest(ProgramTest):
         folder = self.scene(name, **right)
         said = self.densify(folder)
         self.assertNotIn(WARNING, said, name)
+        self.assertNotIn(NO_SCENE, said, name)
         self.assertIn("Agreement: ", said, name)
         self.assertNotIn("housing.ports.", said, name)
         self.assertFalse(self.report(folder)["warning"], name)
@@ -165,6 +168,46 @@ class FlatPort(PortTest):
         folder = self.scene("right", housing=self.housing())
         self.refuses("--report-file", "DensifyPointCloud", "-i", "scene.mvs", "-w", folder,
                      "--report-file", "scene.mvs")
+
+
+class Noise(PortTest):
+    """Few pixels a sparse point: maps keep to these where photographs show nothing, and agree."""
+    SCENE = ("--preset", "closeup")
+    SMALL = ("--resolution-level", "1", "--min-resolution", "100")
+
+    def test_photographs_of_noise(self):
+        rng = random.Random(3)
+        folder = os.path.join(self.truth, "noise")
+        for name in os.listdir(os.path.join(self.truth, "water")):
+            # The format is found by content.
+            write(os.path.join(folder, name), grey_png(
+                [bytes(min(255, max(0, round(rng.gauss(128, 40)))) for _ in range(320))
+                 for _ in range(240)]))
+        for medium, housing in (("water", self.housing()), ("air", None)):
+            noise = self.scene("noise_" + medium, housing=housing, medium="noise")
+            said = self.densify(noise, *self.SMALL)
+            self.assertEqual(said.count(NO_SCENE) + said.count(WARNING), 1, said)
+            report = self.report(noise)
+            self.assertIn(f"median score of {report['median_score']:.2f} (usual: over "
+                          f"{report['limits']['median_score']})", said)
+            self.assertTrue(report["warning"])
+            self.assertLess(report["median_score"], report["limits"]["median_score"] - 0.04)
+            right = self.scene(medium, housing=housing, medium=medium)
+            said = self.densify(right, *self.SMALL)
+            self.assertNotIn(NO_SCENE, said)
+            self.assertNotIn(WARNING, said)
+            self.assertGreater(self.report(right)["median_score"],
+                               report["limits"]["median_score"] + 0.1)
+
+    def test_hazy_and_noisy_photographs_are_right(self):
+        truth = self.path("hazy")
+        simulate(truth, *self.SCENE, "--haze", 0.5, "--noise", 8)
+        self.truth, given = truth, self.truth
+        try:
+            self.passes("water", housing=self.housing())
+            self.passes("air", medium="air")
+        finally:
+            self.truth = given
 
 
 class DistortedLens(PortTest):

@@ -25,6 +25,7 @@ std::vector<DepthMap> maps_of(const test::AnalyticScene& scene, const CameraMode
   for (Pose pose : test::circle_of_poses(kViews)) {
     pose.rotation.setIdentity();
     maps.push_back(test::exact_map(scene, camera, pose));
+    maps.back().confidence.release();
   }
   return maps;
 }
@@ -118,6 +119,25 @@ std::vector<DepthMap> seen_through(const std::vector<DepthMap>& maps,
 
 refractive::FlatPort<double>& port_of(CameraModel& camera) {
   return std::get<refractive::FlatPort<double>>(*camera.port);
+}
+
+TEST(Agreement, LowScoresShowWhereMapsAgree) {
+  std::vector<DepthMap> maps = maps_of(kPlane, test::behind_port(test::dry_camera()));
+  const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
+  EXPECT_EQ(agreement_of(maps, points).scored, 0u) << "maps without confidence";
+  const AgreementLimits limits;
+  for (const double offset : {-0.1, -0.01, 0.01, 0.1}) {
+    const double score = limits.score + offset;
+    for (DepthMap& map : maps)
+      map.confidence = cv::Mat1f(map.depth.size(), static_cast<float>(score));
+    Agreement found = agreement_of(maps, points);
+    EXPECT_GT(found.scored, limits.min_points);
+    EXPECT_NEAR(found.score, score, 1e-6);
+    EXPECT_EQ(judge(found).score, offset < 0);
+    EXPECT_FALSE(judge(found).cameras());
+    found.scored = limits.min_points - 1;
+    EXPECT_FALSE(judge(found).any());
+  }
 }
 
 TEST(Agreement, EachWrongNumberOfTheCameraShows) {

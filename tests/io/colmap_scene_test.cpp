@@ -303,7 +303,7 @@ TEST_F(ColmapScene, ShortNamesOfOthersDoNotTakeTheDefaultAway) {
   housing.images = {{"wet/0000.png", "main"}, {"0000.png", "none"}};
   Scene scene = import_colmap_scene(model_, import_);
   const Housing resolved = housing_by_image(housing, model_, scene, import_);
-  attach_ports(scene, resolved);
+  attach_ports(scene, resolved, "h.json");
   EXPECT_EQ(scene.images[0].port_name, "");
   EXPECT_EQ(scene.images[1].port_name, "main");
   EXPECT_EQ(scene.images[2].port_name, "main");

@@ -72,6 +72,39 @@ class LensesTest : public ::testing::Test {
   Scene scene_;
 };
 
+// Whatever folders images lie in, one lens for all or not: what is written is what is read.
+TEST_F(LensesTest, AreFoundAgainForImagesOfOneBaseName) {
+  const std::vector<std::optional<Distortion>> lenses{barrel(), fisheye(), std::nullopt};
+  for (std::size_t seed = 0; seed < 27; ++seed) {
+    scene_.images.clear();
+    std::size_t choice = seed;
+    for (const char* folder : {"cam0", "cam1", "cam1/cam0"}) {
+      add((folder_ / folder / "0.jpg").string(), lenses[choice % 3]);
+      choice /= 3;
+    }
+    add((folder_ / "other" / "cam0" / "0.jpg").string(), fisheye());
+    scene_.images.back().calibrated = false;
+    add((folder_ / ".." / "cam1" / "0.jpg").lexically_normal().string(), lenses[seed / 3 % 3]);
+    write_lenses_beside(scene_file_, lenses_of(scene_, scene_file_), true);
+    std::vector<std::optional<Distortion>> found = read_again();
+    for (const std::size_t i : {0u, 1u, 2u, 4u})
+      EXPECT_EQ(found[i], scene_.images[i].camera.distortion) << seed << ' ' << i;
+  }
+}
+
+TEST_F(LensesTest, RefusesEntriesThatSeveralImagesGoBy) {
+  add("/x/cam0/0.jpg", {});
+  add("/x/cam1/0.jpg", {});
+  Lenses lenses;
+  lenses.lenses["wide"] = barrel();
+  lenses.images["0.jpg"] = "wide";
+  write_lenses(file_, lenses);
+  EXPECT_EQ(error_of([&] { attach_lenses_beside(scene_, scene_file_); }),
+            file_.string() +
+                ": lenses.images.0.jpg could be /x/cam0/0.jpg or /x/cam1/0.jpg: write as much of "
+                "the path as tells them apart");
+}
+
 TEST_F(LensesTest, ReadsBackWhatItWrites) {
   add((folder_ / "images/a.jpg").string(), fisheye());
   add((folder_ / "images/b.jpg").string(), std::nullopt);

@@ -103,6 +103,55 @@ TEST_F(RefinePoses, RefinesImagesBehindFlatPortsAndDomesTogether) {
   EXPECT_EQ(report["images"].size(), 12u);
 }
 
+// Of flat ports and domes in one model each kind has its own numbers.
+TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
+  const auto flat = flat_port(2);
+  const auto dome = testing::dome_port();
+  truth_ = testing::mixed_survey(camera_behind(flat), camera_behind(dome), {.noise = 0.2});
+  write("sparse", testing::model_of(truth_));
+  io::Housing housing = testing::housing();
+  auto wrong_flat = flat_port(0);
+  wrong_flat.distance += 0.005;
+  auto wrong_dome = dome;
+  wrong_dome.centre += Eigen::Vector3d(0.002, -0.002, 0.003);
+  housing.ports["main"] = wrong_flat;
+  housing.ports["dome"] = wrong_dome;
+  for (std::size_t i = 1; i < truth_.images.size(); i += 2)
+    housing.images[truth_.images[i].name] = "dome";
+  io::write_housing(folder_ / "housing.json", housing);
+  const std::string known = "-o out --poses known --refine ";
+  const Outcome outcome = run(kInput + known + "normal,distance,centre");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const io::Housing found = io::read_housing(folder_ / "out" / "housing.json");
+  std::size_t flats = 0, domes = 0;
+  for (const auto& [name, port] : found.ports) {
+    if (const auto* const one = std::get_if<refractive::FlatPort<double>>(&port)) {
+      EXPECT_NEAR(one->distance, flat.distance, 0.001);
+      EXPECT_LT((one->normal - flat.normal).norm(), 0.003);
+      ++flats;
+    }
+    if (const auto* const one = std::get_if<refractive::DomePort<double>>(&port)) {
+      EXPECT_LT((one->centre - dome.centre).norm(), 0.001);
+      ++domes;
+    }
+  }
+  EXPECT_EQ(flats, 1u);
+  EXPECT_EQ(domes, 1u);
+  const auto report = io::read_json(folder_ / "out" / "report.json");
+  EXPECT_EQ(report["cameras"][0]["free"].size(), 3u);
+  EXPECT_EQ(report["cameras"][0]["free"][2]["name"], "distance");
+  EXPECT_EQ(report["cameras"][1]["free"].size(), 3u);
+  EXPECT_EQ(report["cameras"][1]["free"][2]["name"], "centre z");
+
+  // Of one kind alone: the other's port stays.
+  ASSERT_EQ(run(kInput + known + "centre").exit_code, 0);
+  bool stays = false;
+  for (const auto& [name, port] : io::read_housing(folder_ / "out" / "housing.json").ports)
+    if (const auto* const one = std::get_if<refractive::FlatPort<double>>(&port))
+      stays = one->distance == wrong_flat.distance && one->normal == wrong_flat.normal;
+  EXPECT_TRUE(stays);
+}
+
 TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
   const Outcome outcome =
       run(kInput + "-o out --refine distance,normal --scale-from " + baseline());
