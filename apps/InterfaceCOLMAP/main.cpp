@@ -136,7 +136,7 @@ std::string say_missing(const Scene& scene, const Options& options) {
   return fmt::format(
       " ({} of them are not there: a scene's paths count from the working folder, {}, which -w "
       "sets)",
-      missing, options.parsed.common.working_folder.string());
+      missing, fs::weakly_canonical(options.parsed.common.working_folder, error).string());
 }
 
 // A scene with ports goes to COLMAP-Underwater, whose files have a place for them.

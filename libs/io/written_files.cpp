@@ -37,7 +37,7 @@ bool leads_out(const fs::path& path) {
 nlohmann::json list_files(const fs::path& folder) {
   nlohmann::json listed = nlohmann::json::object();
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
+    if (fs::is_regular_file(entry.symlink_status()))
       listed[entry.path().lexically_relative(folder).generic_string()] =
           fingerprint_of(entry.path());
   return listed;

@@ -9,7 +9,7 @@
 
 namespace axial::io {
 
-// All files below `folder`, at any depth: { "path/below/it": fingerprint, ... }.
+// All files below `folder`, at any depth, but no links: { "path/below/it": fingerprint, ... }.
 nlohmann::json list_files(const std::filesystem::path& folder);
 
 struct WrittenFiles {
