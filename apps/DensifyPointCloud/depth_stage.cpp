@@ -208,9 +208,8 @@ class DepthMapRun {
       map = axial::depth::remove_speckles(map, options_.speckles);
     if (options_.postprocess & kGaps) {
       cv::Mat1b ignored;
-      if (project_.views[image].masked())
-        if (const auto pixels = images_.get(image); !pixels->mask.empty())
-          cv::compare(pixels->mask, 0, ignored, cv::CMP_EQ);
+      if (const cv::Mat1b mask = images_.mask(image); !mask.empty())
+        cv::compare(mask, 0, ignored, cv::CMP_EQ);
       map = axial::depth::fill_gaps(map, options_.gaps, ignored);
     }
     return map;

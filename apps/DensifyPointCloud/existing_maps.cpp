@@ -85,6 +85,14 @@ axial::CameraModel camera_of_map(const Project& project, const Options& options,
   return camera;
 }
 
+void leave_out(const cv::Mat1b& mask, axial::DepthMap& map) {
+  cv::Mat1b left_out;
+  cv::compare(mask, 0, left_out, cv::CMP_EQ);
+  map.depth.setTo(0, left_out);
+  for (cv::Mat plane : {cv::Mat(map.normal), cv::Mat(map.confidence)})
+    if (!plane.empty()) plane.setTo(cv::Scalar::all(0), left_out);
+}
+
 }  // namespace
 
 axial::io::DmapSide side_to_read(DmapOrigin origin) {
@@ -97,6 +105,16 @@ ExistingMaps find_existing_maps(const Project& project, const Options& options) 
   for (const std::size_t image : project.references)
     maps[image] = axial::io::dmap_status(depth_map_path(project, options, image));
   return maps;
+}
+
+axial::DepthMap read_final_map(const Project& project, const Options& options,
+                               const ExistingMaps& maps, std::size_t image, const cv::Mat1b& mask) {
+  const auto side =
+      options.make_maps ? axial::io::DmapSide::used : side_to_read(maps[image].origin);
+  axial::DepthMap map = axial::io::read_dmap(depth_map_path(project, options, image), side).map;
+  if (!options.make_maps && !mask.empty()) leave_out(mask, map);
+  if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
+  return map;
 }
 
 void check_overwriting(const Project& project, const Options& options, const ExistingMaps& maps) {

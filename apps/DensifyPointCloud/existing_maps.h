@@ -20,6 +20,12 @@ ExistingMaps find_existing_maps(const Project& project, const Options& options);
 // How a map of this origin is read: a foreign one may lie beside an older side file of ours.
 axial::io::DmapSide side_to_read(axial::io::DmapOrigin origin);
 
+// The image's final map, without normals if its file has none. With --fusion-mode -1 it has no
+// depth where `mask` (of its size; empty: all stay) is zero; maps made by this run are masked
+// already. The file stays as it is.
+axial::DepthMap read_final_map(const Project& project, const Options& options,
+                               const ExistingMaps& maps, std::size_t image, const cv::Mat1b& mask);
+
 // Error that names a foreign map and what to do, unless --overwrite-dmaps is given; a line for each
 // damaged map.
 void check_overwriting(const Project& project, const Options& options, const ExistingMaps& maps);

@@ -8,8 +8,6 @@
 #include "cloud/crop.h"
 #include "cloud/fuse.h"
 #include "cloud/normals.h"
-#include "depth_stage.h"
-#include "io/dmap.h"
 #include "io/ply.h"
 
 namespace densify {
@@ -68,12 +66,9 @@ class CloudRun {
   }
 
   axial::DepthMap load_map(std::size_t image) const {
-    const auto file = depth_map_path(project_, options_, image);
-    if (options_.make_maps) return axial::io::read_dmap(file).map;
-    axial::DepthMap map = axial::io::read_dmap(file, side_to_read(existing_[image].origin)).map;
     // Fusion estimates the normals of maps that have none.
-    if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
-    return map;
+    const cv::Mat1b mask = options_.make_maps ? cv::Mat1b() : images_.mask(image);
+    return read_final_map(project_, options_, existing_, image, mask);
   }
 
   void fuse_into(const axial::cloud::CloudSink& sink) {

@@ -12,9 +12,9 @@
 namespace densify {
 namespace {
 
-cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck& check) {
+cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck* check) {
   const cv::Mat1w labels = axial::io::read_label_image(view.mask);
-  check.add(labels);
+  if (check) check->add(labels);
   axial::io::check_mask_shape(view.mask, labels.size(), view.file.size);
   const cv::Size size(view.camera.width, view.camera.height);
   cv::Mat1b mask;
@@ -44,17 +44,28 @@ WorkImage load(const Project& project, const Options& options, std::size_t image
   photograph.pixels.release();
   cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
   if (!needs_colors(options)) result.color.release();
-  if (!view.mask.empty()) result.mask = load_mask(view, options.ignore_mask_label, check);
-  if (!photograph.opaque.empty()) leave_out_transparent(photograph.opaque, size, result.mask);
+  result.mask = working_mask(view, photograph.opaque, options.ignore_mask_label, &check);
   return result;
 }
 
 }  // namespace
 
+cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
+                       LabelCheck* check) {
+  cv::Mat1b mask;
+  if (!view.mask.empty()) mask = load_mask(view, ignored_label, check);
+  if (!opaque.empty()) leave_out_transparent(opaque, {view.camera.width, view.camera.height}, mask);
+  return mask;
+}
+
 ImageStore::ImageStore(const Project& project, const Options& options, std::size_t capacity)
     : project_(project),
       labels_(options.ignore_mask_label),
       cache_([&](std::size_t image) { return load(project, options, image, labels_); }, capacity) {}
+
+cv::Mat1b ImageStore::mask(std::size_t image) {
+  return project_.views[image].masked() ? get(image)->mask : cv::Mat1b();
+}
 
 void ImageStore::check_all(std::size_t at_once) {
   const std::size_t count = project_.views.size();

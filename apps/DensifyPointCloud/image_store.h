@@ -17,6 +17,11 @@ struct WorkImage {
   cv::Mat1b mask;   // empty, or non-zero: match; of the labels and of the pixels' own alpha
 };
 
+// WorkImage::mask of an image whose pixels' alpha is `opaque` (empty: none), at `view.camera`'s
+// size. `check` learns the labels (null: nobody does). Error for a mask of another shape.
+cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
+                       LabelCheck* check = nullptr);
+
 // Keeps the `capacity` images that were used last. Thread-safe; an image is read once however many
 // threads want it.
 class ImageStore {
@@ -25,6 +30,9 @@ class ImageStore {
 
   // Error for files that cannot be decoded, and for masks of another shape than their image.
   std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
+
+  // WorkImage::mask. Reads nothing for an image that has none.
+  cv::Mat1b mask(std::size_t image);
 
   // Reads every calibrated image once, `at_once` at a time, so that errors show before hours of
   // work: that of the first bad image in the scene. The first images stay, which are needed first.

@@ -11,7 +11,6 @@
 #include "existing_maps.h"
 #include "fusion_stage.h"
 #include "image_store.h"
-#include "io/dmap.h"
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "memory_plan.h"
@@ -62,11 +61,10 @@ void say_who_may_read(const densify::Project& project, const densify::Options& o
 }
 
 void check_existing_maps(const densify::Project& project, const densify::Options& options,
-                         const densify::MemoryPlan& plan, const densify::ExistingMaps& existing) {
+                         const densify::MemoryPlan& plan, const densify::ExistingMaps& existing,
+                         densify::ImageStore& images) {
   densify::check_agreement(project, options, plan, false, [&](std::size_t image) {
-    return axial::io::read_dmap(densify::depth_map_path(project, options, image),
-                                densify::side_to_read(existing[image].origin))
-        .map;
+    return densify::read_final_map(project, options, existing, image, images.mask(image));
   });
 }
 
@@ -103,7 +101,7 @@ int run(int argc, char** argv) {
   if (options.make_maps)
     densify::make_depth_maps(project, options, plan, existing, *images);
   else
-    check_existing_maps(project, options, plan, existing);
+    check_existing_maps(project, options, plan, existing, *images);
 
   fs::path ply = options.output;
   ply.replace_extension(".ply");

@@ -121,11 +121,8 @@ void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
       .add_with_default("estimate-scale", &options.estimate_scale,
                         "above 0: write the points with their sizes, so many pixels of their "
                         "views, to <output>_scale.ply, and quit")
-      .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect");
-}
-
-void declare_hidden(axial::OptionList& list, Raw& raw) {
-  list.add("dense-config-file", &raw.dense_config,
+      .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect")
+      .add("dense-config-file", &raw.dense_config,
            "OpenMVS's Densify.ini: settings that have no option; written if it is not there");
 }
 
@@ -229,7 +226,6 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_fusion(program.visible, raw, options);
   declare_points(program.visible, raw, options);
   axial::UnusedInput::declare(program.visible, options.allow_missing);
-  declare_hidden(program.hidden, raw);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);

@@ -14,6 +14,7 @@
 #include "cloud/pinhole_resampling.h"
 #include "cloud_exports.h"
 #include "depth_stage.h"
+#include "image_store.h"
 #include "io/colmap_export.h"
 #include "io/dmap.h"
 #include "io/geo_offset.h"
@@ -22,6 +23,7 @@
 #include "io/masks.h"
 #include "io/mvs.h"
 #include "io/ply.h"
+#include "io/written_files.h"
 #include "pinhole_folder.h"
 #include "scene/resolution.h"
 
@@ -57,6 +59,7 @@ class Export {
       export_cloud(ply);
       export_scene();
       export_marker();
+      remove_earlier_export(options_.pinhole_export, folder_);
     });
     report();
   }
@@ -81,14 +84,11 @@ class Export {
     return folder_ / "images" / exported_name(project_.scene.images[image], photographs_);
   }
 
-  axial::DepthMap load_map(std::size_t image) const {
-    const fs::path file = depth_map_path(project_, options_, image);
-    axial::DepthMap map =
-        axial::io::read_dmap(file, options_.make_maps ? axial::io::DmapSide::used
-                                                      : side_to_read(existing_[image].origin))
-            .map;
-    if (cv::countNonZero(map.normal.reshape(1)) == 0) map.normal.release();
-    return map;
+  axial::DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
+    cv::Mat1b mask;
+    if (!options_.make_maps)
+      mask = working_mask(project_.views[image], opaque, options_.ignore_mask_label);
+    return read_final_map(project_, options_, existing_, image, mask);
   }
 
   // The resolution at which OpenMVS, given this run's options, would work on the pinhole's image.
@@ -131,7 +131,7 @@ class Export {
     const axial::CameraModel camera = from.camera.resized(color.cols, color.rows);
     const axial::cloud::PinholeView view = axial::cloud::pinhole_for(camera, near_, far_);
     exported_[image].view = view;
-    axial::DepthMap map = load_map(image);
+    axial::DepthMap map = load_map(image, photograph.opaque);
     const cv::Mat1f surface = axial::cloud::render_surface(map, view);
     const cv::Size size = map_size(view.camera, image);
     const axial::cloud::PinholeView small = view.resized(size.width, size.height);
@@ -219,7 +219,8 @@ class Export {
     axial::io::write_json(folder_ / kPinholeMarker, {{"version", 1},
                                                      {"made_from", made_from()},
                                                      {"scene", options_.input.string()},
-                                                     {"images", images}});
+                                                     {"images", images},
+                                                     {"files", axial::io::list_files(folder_)}});
   }
 
   void report() const {

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pinhole_folder.h"
 
+#include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_extension.h"
+#include "base/log.h"
 #include "io/colmap_export.h"
+#include "io/json.h"
 #include "io/masks.h"
+#include "io/written_files.h"
 
 namespace densify {
 namespace fs = std::filesystem;
@@ -55,12 +60,34 @@ void check_folder(const Project& project, const Options& options) {
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
       fail("--pinhole-export {}: this run's inputs lie there", folder.string());
-  if (!fs::is_empty(folder, error) && !fs::exists(folder / kPinholeMarker, error))
+  if (fs::exists(folder / kPinholeMarker, error)) {
+    if (!axial::io::read_json(folder / kPinholeMarker).is_object())
+      fail("{}: is not the list of an earlier export", (folder / kPinholeMarker).string());
+  } else if (!fs::is_empty(folder, error))
     fail("--pinhole-export {}: holds other files: name an empty folder, or a new one",
          folder.string());
 }
 
 }  // namespace
+
+void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
+  std::error_code error;
+  const fs::path marker = folder / kPinholeMarker;
+  if (!fs::exists(marker, error)) return;
+  const nlohmann::json earlier = axial::io::read_json(marker);
+  if (!earlier.contains("files"))
+    axial::log_warning("{}: lists no files: those that this export does not replace stay",
+                       marker.string());
+  axial::io::WrittenFiles files =
+      axial::io::find_written(folder, earlier.value("files", nlohmann::json::object()));
+  const auto replaced = [&](const fs::path& file) { return fs::exists(staging / file, error); };
+  std::erase_if(files.unchanged, replaced);
+  std::erase_if(files.changed, replaced);
+  axial::io::remove_below(folder, files.unchanged);
+  if (!files.changed.empty())
+    axial::log_warning("{}: is not as the earlier export wrote it, and stays, as {} others do",
+                       (folder / files.changed.front()).string(), files.changed.size() - 1);
+}
 
 void check_pinhole_export(const Project& project, const Options& options) {
   if (options.pinhole_export.empty()) return;

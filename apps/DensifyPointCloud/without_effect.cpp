@@ -16,8 +16,7 @@ using Names = std::initializer_list<const char*>;
 constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
                           "postprocess-dmaps",     "projection", "warp",
                           "overwrite-dmaps"};
-constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution",
-                         "number-views",     "mask-path",      "ignore-mask-label"};
+constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution", "number-views"};
 constexpr Names kFusion{"number-views-fuse", "estimate-colors", "estimate-normals", "crop-to-roi",
                         "remove-dmaps"};
 constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",

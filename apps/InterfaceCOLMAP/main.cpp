@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -124,6 +125,20 @@ void check_export_folder(const fs::path& folder) {
           file.string());
 }
 
+// What a line says behind the folder that images are named from. A scene's paths count from the
+// working folder, which may not be the one they were written for.
+std::string say_missing(const Scene& scene, const Options& options) {
+  std::error_code error;
+  const auto missing = std::ranges::count_if(scene.images, [&](const SceneImage& image) {
+    return image.calibrated && !fs::exists(image.path, error);
+  });
+  if (missing == 0) return "";
+  return fmt::format(
+      " ({} of them are not there: a scene's paths count from the working folder, {}, which -w "
+      "sets)",
+      missing, fs::weakly_canonical(options.parsed.common.working_folder, error).string());
+}
+
 // A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
 int export_scene(const Options& options) {
   Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
@@ -152,8 +167,14 @@ int export_scene(const Options& options) {
     io::write_json(staging / kExportMarker,
                    {{"version", 1}, {"scene", options.scene_file.string()}});
   });
-  log_info("{}: {} images below {}, {} cameras, {} points", folder.string(), model.images.size(),
-           images.string(), model.cameras.size(), model.points.size());
+  const std::string missing = say_missing(scene, options);
+  const std::string line = fmt::format("{}: {} images below {}{}, {} cameras, {} points",
+                                       folder.string(), model.images.size(), images.string(),
+                                       missing, model.cameras.size(), model.points.size());
+  if (missing.empty())
+    log_info("{}", line);
+  else
+    log_warning("{}", line);
   return 0;
 }
 

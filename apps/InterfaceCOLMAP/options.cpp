@@ -12,6 +12,14 @@ using axial::fail;
 
 namespace {
 
+// A scene is exported to a folder: a name of a file, such as an import's, is a slip.
+void refuse_file_name(const std::string& output) {
+  for (const char* extension : {".mvs", ".ply", ".txt", ".bin", ".json"})
+    if (fs::path(output).extension() == extension)
+      fail("--output-file {}: -o names the folder that a scene (.mvs) is exported to, not a file",
+           output);
+}
+
 // A folder that was asked for counts from the working folder, as in OpenMVS. The default belongs to
 // the COLMAP folder: whatever images/ the program is started beside must not win over the model's.
 void find_image_folder(const std::string& name, Options& options) {
@@ -71,6 +79,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.colmap_folder = axial::in_working_folder(common, input);
   if (options.colmap_folder.extension() == ".mvs") {
     options.scene_file = std::exchange(options.colmap_folder, {});
+    refuse_file_name(output);
     options.export_folder = output.empty() ? options.scene_file.parent_path()
                                            : axial::in_working_folder(common, output);
     if (!housing.empty())

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""InterfaceCOLMAP exports a scene back to COLMAP."""
+
+import os
+import re
+import shutil
+import struct
+
+from openmvs_scene import Scene
+from programs import cloud_size, main, read, write
+
+
+def moved(scene, folder):
+    """The bytes of a scene whose images lie in `folder`."""
+    for path in set(re.findall(rb"[^\0]*/\d{4}\.jpg", scene)):
+        before = struct.pack("<Q", len(path)) + path
+        after = os.path.join(folder, path[-8:].decode()).encode()
+        assert scene.count(before) == 1
+        scene = scene.replace(before, struct.pack("<Q", len(after)) + after)
+    return scene
+
+
+class Export(Scene):
+    """A scene back to COLMAP."""
+    SAMPLES = 1
+
+    def model(self, folder):
+        """Cameras by id, images by name, points by position; no program of ours reads them here."""
+        lines = lambda name: [line.split() for line in read(os.path.join(folder, name)).decode()
+                              .splitlines() if not line.startswith("#")]
+        cameras = {line[0]: line[1:] for line in lines("cameras.txt")}
+        text = lines("images.txt")
+        images = {head[9]: (head[0], [float(x) for x in head[1:8]], head[8],
+                            [tuple(map(float, points[i:i + 2])) for i in range(0, len(points), 3)])
+                  for head, points in zip(text[::2], text[1::2])}
+        names = {image[0]: name for name, image in images.items()}
+        points = []
+        for line in lines("points3D.txt"):
+            track = [(names[line[i]], int(line[i + 1])) for i in range(8, len(line), 2)]
+            points.append(([float(x) for x in line[1:4]], line[4:7], track))
+        return cameras, images, points
+
+    def check_round_trip(self, medium, cameras_too):
+        folder = self.copy(medium)
+        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "back")
+        cameras, images, points = self.model(os.path.join(self.truth, "sparse"))
+        again = self.model(os.path.join(folder, "back", "sparse"))
+        self.assertEqual(len(again[0]), len(cameras))
+        self.assertEqual(again[1].keys(), images.keys())
+        for name, (_, pose, camera, pixels) in images.items():
+            found_id, found, found_camera, _ = again[1][name]
+            sign = 1 if pose[0] * found[0] + pose[1] * found[1] + pose[2] * found[2] \
+                + pose[3] * found[3] > 0 else -1
+            for i in range(4):
+                self.assertAlmostEqual(sign * found[i], pose[i], 12)
+            for i in range(4, 7):
+                self.assertAlmostEqual(found[i], pose[i], 12)
+            if cameras_too:
+                self.assertEqual([float(x) for x in again[0][found_camera][1:]],
+                                 [float(x) for x in cameras[camera][1:]])
+        self.assertEqual(len(again[2]), len(points))
+        largest = 0
+        for (xyz, color, track), (found, found_color, found_track) in zip(points, again[2]):
+            for a, b in zip(xyz, found):
+                self.assertAlmostEqual(a, b, 5)  # a scene's points are float32
+            self.assertEqual(found_color, color)
+            self.assertEqual(sorted({name for name, _ in found_track}),
+                             sorted({name for name, _ in track}))
+            pixel = {name: again[1][name][3][index] for name, index in found_track}
+            for name, index in track:
+                there = images[name][3][index]
+                largest = max(largest, abs(there[0] - pixel[name][0]),
+                              abs(there[1] - pixel[name][1]))
+        return largest
+
+    def test_in_air(self):
+        # Observations of the truth have noise of about a pixel at most, ours none.
+        self.assertLess(self.check_round_trip("air", True), 3)
+
+    def test_only_an_export_is_overwritten(self):
+        folder = self.copy("air")
+        command = ("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder)
+        for part in ("cameras.txt", "points3D.bin", "frames.txt"):
+            mine = os.path.join(folder, "sparse", part)
+            write(mine, "mine")
+            self.refuses(part, *command)
+            self.assertEqual(os.listdir(os.path.dirname(mine)), [part])
+            os.remove(mine)
+        self.succeeds(*command)
+        first = self.model(os.path.join(folder, "sparse"))
+        self.succeeds(*command)
+        self.assertEqual(self.model(os.path.join(folder, "sparse")), first)
+        write(os.path.join(folder, "sparse", "images.bin"), "COLMAP would read it")
+        self.refuses("images.bin", *command)
+
+    def test_run_from_another_folder(self):
+        """A scene's relative paths count from there: the line says where, and what sets it."""
+        folder = self.copy("air")
+        for name in ("0000.jpg", "0001.jpg"):
+            os.makedirs(os.path.join(folder, "there"), exist_ok=True)
+            shutil.copy(os.path.join(self.truth, "air", name), os.path.join(folder, "there", name))
+        os.makedirs(self.path("elsewhere"), exist_ok=True)
+        scene = read(os.path.join(folder, "scene.mvs"))
+        for place, found in (("../closeup/air", 5), ("there", 2), ("nowhere", 0)):
+            write(os.path.join(folder, "scene.mvs"), moved(scene, place))
+            for start, missing in ((folder, 5 - found), (self.path("elsewhere"),
+                                                         0 if found == 5 else 5)):
+                with self.subTest(place=place, start=start):
+                    said = self.succeeds("InterfaceCOLMAP", "-i",
+                                         os.path.join(folder, "scene.mvs"), cwd=start).stdout
+                    line = [text for text in said.splitlines() if "images below" in text]
+                    self.assertEqual(len(line), 1, said)
+                    looked_in = os.path.normpath(os.path.join(start, place))
+                    self.assertIn(f"5 images below {looked_in}", line[0])
+                    self.assertEqual(f"{missing} of them are not there" in line[0], missing > 0)
+                    self.assertEqual(f"working folder, {start}, which -w sets" in line[0],
+                                     missing > 0)
+        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, cwd=start)
+
+    def test_goes_to_no_file_name(self):
+        folder = self.copy("air")
+        for name in ("x.mvs", "new/scene.mvs", "cloud.ply", "cameras.txt"):
+            self.refuses(f"--output-file {name}: -o names the folder", "InterfaceCOLMAP", "-i",
+                         "scene.mvs", "-w", folder, "-o", name)
+            self.assertFalse(os.path.exists(os.path.join(folder, name)))
+        self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "dive.2")
+        self.assertIn("cameras.txt", os.listdir(os.path.join(folder, "dive.2", "sparse")))
+
+    def test_behind_a_port(self):
+        folder = self.copy("water")
+        said = self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder).stdout
+        self.assertIn("5 of 5 images are behind ports", said)
+        self.assertIn("FLATPORT", read(os.path.join(folder, "sparse", "cameras.txt")).decode())
+        # And in again: the ports are those of the housing.
+        os.remove(os.path.join(folder, "scene.housing.json"))
+        self.succeeds("InterfaceCOLMAP", "-i", folder, "-o", os.path.join(folder, "scene.mvs"),
+                      "--image-folder", os.path.join(self.truth, "water"))
+        self.succeeds(*self.command(folder, "--refractive"))
+        self.assertAlmostEqual(cloud_size(self.cloud(folder)) /
+                               cloud_size(read(self.densified("water", "scene_dense.ply"))), 1, 1)
+
+
+if __name__ == "__main__":
+    main()
