@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
@@ -136,6 +137,7 @@ class ConfigFile {
       : name_(std::move(name)), options_(options), settings_(settings(options)) {}
 
   void read(std::string_view text) {
+    text = axial::without_byte_order_mark(text);
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++number_;

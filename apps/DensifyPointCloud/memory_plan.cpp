@@ -8,9 +8,11 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "cloud_exports.h"
 #include "depth/filters.h"
 #include "depth/plane_map.h"
 #include "io/mvs_counts.h"
+#include "io/point_source.h"
 #include "pinhole_export.h"
 
 namespace densify {
@@ -189,14 +191,20 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
 }  // namespace
 
 void require_memory_to_read(const Options& options) {
-  const auto counts = axial::io::count_mvs(options.input);
+  auto counts = axial::io::count_mvs(options.input);
   if (!counts) return;
+  std::uint64_t reading = counts->reading_bytes();
+  if (!options.point_cloud.empty())
+    if (const auto cloud = axial::io::count_point_cloud(options.point_cloud, *counts)) {
+      reading = std::max(reading, cloud->reading_bytes);
+      if (!only_exports(options)) counts = cloud->scene;
+    }
   const axial::ScoringMemory scoring =
       axial::scoring_memory({counts->images, counts->points, counts->observations, 0});
   const std::uint64_t kept = kept_of(*counts, options);
-  require_memory_for_scene(std::max({counts->reading_bytes(), kept + scoring.work + scoring.kept,
-                                     kept + counts->writing_bytes()}),
-                           options);
+  require_memory_for_scene(
+      std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()}),
+      options);
 }
 
 void require_memory_to_score(const axial::Scene& scene, const Options& options) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
@@ -43,7 +44,8 @@ axial::ViewScore given_neighbour(std::uint32_t image) {
 }  // namespace
 
 std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, axial::Scene& scene) {
-  std::istringstream text(axial::read_file(file));
+  const std::string bytes = axial::read_file(file);
+  std::istringstream text{std::string(axial::without_byte_order_mark(bytes))};
   std::vector<bool> named(scene.images.size(), false);
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {

@@ -111,11 +111,22 @@ ProgressSink progress_of_many(const std::string& title) {
 // Marks a model as exported: the next export may take its place.
 constexpr const char* kExportMarker = "export.json";
 
+// A kill while an export takes its place may leave the marker with the files that did not.
+bool is_export(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kExportMarker, error)) return true;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().filename().string().starts_with("staging.") &&
+        fs::exists(entry.path() / kExportMarker, error))
+      return true;
+  return false;
+}
+
 // The model that a scene was made from usually lies where exports go, too. Binary files are none of
 // an export, and COLMAP would read them instead of it.
 void check_export_folder(const fs::path& folder) {
   std::error_code error;
-  const bool exported = fs::exists(folder / kExportMarker, error);
+  const bool exported = is_export(folder);
   for (const fs::path& file : model_files(folder))
     if (fs::exists(file, error) && !(exported && file.extension() == ".txt"))
       fail(

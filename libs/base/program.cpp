@@ -11,8 +11,10 @@
 #include <fstream>
 #include <iostream>
 #include <set>
+#include <sstream>
 #include <typeinfo>
 
+#include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/log_file.h"
@@ -102,6 +104,7 @@ void refuse_stray_arguments(const po::parsed_options& parsed) {
     if (option.string_key.empty())
       fail("command line: '{}' belongs to no option", option.value.front());
     if (option.string_key != "input-file") continue;
+    if (option.value.front().empty()) fail("command line: the name of the input-file is empty");
     if (has_input && option.position_key >= 0)
       fail("command line: '{}' belongs to no option, and the input-file is given already",
            option.value.front());
@@ -125,6 +128,30 @@ const po::option_description* find_option(const po::options_description& known,
   }
 }
 
+// The option that a word names: "--name", "--name=value", "-n" or "-nvalue".
+const po::option_description* option_named_by(const po::options_description& known,
+                                              const std::string& word) {
+  if (word.size() > 2 && word.starts_with("--"))
+    return find_option(known, word.substr(2, word.find('=') - 2));
+  if (word.size() < 2 || word[0] != '-' || word[1] == '-') return nullptr;
+  return known.find_nothrow(word.substr(0, 2), false);
+}
+
+// An option without its value: boost would take the option that follows for it.
+void refuse_missing_values(const std::vector<std::string>& words,
+                           const po::options_description& known,
+                           const std::set<std::string>& switches) {
+  for (std::size_t i = 0; i + 1 < words.size() && words[i] != "--"; ++i) {
+    const bool is_long = words[i].starts_with("--");
+    const bool bare = is_long ? words[i].find('=') == std::string::npos : words[i].size() == 2;
+    const auto* option = bare ? option_named_by(known, words[i]) : nullptr;
+    const bool takes_value =
+        option && option->semantic()->max_tokens() > 0 && !switches.contains(option->long_name());
+    if (takes_value && option_named_by(known, words[i + 1]))
+      fail("command line: {} has no value: {} is an option", words[i], words[i + 1]);
+  }
+}
+
 // The words of the command line. A switch gets a value if the next word is none: boost would take
 // that word for the value, whatever it is.
 std::vector<std::string> words_of(int argc, const char* const* argv,
@@ -132,6 +159,7 @@ std::vector<std::string> words_of(int argc, const char* const* argv,
   std::set<std::string> switches;
   for (const Option& option : visible.options())
     if (option.is_switch) switches.insert(option.name.substr(0, option.name.find(',')));
+  refuse_missing_values({argv + 1, argv + argc}, known, switches);
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
@@ -143,6 +171,13 @@ std::vector<std::string> words_of(int argc, const char* const* argv,
     words.push_back(std::move(word));
   }
   return words;
+}
+
+// Without a byte order mark.
+po::parsed_options parse_config(std::istream& in, const po::options_description& known) {
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::istringstream text{std::string(without_byte_order_mark(bytes))};
+  return po::parse_config_file(text, known);
 }
 
 void apply(CommonOptions& common) {
@@ -209,7 +244,7 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     const fs::path cfg = parsed.common.working_folder / values["config-file"].as<std::string>();
     if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
       try {
-        const po::parsed_options in_file = po::parse_config_file(in, config);
+        const po::parsed_options in_file = parse_config(in, config);
         refuse_negative(in_file, config);
         po::store(in_file, values);
       } catch (const po::error& cfg_error) {

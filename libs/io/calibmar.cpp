@@ -120,6 +120,9 @@ class YamlKeys {
 
 refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file) {
   const std::string word = yaml.word("non_svp_model");
+  if (!is_port_word(
+          word))  // before its numbers, which a port unknown here may have more of or none
+    fail("{}: non_svp_model: the port '{}' is neither FLATPORT nor DOMEPORT nor NONE", file, word);
   const std::vector<double> values = yaml.numbers<double>("non_svp_parameters");
   if (values.size() != kPortNumbers)
     fail("{}: non_svp_parameters has {} numbers, expected {}", file, values.size(), kPortNumbers);
@@ -154,7 +157,8 @@ ColmapCamera read_calibmar(const std::filesystem::path& path) {
   camera.height = yaml.number<std::uint64_t>("height");
   camera.params = yaml.numbers<double>("parameters");
   check_colmap_camera(camera, path.string());
-  if (yaml.has("non_svp_model") && !without_port(yaml)) camera.port = read_port(yaml, path.string());
+  if (yaml.has("non_svp_model") && !without_port(yaml))
+    camera.port = read_port(yaml, path.string());
   return camera;
 }
 

@@ -105,14 +105,14 @@ struct SceneCheck {
   void operator()(const DomePort<double>& port) const {
     glass("inner_radius_m", port.inner_radius, port.thickness);
   }
-  void operator()(const WaterSurface& surface) const {
-    const Eigen::Vector3d& p = surface.point;
+  // The point may be in the scene's frame here, and not as the file has it.
+  void operator()(const WaterSurface&) const {
     if (seen.is_half(seen.before_water))
       log_warning(
-          "{}.point_m is [{}, {}, {}], but {} of {} observations are of sparse points above "
-          "that water",
-          where, p.x(), p.y(), p.z(), seen.before_water, seen.all);
-    far("point_m", fmt::format("[{}, {}, {}]", p.x(), p.y(), p.z()));
+          "{}.point_m or normal is wrong: {} of {} observations are of sparse points above that "
+          "water",
+          where, seen.before_water, seen.all);
+    far(where + ".point_m or the scale is wrong:");
   }
 
   void glass(const char* field, double length, double thickness) const {
@@ -126,15 +126,15 @@ struct SceneCheck {
           "{}.thickness_m is {}, but {} of {} observations are of sparse points inside or before "
           "the glass: {}",
           where, thickness, seen.before_water, seen.all, hint);
-    far(field, fmt::format("{}", length));
+    far(fmt::format("{}.{} is {}, but", where, field, length));
   }
 
-  void far(const char* field, const std::string& value) const {
+  void far(const std::string& what) const {
     if (seen.is_half(seen.far))
       log_warning(
-          "{}.{} is {}, but {} of {} observations are of sparse points more than {:.0f} m of water "
-          "away: are the poses in metres?",
-          where, field, value, seen.far, seen.all, kFarthest);
+          "{} {} of {} observations are of sparse points more than {:.0f} m of water away: are the "
+          "poses in metres?",
+          what, seen.far, seen.all, kFarthest);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/byte_order_mark.h"
 #include "base/error.h"
 #include "base/parse_number.h"
 
@@ -64,14 +65,6 @@ class TextLine {
   const std::string* file_;
   std::size_t number_;
 };
-
-// What some editors put before the first character of a UTF-8 file.
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-inline std::string_view without_byte_order_mark(std::string_view text) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return text;
-}
 
 // The lines of a text file, without a byte order mark before the first. The file must end with a
 // newline: a last line without one is what a cut file looks like, and is an Error.

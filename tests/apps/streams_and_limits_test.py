@@ -300,13 +300,13 @@ class ManyObservations(ProgramTest):
     def tearDownClass(cls):
         cls.scene_folder.cleanup()
 
-    def run_with(self, megabytes):
+    def run_with(self, megabytes, *arguments):
         """The exit code, what was said, and the most memory that was taken [MB]."""
         with open(self.path("said"), "w+") as said:
             process = subprocess.Popen(
                 [os.path.join(BIN, "DensifyPointCloud"), "-i", os.path.join(self.work, "scene.mvs"),
                  "-w", self.work, "--resolution-level", "2", "--iters", "1", "--geometric-iters",
-                 "0", "-v", "0", "--max-memory", str(megabytes)],
+                 "0", "-v", "0", "--max-memory", str(megabytes), *arguments],
                 stdout=subprocess.DEVNULL, stderr=said)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
@@ -327,6 +327,25 @@ class ManyObservations(ProgramTest):
         self.assertLess(peak, needed)
         self.assertGreater(peak, 0.6 * needed)
 
+    def test_a_cloud_in_place_of_the_points_is_in_the_plan(self):
+        count = 3000000
+        header = ("ply\nformat binary_little_endian 1.0\n"
+                  f"element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n"
+                  "property list uchar uint view_indices\nend_header\n")
+        # In parts: a child's peak counts from its parent's memory.
+        with open(self.path("cloud.ply"), "wb") as file:
+            file.write(header.encode())
+            for _ in range(count // 10000):
+                file.write(struct.pack("<3fB2I", 0.2, 0.1, 1, 2, 0, 1) * 10000)
+        code, said, peak = self.run_with(350, "-p", self.path("cloud.ply"))
+        self.assertEqual(code, 1, said)
+        self.assertIn("--max-memory 350: 350 MB are too little, this scene needs at least", said)
+        self.assertLess(peak, 120)
+        code, said, peak = self.run_with(350, "-p", self.path("cloud.ply"), "--estimate-scale", "1",
+                                         "-o", self.path("sizes.mvs"))
+        self.assertEqual(code, 1, said)
+        self.assertLess(peak, 120)
+
 
 class Leftovers(TinyScene):
     def test_go_at_the_next_start(self):
@@ -341,6 +360,21 @@ class Leftovers(TinyScene):
         self.succeeds(*self.densify())
         left = {name for name in files_below(self.folder) if ".tmp" in name}
         self.assertEqual(left, set(kept))
+
+    def test_of_an_export_that_was_taking_its_place(self):
+        """Killed between any two of its steps: it removes the files of the last one, and moves its own."""
+        export = ("InterfaceCOLMAP", "-i", self.scene, "-o", self.path("out"))
+        sparse = self.path("out", "sparse")
+        self.succeeds(*export)
+        whole = contents(sparse)
+        for moved in range(len(whole)):
+            staging = os.path.join(sparse, f"staging.{dead_process()}.tmp")
+            os.mkdir(staging)
+            for name in sorted(whole)[moved:]:
+                os.rename(os.path.join(sparse, name), os.path.join(staging, name))
+            write(os.path.join(sparse, "points3D.txt"), whole["points3D.txt"])
+            self.succeeds(*export)
+            self.assertEqual(contents(sparse), whole)
 
     def test_of_other_programs(self):
         dead = dead_process()

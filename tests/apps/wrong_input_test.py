@@ -157,6 +157,10 @@ class InterfaceColmap(ProgramTest):
                 (("[0, 0, 1]", "0.5", "0.9"), "lake.json: housing.ports.lake.n_water is 0.9")):
             write(housing, lake % values)
             self.refuses_import(expected, "--housing", housing)
+        write(housing, lake % ("[0, 0, 1]", "5", "1.33"))
+        said = self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o",
+                             self.path("scene.mvs"), "--housing", housing).stdout
+        self.assertIn("lake.json: housing.ports.lake.point_m or normal is wrong: 180 of 180", said)
         write(housing, lake % ("[0, 0.1, 1]", "0.5", "1.33"))
         self.succeeds("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"),
                       "--housing", housing)
@@ -197,6 +201,21 @@ class Densify(ProgramTest):
         self.refuses_scene("housing", "--refractive")
         self.refuses("no-such.mvs", *DENSIFY, "-i", self.path("no-such.mvs"), "-w",
                      self.path("work"))
+
+    def test_byte_order_marks(self):
+        """Before the first character of any text file they change nothing."""
+        mark = b"\xef\xbb\xbf"
+        run = (*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level", "0",
+               "--number-views-fuse", "2")
+        for option, text in (("--view-neighbors-file", b"0 1\n1 2\n2 1\n"),
+                             ("--dense-config-file", b"Min Views Trust Point = 3\n")):
+            clouds = []
+            for before in (b"", mark):
+                write(self.path("given.txt"), before + text)
+                said = self.succeeds(*run, option, self.path("given.txt")).stdout
+                self.assertNotIn("given.txt", said)
+                clouds.append(read(self.path("work", "scene_dense.ply")))
+            self.assertEqual(clouds[0], clouds[1], option)
 
     def test_truncated_scenes(self):
         whole = read(self.scene)

@@ -139,6 +139,35 @@ TEST_F(ProgramTest, LeavesASwitchThatHasNoValueTheNextWord) {
   EXPECT_THAT(error({"--quick=2", "a.mvs"}), HasSubstr("quick"));
 }
 
+TEST_F(ProgramTest, TakesNoOptionForTheValueOfAnother) {
+  const std::vector<std::vector<std::string>> missing = {
+      {"-i", "--quick"},
+      {"-i", "--quick=1"},
+      {"--input-file", "-v1"},
+      {"-i", "-v", "1"},
+      {"a.mvs", "--config-file", "--quick"},
+      {"a.mvs", "--crop-to-roi", "--quick"},
+      {"a.mvs", "--resolution-level", "--resolution-limit", "3"},
+      {"a.mvs", "-c", "--resolution-le", "3"}};
+  for (const std::vector<std::string>& arguments : missing)
+    EXPECT_THAT(error(arguments), HasSubstr("has no value")) << testing::PrintToString(arguments);
+  EXPECT_EQ(error({"-i", "--quick"}), "command line: -i has no value: --quick is an option");
+  // Values that begin with a dash, and options that need none.
+  parse({"a.mvs", "--secret", "-3"});
+  EXPECT_EQ(secret_, -3);
+  parse({"--input-file=--quick"});
+  EXPECT_EQ(input_, "--quick");
+  parse({"-i", "--no-such-option.mvs"});
+  EXPECT_EQ(input_, "--no-such-option.mvs");
+  EXPECT_EQ(parse({"--help", "--quick"}).exit_code, 0);
+}
+
+TEST_F(ProgramTest, AnInputFileHasAName) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"-i", ""}, {"--input-file="}, {""}})
+    EXPECT_THAT(error(arguments), HasSubstr("input-file")) << testing::PrintToString(arguments);
+}
+
 TEST_F(ProgramTest, NamesWhatItDoesNotUnderstand) {
   EXPECT_THAT(error({"a.mvs", "--no-such-option", "1"}), HasSubstr("no-such-option"));
   EXPECT_THAT(error({"a.mvs", "-z"}), HasSubstr("-z"));
@@ -182,6 +211,12 @@ TEST_F(ProgramTest, LetsTheCommandLineWinOverTheFileAndTheFileOverDefaults) {
   EXPECT_EQ(secret_, 5);
   EXPECT_TRUE(crop_);
   EXPECT_TRUE(given(parsed, "resolution-level"));
+}
+
+TEST_F(ProgramTest, PassesOverAByteOrderMarkInTheConfigFile) {
+  write_atomically(folder_ / "TestProgram.cfg", "\xEF\xBB\xBFresolution-level = 4\r\n");
+  parse({"a.mvs"});
+  EXPECT_EQ(level_, 4);
 }
 
 TEST_F(ProgramTest, ReadsTheNamedConfigFileInTheWorkingFolder) {

@@ -145,6 +145,9 @@ TEST_F(Calibmar, WrongFilesAreNamed) {
     return text.replace(text.find(old), old.size(), now);
   };
   EXPECT_THAT(error_of(with("FLATPORT", "PORTHOLE")), HasSubstr("'PORTHOLE' is neither"));
+  EXPECT_THAT(error_of("model: PINHOLE\nparameters: [9, 9, 4, 3]\nwidth: 8\nheight: 6\n"
+                       "non_svp_model: none\nnon_svp_parameters: []\n"),
+              HasSubstr("non_svp_model: the port 'none' is neither"));
   EXPECT_THAT(error_of(with("0.0253", "x")), HasSubstr("non_svp_parameters has 'x'"));
   EXPECT_THAT(error_of(with("0.0253, ", "")), HasSubstr("has 7 numbers, expected 8"));
   EXPECT_THAT(error_of(with("0, 0, 1, ", "0, 0, -1, ")), HasSubstr("points backwards"));

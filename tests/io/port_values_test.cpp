@@ -20,6 +20,7 @@ using refractive::DomePort;
 using refractive::FlatPort;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 FlatPort<double> flat() {
   return {{0, 0, 1}, 0.03, 0.018, 1, 1.49, 1.333};
@@ -149,7 +150,11 @@ TEST(PortsInScene, SceneAboveTheWater) {
   surface.normal = {0, 0, 1};
   surface.point = {0, 0, 2};
   EXPECT_EQ(said_in_scene(surface, 3), "");
-  EXPECT_THAT(said_in_scene(surface, 1), HasSubstr("main.point_m is [0, 0, 2], but"));
+  // Without the point's numbers, which are not those of the file where the scene has an offset.
+  EXPECT_THAT(
+      said_in_scene(surface, 1),
+      AllOf(HasSubstr("port.json: housing.ports.main.point_m or normal is wrong: 300 of 300"),
+            Not(HasSubstr("[0, 0, 2]"))));
 }
 
 // Reading warns, each port once; not of a file that is only compared.
