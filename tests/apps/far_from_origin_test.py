@@ -283,9 +283,9 @@ class FarScene(ProgramTest):
         table, numbers = self.evaluated("near/scene_dense.ply", "near")
         self.assertEqual(len(table), 3, table)
         for name in ("far", "odd"):
-            self.assertEqual(self.evaluated(f"{name}/scene_dense.ply", name)[1]["views"], 5)
-            accuracy = self.evaluated(f"{name}/scene_dense.ply", name)[1]["accuracy"]
-            self.assertAlmostEqual(accuracy["mean"], numbers["accuracy"]["mean"], delta=2e-6)
+            result = self.evaluated(f"{name}/scene_dense.ply", name)[1]
+            self.assertEqual(result["views"], 5)
+            self.assertAlmostEqual(result["accuracy"]["mean"], numbers["accuracy"]["mean"], delta=2e-6)
             # The very same cloud and truth elsewhere: the same digits.
             header, _, body = split_ply(read(self.at("near", "scene_dense.ply")))
             offset = "comment geo_offset " + " ".join(map(repr, self.SHIFTS[name]))

@@ -18,8 +18,8 @@ class Import(ProgramTest):
         cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
         cls.addClassCleanup(cls.shared.cleanup)
         cls.scene = os.path.join(cls.shared.name, "closeup")
-        made = run("SimulateUnderwater", "--preset", "closeup", "--views", 5, "--width", 320,
-                   "--height", 240, "--coarseness", 4, "-o", cls.scene)
+        made = run("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", 5,
+                   "--width", 320, "--height", 240, "-o", cls.scene)
         assert made.returncode == 0, made.stderr
 
     def said(self, medium="water", housing=None, model=None, threads=0):

@@ -12,22 +12,30 @@ import tempfile
 import unittest
 import zlib
 
+import scenes
+
 BIN = os.environ.get("AXIAL_BIN", "")
 
 
 def run(program, *arguments, file_size_limit=None, cwd=None, timeout=600):
-    """Runs a program to its end; `file_size_limit` [bytes] stands for a full disk."""
+    """Runs a program to its end; `file_size_limit` [bytes] stands for a full disk. A scene that
+    SimulateUnderwater rendered before from the same arguments is copied (scenes.py)."""
 
     def limit():
         # A write beyond the limit then fails with an error, as on a full disk, instead of a signal.
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (file_size_limit, file_size_limit))
 
-    return subprocess.run(
-        [os.path.join(BIN, program), *map(str, arguments)], cwd=cwd, text=True, errors="replace",
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
-        timeout=timeout,
-        preexec_fn=limit if file_size_limit is not None else None)
+    def execute(command):
+        return subprocess.run(
+            command, cwd=cwd, text=True, errors="replace", stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=timeout,
+            preexec_fn=limit if file_size_limit is not None else None)
+
+    command = [os.path.join(BIN, program), *map(str, arguments)]
+    if file_size_limit is None and scenes.can_be_shared(command):
+        return scenes.rendered(command, execute)
+    return execute(command)
 
 
 def files_below(folder):

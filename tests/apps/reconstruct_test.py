@@ -254,7 +254,8 @@ class Reconstruct(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory(prefix="axial_")
         cls.scene = pathlib.Path(cls.folder.name) / "scene"
         made = run("SimulateUnderwater", "--preset", "closeup", "--views", 6, "--width", 640,
-                   "--height", 480, "--coarseness", 4, "--medium", "water", "-o", cls.scene)
+                   "--height", 480, "--coarseness", 4, "--samples", 2, "--truth", 0, "--medium", "water",
+                   "-o", cls.scene)
         assert made.returncode == 0, made.stderr
         cls.positions = cls.scene / "positions.txt"
         cls.positions.write_text("".join(camera_centres(cls.scene / "sparse" / "images.txt")))

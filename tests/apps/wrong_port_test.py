@@ -17,10 +17,9 @@ WARNING = "Cameras and photographs do not seem to belong together"
 QUICK = ("--geometric-iters", "0", "--postprocess-dmaps", "0", "--fusion-mode", "1")
 
 
-def simulate(folder, *arguments):
-    made = run("SimulateUnderwater", "--coarseness", 4, "--views", 5,
-               "--width", 320, "--height", 240, "--samples", 1, "--truth", 0, *arguments, "-o",
-               folder)
+def simulate(folder, preset, *arguments):
+    made = run("SimulateUnderwater", "--preset", preset, "--coarseness", 4, "--views", 5,
+               "--width", 320, "--height", 240, "--samples", 1, *arguments, "-o", folder)
     assert made.returncode == 0, made.stderr
 
 
@@ -35,7 +34,7 @@ def scaled_model(text, first, scale, every):
 
 
 class PortTest(ProgramTest):
-    SCENE = None  # arguments of SimulateUnderwater; None: a base of the others
+    SCENE = None  # preset and arguments of SimulateUnderwater; None: a base of the others
 
     @classmethod
     def setUpClass(cls):
@@ -102,7 +101,7 @@ class PortTest(ProgramTest):
 
 
 class FlatPort(PortTest):
-    SCENE = ("--preset", "closeup")
+    SCENE = ("closeup",)
 
     def test_what_is_right(self):
         self.passes("water", housing=self.housing())
@@ -211,7 +210,7 @@ class Noise(PortTest):
 
 
 class DistortedLens(PortTest):
-    SCENE = ("--preset", "closeup", "--lens", "OPENCV,-0.25,0.08,0.001,0.001")
+    SCENE = ("closeup", "--lens", "OPENCV,-0.25,0.08,0.001,0.001")
 
     def test_distortion(self):
         def straight(words):
@@ -221,7 +220,7 @@ class DistortedLens(PortTest):
 
 
 class OtherPorts(PortTest):
-    SCENE = ("--preset", "closeup", "--dome-radius", 0.05, "--dome-z", 0.012)
+    SCENE = ("closeup", "--dome-radius", 0.05, "--dome-z", 0.012)
 
     def test_a_dome(self):
         self.passes("right", housing=self.housing())
@@ -230,7 +229,7 @@ class OtherPorts(PortTest):
 
 class FarScene(PortTest):
     """Two to three metres away, through a straight port."""
-    SCENE = ("--preset", "reef")
+    SCENE = ("reef",)
 
     def test_right_and_wrong(self):
         self.passes("right", housing=self.housing())

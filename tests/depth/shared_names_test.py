@@ -3,11 +3,13 @@
 copy, and a processor without that set would meet its instructions. Arguments: nm, the object files
 of the libraries; those in *_avx2.cpp and *_avx512.cpp are compared with all others."""
 
+import functools
 import re
 import subprocess
 import sys
 
 
+@functools.cache
 def shared_names(nm, path):
     """Names that the linker merges with those of other files: weak and unique ones."""
     lines = subprocess.run([nm, "--defined-only", path], check=True, capture_output=True,
