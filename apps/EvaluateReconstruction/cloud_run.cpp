@@ -14,6 +14,7 @@
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
+#include "evaluate/strip.h"
 #include "io/colmap_scene.h"
 #include "io/geo_offset.h"
 #include "io/image.h"
@@ -248,6 +249,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const Mesh truth = io::read_mesh_ply(options.truth, frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options, models);
+  if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   // Only known centres bring together what lies that far apart.

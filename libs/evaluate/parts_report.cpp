@@ -73,9 +73,9 @@ Json to_json(std::span<const ErrorsOfViews> classes) {
                     {"most", one.most > 0 ? Json(one.most) : Json()},
                     {"points", one.points},
                     {"share", one.share},
-                    {"mean", one.mean},
-                    {"median", one.median},
-                    {"gross_share", one.gross_share},
+                    {"mean", one.points > 0 ? Json(one.mean) : Json()},
+                    {"median", one.points > 0 ? Json(one.median) : Json()},
+                    {"gross_share", one.points > 0 ? Json(one.gross_share) : Json()},
                     {"within", shares_or_null(one.within, one.points)}});
   return list;
 }

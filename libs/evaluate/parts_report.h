@@ -13,8 +13,8 @@
 
 namespace axial::evaluate {
 
-// Recall of classes without places is null. Lengths in the JSON are metres, in the tables
-// millimetres. `tolerances`: those of the shares, in their order.
+// Recall of classes without places, and errors of classes without points, are null. Lengths in the
+// JSON are metres, in the tables millimetres. `tolerances`: those of the shares, in their order.
 nlohmann::ordered_json to_json(std::span<const RecallOfViews> classes);
 nlohmann::ordered_json to_json(std::span<const RecallOfThickness> classes);
 nlohmann::ordered_json to_json(std::span<const ErrorsOfViews> classes);

@@ -23,10 +23,6 @@ Eigen::Matrix3Xd centres_of(std::span<const View> views) {
 
 // From the first view on.
 Eigen::Vector3d direction_of(const Eigen::Matrix3Xd& centres) {
-  if (centres.cols() < 3) fail("{} views are no strip: at least 3 are needed", centres.cols());
-  const double width = relative_width(centres);
-  if (!(width <= kLargestWidth))
-    fail("the camera centres are no strip: {:.2f} times as wide as long", width);
   const Eigen::Matrix3Xd off = centres.colwise() - centres.rowwise().mean();
   const Eigen::Vector3d along =
       SymmetricEigen3(Eigen::Matrix3d(off * off.transpose())).eigenvectors().col(2);
@@ -63,8 +59,16 @@ void compare_pieces(Strip& strip) {
 
 }  // namespace
 
+void require_strip(std::span<const View> views) {
+  if (views.size() < 3) fail("{} views are no strip: at least 3 are needed", views.size());
+  const double width = relative_width(centres_of(views));
+  if (!(width <= kLargestWidth))
+    fail("the camera centres are no strip: {:.2f} times as wide as long", width);
+}
+
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views) {
+  require_strip(views);
   Strip strip;
   const Eigen::Matrix3Xd centres = centres_of(views);
   strip.direction = direction_of(centres);

@@ -26,10 +26,12 @@ struct Strip {
   double least = 0, most = 0;
 };
 
+// Error unless there are three views, in a line to a quarter of its length.
+void require_strip(std::span<const View> views);
+
 // The strip lies along the greatest extent of the camera centres, from end to end of the places,
 // and is cut into five pieces a view spacing. Pieces with less than half of the places of the
-// median piece do not count in `least` and `most`: ends of the strip. Error unless there are three
-// views, in a line to a quarter of its length.
+// median piece do not count in `least` and `most`: ends of the strip. Error as require_strip.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 

@@ -20,7 +20,7 @@ double length_seen(const Preset& preset, double height) {
 
 void make_sand(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
-  preset.texture = {seed + 5000u, 1.0, 0.055};
+  preset.texture = {seed + 5000u, 1.0, 0.047};
   Draw draw(seed + 5000u);
   Terrain& terrain = preset.terrain;
   terrain.floor = {draw.seed(), 2.2, 0.03, 1, 2, 0};
