@@ -7,12 +7,14 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/unused_input.h"
+#include "cloud_parts.h"
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/icp.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
+#include "evaluate/strip.h"
 #include "io/colmap_scene.h"
 #include "io/geo_offset.h"
 #include "io/image.h"
@@ -39,6 +41,7 @@ auto naming(const fs::path& file, Action action) {
 // The reconstruction: a mesh if the file has faces, else a cloud.
 struct Input {
   PointCloud cloud;
+  evaluate::PointWorth worth;  // of the cloud's points
   std::optional<Mesh> mesh;
 
   std::span<const Eigen::Vector3f> positions() const {
@@ -100,6 +103,7 @@ Input read_input(const fs::path& path, const LocalFrame& frame) {
     input.mesh = io::read_mesh_ply(path, frame);
   else
     input.cloud = io::read_cloud_ply(path, frame);
+  if (!input.mesh) input.worth = read_worth(path, input.cloud);
   if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
   return input;
 }
@@ -189,24 +193,32 @@ nlohmann::ordered_json align(const Options& options, Input& input, const evaluat
   return report;
 }
 
-// The points (and normals) that count.
-PointCloud counted_points(const Options& options, const PointCloud& cloud,
+// Leaves the elements whose `keep` is true, of an array that may be empty.
+template <class T>
+void keep_only(std::vector<T>& all, const std::vector<bool>& keep) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (keep[i]) all[kept++] = all[i];
+  all.resize(kept);
+}
+
+// The points (and normals) that count; their worth is left in `input`.
+PointCloud counted_points(const Options& options, Input& input,
                           std::span<const evaluate::View> views) {
   PointCloud counted;
-  counted.positions = cloud.positions;
-  counted.normals = cloud.normals;
+  counted.positions = input.cloud.positions;
+  counted.normals = input.cloud.normals;
   if (!options.framed_only) return counted;
-  const auto frames = evaluate::count_frames(cloud.positions, views);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i] < options.least_views) continue;
-    counted.positions[kept] = cloud.positions[i];
-    if (!cloud.normals.empty()) counted.normals[kept] = cloud.normals[i];
-    ++kept;
-  }
-  if (kept == 0) fail("{}: no point lies in enough of the images", options.input.string());
-  counted.positions.resize(kept);
-  if (!cloud.normals.empty()) counted.normals.resize(kept);
+  std::vector<bool> keep;
+  for (const std::uint32_t frames : evaluate::count_frames(counted.positions, views))
+    keep.push_back(frames >= options.least_views);
+  keep_only(counted.positions, keep);
+  keep_only(counted.normals, keep);
+  keep_only(input.worth.views, keep);
+  keep_only(input.worth.error, keep);
+  keep_only(input.worth.confidence, keep);
+  if (counted.positions.empty())
+    fail("{}: no point lies in enough of the images", options.input.string());
   return counted;
 }
 
@@ -238,6 +250,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const Mesh truth = io::read_mesh_ply(options.truth, frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options, models);
+  if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   // Only known centres bring together what lies that far apart.
@@ -250,12 +263,13 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   settings.samples = options.samples;
   settings.seed = options.seed;
   settings.least_views = options.least_views;
+  settings.gross = options.gross;
   PointCloud colored;
   const auto result = naming(options.input, [&] {
     if (input.mesh)
       return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
                                      colored.positions);
-    colored = counted_points(options, input.cloud, views);
+    colored = counted_points(options, input, views);
     return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
   });
   fmt::print("{}", evaluate::table(result));
@@ -265,5 +279,8 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   if (!options.picture.empty()) draw(options, colored, views);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
+  report.update(naming(options.input, [&] {
+    return report_parts(options, {colored.positions, input.worth, truth, surface, views, result});
+  }));
   return report;
 }

@@ -18,9 +18,10 @@ void check(const Options& options) {
   if (options.align != "none")
     fail("--align {}: a depth map lies in its own camera and is not aligned", options.align);
   const std::pair<const char*, bool> meaningless[] = {
-      {"--framed-only", options.framed_only},      {"--cameras", !options.cameras.empty()},
-      {"--estimated", !options.estimated.empty()}, {"--error-cloud", !options.error_cloud.empty()},
-      {"--aligned", !options.aligned.empty()},     {"--transform-out", !options.transform.empty()}};
+      {"--framed-only", options.framed_only},          {"--strip", options.strip},
+      {"--cameras", !options.cameras.empty()},         {"--estimated", !options.estimated.empty()},
+      {"--error-cloud", !options.error_cloud.empty()}, {"--aligned", !options.aligned.empty()},
+      {"--transform-out", !options.transform.empty()}};
   for (const auto& [name, given] : meaningless)
     if (given) fail("{} is for clouds and meshes, not for a depth map", name);
 }

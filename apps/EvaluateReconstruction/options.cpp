@@ -57,6 +57,9 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts) {
       .add_switch("framed-only", &options.framed_only,
                   "count only points of a cloud that lie in the images of --min-views of "
                   "--cameras, whatever stands in between")
+      .add("gross", &options.gross,
+           "errors beyond are gross [m] (default: four times the first tolerance)")
+      .add_switch("strip", &options.strip, "density of a cloud along the strip that --cameras make")
       .add("json", &texts.json, "write all numbers there")
       .add("error-cloud", &texts.error_cloud, "write the points coloured by error (.ply)")
       .add("picture", &texts.picture,
@@ -84,6 +87,9 @@ void check(const Options& options) {
   if (!options.housing.empty() && options.cameras.empty())
     fail("--housing needs --cameras: the cameras behind its ports");
   if (options.framed_only && options.cameras.empty()) fail("--framed-only needs --cameras");
+  if (options.strip && options.cameras.empty()) fail("--strip needs --cameras");
+  if (!(options.gross >= 0) || !std::isfinite(options.gross))
+    fail("--gross is {}: must be a length in metres", options.gross);
   if (options.least_views == 0) fail("--min-views is 0: must be at least 1");
   if (options.samples == 0 || options.samples > 100'000'000)
     fail("--samples is {}: must be 1 to 100000000", options.samples);
@@ -102,7 +108,8 @@ void warn_of_no_effect(const Options& options) {
       axial::log_warning("--{}: without effect {}", name, cause);
   };
   const bool is_map = options.input.extension() == ".dmap";
-  for (const char* name : {"samples", "seed", "min-views"}) warn(is_map, name, "on a depth map");
+  for (const char* name : {"samples", "seed", "min-views", "gross"})
+    warn(is_map, name, "on a depth map");
   warn(!is_map && options.cameras.empty(), "min-views", "without --cameras");
   warn(options.picture.empty(), "picture-camera", "without --picture");
   warn(options.picture.empty() || is_map, "picture-width", "without --picture of a cloud");

@@ -23,6 +23,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;
   bool framed_only = false;
+  double gross = 0;      // [m]; 0: four times the first tolerance
+  bool strip = false;    // the density along the strip of cameras
   double color_max = 0;  // [m]
   int picture_width = 1024;
   std::string picture_camera;  // image name; empty: the first

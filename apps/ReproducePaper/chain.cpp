@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/error.h"
 #include "base/hash.h"
+#include "base/parse_number.h"
 #include "base/subprocess.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
@@ -15,9 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kDensifySeconds = "densify.cpu-seconds";
+
 Words options_of(const SceneOptions& o) {
   Words words{"--preset", o.preset, "--seed", fmt::format("{}", o.seed), "--medium", o.medium};
-  const auto add = [&](const char* name, auto value) { words += {name, fmt::format("{}", value)}; };
+  const auto add = [&](const char* name, auto value) {
+    if (std::ranges::find(o.more, name) == o.more.end()) words += {name, fmt::format("{}", value)};
+  };
   add("--views", o.views);
   add("--width", o.width);
   add("--height", o.height);
@@ -28,6 +36,7 @@ Words options_of(const SceneOptions& o) {
   add("--coarseness", o.coarseness);
   add("--truth", o.truth ? 1 : 0);
   words += o.port;
+  words += o.more;
   return words;
 }
 
@@ -187,9 +196,18 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
   const Json programs = content_of_programs({"InterfaceCOLMAP", "DensifyPointCloud"});
   step(folder, {import, densify, contents, programs}, [&] {
     run_sibling(chain, "InterfaceCOLMAP", import, folder / "import.log");
+    const double before = children_seconds();
     run_sibling(chain, "DensifyPointCloud", densify, folder / "densify.log", excuses);
+    write_atomically(folder / kDensifySeconds, fmt::format("{:.2f}", children_seconds() - before));
   });
   return fs::is_regular_file(folder / "scene_dense.ply") ? folder : fs::path();
+}
+
+double densify_seconds(const fs::path& dense) {
+  const fs::path file = dense / kDensifySeconds;
+  const auto seconds = parse_finite<double>(read_file(file));
+  if (!seconds) fail("{}: is no number of seconds", file.string());
+  return *seconds;
 }
 
 fs::path fused_again(const Chain& chain, const fs::path& dense, const std::string& name,

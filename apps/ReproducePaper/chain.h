@@ -32,6 +32,7 @@ struct SceneOptions {
   std::string medium = "both";
   bool truth = true;  // distances; normals are thrown away
   Words port;         // "--tilt-degrees", "3"
+  Words more;         // any others, before those above where they name the same
 };
 Json to_json(const SceneOptions& options);
 
@@ -86,6 +87,9 @@ struct DenseOptions {
 std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const SimulatedScene& scene, const std::filesystem::path& model,
                                 const std::string& medium, const DenseOptions& options);
+
+// CPU time of DensifyPointCloud in densified(), its `dense`, whenever that was [s].
+double densify_seconds(const std::filesystem::path& dense);
 
 // Depth maps that densified() made with the same `options`, fused again with other options of
 // DensifyPointCloud, none of which may concern matching; the cloud's folder, within theirs.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Repeats the paper's experiments: numbers as JSON, and from these its figures and tables.
+#include <fmt/format.h>
+
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -20,6 +22,8 @@ void write_documents(const experiments::Experiment& experiment, const Arguments&
   const auto documents = experiment.documents(results);
   for (const experiments::Document& document : documents)
     write_atomically(folder / document.file, document.text);
+  if (is_completeness(arguments))
+    for (const experiments::Document& document : documents) fmt::print("{}", document.text);
   if (!arguments.page.empty()) update_page(in_working_folder(common, arguments.page), documents);
 }
 
@@ -56,6 +60,7 @@ int main(int argc, char** argv) {
     Arguments arguments;
     const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
     if (!parsed.run) return parsed.exit_code;
+    warn_of_no_effect(arguments, parsed);
     const auto experiments = chosen_experiments(arguments, parsed.common);
     if (!arguments.page.empty())
       check_page(in_working_folder(parsed.common, arguments.page), experiments);

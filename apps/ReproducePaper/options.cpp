@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <ranges>
+#include <sstream>
+#include <string_view>
+
 #include "base/error.h"
+#include "base/log.h"
+#include "base/parse_number.h"
 #include "chained.h"
 #include "results.h"
 
@@ -12,10 +18,70 @@ struct Chained {
   const char* name;
   experiments::Experiment (*make)(const Chain& chain, bool quick);
 };
+constexpr const char* kCompleteness = "completeness";
 constexpr Chained kChained[] = {
     {"reconstruction", reconstruction}, {"sensitivity", sensitivity}, {"need", need}};
 
+// Options of the experiment that is told of no paper.
+void declare_completeness(OptionList& list, Arguments& a) {
+  list.add_with_default("preset", &a.completeness.preset, "completeness: of SimulateUnderwater")
+      .add_with_default("medium", &a.completeness.medium, "completeness: air or water")
+      .add_with_default("poses", &a.completeness.poses,
+                        "completeness: true, or colmap: found in photographs in air")
+      .add("seeds", &a.seeds, "completeness: of the scenes (default: 11,12,13)")
+      .add("tolerance", &a.completeness.tolerance,
+           "completeness: [m] (default: 0.002 for closeup and thicket, 0.005 for others)")
+      .add("scene-options", &a.scene_options,
+           "completeness: more for SimulateUnderwater, in quotes")
+      .add("dense-options", &a.dense_options, "completeness: more for DensifyPointCloud, in quotes")
+      .add("work", &a.work,
+           "completeness: folder where scenes and clouds stay for another run (default: they go)");
+}
+
+Words words_of(const std::string& text) {
+  Words words;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+std::vector<int> seeds_of(const std::string& text) {
+  std::vector<int> seeds;
+  for (const auto& word : std::views::split(std::string_view(text), ',')) {
+    const auto seed = parse_number<int>(std::string_view(word.begin(), word.end()));
+    if (!seed || *seed < 0) fail("--seeds {}: must be whole numbers, separated by commas", text);
+    seeds.push_back(*seed);
+  }
+  return seeds;
+}
+
+experiments::Experiment completeness_of(const Arguments& a, const CommonOptions& common) {
+  CompletenessOptions options = a.completeness;
+  if (!a.seeds.empty()) options.seeds = seeds_of(a.seeds);
+  options.scene = words_of(a.scene_options);
+  if (a.quick && options.scene.empty())
+    options.scene = {"--views", "5", "--width", "320", "--height", "240", "--coarseness", "4"};
+  options.dense = words_of(a.dense_options);
+  check(options);
+  const std::filesystem::path work = a.work.empty()
+                                         ? work_folder(a, common, completeness_name(options))
+                                         : in_working_folder(common, a.work);
+  return completeness({work, common.max_threads}, options);
+}
+
 }  // namespace
+
+bool is_completeness(const Arguments& a) {
+  return a.experiment == kCompleteness;
+}
+
+void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed) {
+  if (is_completeness(a)) return;
+  for (const char* name : {"preset", "medium", "poses", "seeds", "tolerance", "scene-options",
+                           "dense-options", "work"})
+    if (given(parsed, name))
+      log_warning("--{}: without effect but on the experiment {}", name, kCompleteness);
+}
 
 ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
@@ -23,7 +89,7 @@ ProgramOptions describe(Arguments& a) {
   program.description =
       "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
       "with EXPERIMENT figure2, runtime, figure3, figure4, reconstruction, sensitivity, need or "
-      "all";
+      "all, or completeness: clouds of simulated scenes by the number of cameras that see a place";
   program.visible
       .add("output,o", &a.output,
            "folder of the results (required); finished parts found there are not computed again")
@@ -33,6 +99,7 @@ ProgramOptions describe(Arguments& a) {
           "part", &a.part,
           "compute only the parts whose names begin so; figures and tables come with the last part")
       .add("page", &a.page, "Markdown page to bring up to date with the results");
+  declare_completeness(program.visible, a);
   // The name that parse_options knows the positional argument by.
   program.hidden.add("input-file", &a.experiment, "the experiment");
   return program;
@@ -65,7 +132,10 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   for (const auto& [name, make] : kChained)
     if (asked_for(name))
       chosen.push_back(make({work_folder(a, common, name), common.max_threads}, a.quick));
-  if (chosen.empty()) fail("'{}' is no experiment: must be {}or all", a.experiment, names);
+  // It repeats nothing of the paper's, so that `all` goes without it.
+  if (is_completeness(a)) chosen.push_back(completeness_of(a, common));
+  if (chosen.empty())
+    fail("'{}' is no experiment: must be {}{} or all", a.experiment, names, kCompleteness);
   if (chosen_parts(chosen.front(), a.part).empty())
     fail("--part {}: begins the name of no part of {}", a.part, a.experiment);
   return chosen;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/program.h"
+#include "completeness.h"
 #include "experiments/experiment.h"
 
 namespace axial {
@@ -13,10 +14,18 @@ struct Arguments {
   std::string experiment, output, page;
   std::string part;  // compute only parts whose names begin so
   bool quick = false;
+  CompletenessOptions completeness;  // of the experiment of that name
+  std::string seeds, scene_options, dense_options, work;
 };
 
 // The options of ReproducePaper, bound to `a`.
 ProgramOptions describe(Arguments& a);
+
+// Whether the experiment is `completeness`, whose tables are printed, too.
+bool is_completeness(const Arguments& a);
+
+// A warning for each option that the experiment does not go by.
+void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed);
 
 // The experiment that was asked for, or all. Error that names the option and its value.
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,

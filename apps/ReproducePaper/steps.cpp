@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "steps.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 
 #include "base/hash.h"
@@ -21,6 +23,15 @@ bool run_sibling(const Chain& chain, const std::string& program, const Words& ar
   command += arguments;
   command += {"--max-threads", std::to_string(chain.max_threads)};
   return run_unless_excused(command, log, excuses);
+}
+
+double children_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 std::vector<fs::path> files_ending_in(const fs::path& folder, const std::string& end) {

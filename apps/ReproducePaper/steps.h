@@ -25,6 +25,9 @@ void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
 bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
                  const std::filesystem::path& log, const Words& excuses = {});
 
+// CPU time of all programs that this one has run to their end [s].
+double children_seconds();
+
 std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& folder,
                                                    const std::string& end);
 

@@ -14,7 +14,10 @@ ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
   program.name = "SimulateUnderwater";
   program.description = "makes a synthetic scene with ground truth, in air and under water";
-  program.visible.add_with_default("preset", &a.preset.name, "reef, outcrop, closeup or survey")
+  program.visible
+      .add_with_default("preset", &a.preset.name,
+                        "reef, outcrop, closeup, survey, thicket, sand or transect; "
+                        "NAME-hazy: in haze 6/7")
       .add_with_default("seed", &a.preset.seed, "of everything random")
       .add("output,o", &a.output, "folder of the scene (required)")
       .add_with_default("views", &a.preset.views, "images (0: the preset's number)")
@@ -40,9 +43,9 @@ ProgramOptions describe(Arguments& a) {
       .add_with_default("dome-z", &a.dome_z, "camera centre to dome centre [m]")
       .add("n-glass", &a.n_glass, "refractive index")
       .add("n-water", &a.n_water, "refractive index")
-      .add_with_default(
-          "haze", &a.haze,
-          "share of the light that the medium, water or air, scatters into view, 0 to 1")
+      .add("haze", &a.haze,
+           "share of the light that the medium, water or air, scatters into view, 0 to 1 (default: "
+           "the preset's, 0 but for NAME-hazy)")
       .add_with_default("noise", &a.noise, "standard deviation [grey levels]")
       .add_with_default("jpeg-quality", &a.jpeg_quality, "1 to 100")
       .add_with_default("truth", &a.truth, "write distances and normals of the images")

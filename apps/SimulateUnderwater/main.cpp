@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     check(arguments);
     const ThreadLimit limit(parsed.common.max_threads);
     simulate::Preset preset = simulate::make_preset(arguments.preset);
+    if (!given(parsed, "haze")) arguments.haze = preset.haze;
     apply_lens_option(preset, arguments);
     apply_port_options(preset, arguments, parsed);
     simulate::check_ports(preset);

@@ -9,6 +9,7 @@
 #include "io/housing.h"
 #include "io/image.h"
 #include "io/ply.h"
+#include "io/ply_property.h"
 
 namespace axial {
 namespace {
@@ -89,7 +90,11 @@ void write_port(const std::filesystem::path& file, const simulate::Preset& prese
 }
 
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh) {
-  io::write_mesh_ply(file, Mesh{mesh.vertices, {}, mesh.faces});
+  const Mesh plain{mesh.vertices, {}, mesh.faces};
+  if (mesh.thickness.empty())
+    io::write_mesh_ply(file, plain);
+  else
+    io::write_mesh_ply(file, plain, io::VertexProperty{"thickness", mesh.thickness});
 }
 
 void write_truth(const std::filesystem::path& folder, const std::string& name,

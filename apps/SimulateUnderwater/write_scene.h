@@ -23,6 +23,7 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 // One port, "main", for every image, or the water surface.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
+// With a vertex property `thickness` [m] where the mesh has some.
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);
 
 // <folder>/<name>.{distance,normal}.tiff

@@ -12,8 +12,6 @@
 namespace axial::evaluate {
 namespace {
 
-constexpr std::size_t kMostDraws = 20;  // times the samples asked for
-
 // What nanoflann asks of a point set.
 struct PointSet {
   std::span<const Eigen::Vector3f> points;
@@ -42,32 +40,19 @@ void check(std::span<const Eigen::Vector3f> points) {
     if (!points[i].allFinite()) fail("point {} of the cloud is not finite", i);
 }
 
-struct Samples {
-  std::vector<Eigen::Vector3f> counted;
-  std::size_t drawn = 0;
-};
-
-Samples draw_samples(const Mesh& truth, const Surface& surface, std::span<const View> views,
-                     const CloudOptions& options) {
-  Samples result{sample_surface(truth, options.samples, options.seed), options.samples};
-  if (views.empty()) return result;
-  result.counted = seen_points(result.counted, views, surface, options.least_views);
-  // A truth that reaches far beyond the pictures needs more samples for as many that count.
-  const std::size_t factor =
-      std::min(kMostDraws, options.samples / std::max<std::size_t>(result.counted.size(), 1));
-  if (factor > 1) {
-    result.drawn = factor * options.samples;
-    result.counted = seen_points(sample_surface(truth, result.drawn, options.seed), views, surface,
-                                 options.least_views);
-  }
-  if (result.counted.empty())
-    fail("no sample of the truth is seen by {} of the {} views", options.least_views, views.size());
-  return result;
+Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
+                   const CloudOptions& options) {
+  return draw_places(truth, surface, views, {options.samples, options.seed, options.least_views});
 }
 
-CloudEvaluation summed_up(std::vector<float> to_truth, std::span<const float> to_reconstruction,
-                          std::size_t drawn, std::span<const View> views,
-                          const CloudOptions& options) {
+double share_beyond(std::span<const float> distances, double limit) {
+  const auto beyond = std::ranges::count_if(
+      distances, [&](float distance) { return static_cast<double>(distance) > limit; });
+  return static_cast<double>(beyond) / static_cast<double>(distances.size());
+}
+
+CloudEvaluation summed_up(std::vector<float> to_truth, std::vector<float> to_reconstruction,
+                          Places places, std::span<const View> views, const CloudOptions& options) {
   CloudEvaluation result;
   const double upper = 4 * options.tolerances.front();
   result.accuracy = summarise(to_truth);
@@ -76,8 +61,13 @@ CloudEvaluation summed_up(std::vector<float> to_truth, std::span<const float> to
   result.completeness_histogram = histogram(to_reconstruction, upper, options.histogram_bins);
   for (const double tolerance : options.tolerances)
     result.scores.push_back(score(to_truth, to_reconstruction, tolerance));
-  result.samples = drawn;
-  result.counted_samples = to_reconstruction.size();
+  if (!views.empty())
+    result.by_views =
+        recall_by_views(places, to_reconstruction, options.tolerances, options.least_views);
+  result.gross = options.gross > 0 ? options.gross : upper;
+  result.gross_share = share_beyond(to_truth, result.gross);
+  result.places = std::move(places);
+  result.place_distances = std::move(to_reconstruction);
   result.views = views.size();
   result.distances = std::move(to_truth);
   return result;
@@ -109,9 +99,10 @@ CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Me
                                const CloudOptions& options) {
   check(options);
   check(points);
-  const Samples samples = draw_samples(truth, surface, views, options);
-  return summed_up(distances_to(surface, points), nearest_point_distances(samples.counted, points),
-                   samples.drawn, views, options);
+  Places places = draw_places(truth, surface, views, options);
+  std::vector<float> found = nearest_point_distances(places.positions, points);
+  return summed_up(distances_to(surface, points), std::move(found), std::move(places), views,
+                   options);
 }
 
 CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
@@ -120,9 +111,10 @@ CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface
   check(options);
   // Another seed than the truth's: the same mesh twice must not meet itself in the same points.
   sampled = sample_surface(mesh, options.samples, options.seed + 1);
-  const Samples samples = draw_samples(truth, surface, views, options);
-  return summed_up(distances_to(surface, sampled), distances_to(Surface(mesh), samples.counted),
-                   samples.drawn, views, options);
+  Places places = draw_places(truth, surface, views, options);
+  std::vector<float> found = distances_to(Surface(mesh), places.positions);
+  return summed_up(distances_to(surface, sampled), std::move(found), std::move(places), views,
+                   options);
 }
 
 }  // namespace axial::evaluate

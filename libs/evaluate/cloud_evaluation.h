@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "evaluate/places.h"
 #include "evaluate/statistics.h"
 #include "evaluate/surface.h"
 #include "evaluate/views.h"
@@ -21,6 +22,7 @@ struct CloudOptions {
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;  // that must see a sample for it to count
   std::size_t histogram_bins = 80;
+  double gross = 0;  // distance beyond which an error is gross [m]; 0: 4 * first tolerance
 };
 
 struct CloudEvaluation {
@@ -29,8 +31,10 @@ struct CloudEvaluation {
   DistanceStatistics completeness;  // of every counted sample of the truth to the reconstruction
   Histogram accuracy_histogram, completeness_histogram;  // over 0 .. 4 * first tolerance
   std::vector<Score> scores;                             // one a tolerance
-  std::size_t samples = 0;                               // drawn on the truth
-  std::size_t counted_samples = 0;                       // of them, those that count
+  Places places;                                         // the samples of the truth that count
+  std::vector<float> place_distances;                    // of each to the reconstruction
+  std::vector<RecallOfViews> by_views;                   // empty without cameras
+  double gross = 0, gross_share = 0;                     // of the points: beyond so many metres
   std::size_t views = 0;  // 0: no cameras were given, all samples count
 };
 

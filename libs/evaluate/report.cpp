@@ -7,6 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "evaluate/parts_report.h"
+
 namespace axial::evaluate {
 namespace {
 
@@ -59,6 +61,13 @@ std::string score_rows(const std::vector<Score>& scores) {
   return text;
 }
 
+std::string recall_rows(const CloudEvaluation& e) {
+  if (e.by_views.empty()) return {};
+  std::vector<double> tolerances;
+  for (const Score& s : e.scores) tolerances.push_back(s.tolerance);
+  return table(std::span<const RecallOfViews>(e.by_views), tolerances);
+}
+
 }  // namespace
 
 Json to_json(const CloudEvaluation& e) {
@@ -67,9 +76,11 @@ Json to_json(const CloudEvaluation& e) {
           {"completeness", to_json(e.completeness)},
           {"completeness_histogram", to_json(e.completeness_histogram)},
           {"scores", to_json(e.scores)},
+          {"gross", {{"distance", e.gross}, {"share", e.gross_share}}},
+          {"by_views", to_json(std::span<const RecallOfViews>(e.by_views))},
           {"views", e.views},
-          {"samples", e.samples},
-          {"counted_samples", e.counted_samples}};
+          {"samples", e.places.drawn},
+          {"counted_samples", e.places.size()}};
 }
 
 Json to_json(const DepthEvaluation& e) {
@@ -101,11 +112,15 @@ Json to_json(const Similarity& similarity) {
 
 std::string table(const CloudEvaluation& e) {
   const std::string counted =
-      e.views == 0 ? fmt::format("all {} samples of the truth count (no cameras given)", e.samples)
-                   : fmt::format("{} of {} samples of the truth are seen by enough of the {} views",
-                                 e.counted_samples, e.samples, e.views);
+      e.views == 0
+          ? fmt::format("all {} samples of the truth count (no cameras given)", e.places.drawn)
+          : fmt::format("{} of {} samples of the truth are seen by enough of the {} views",
+                        e.places.size(), e.places.drawn, e.views);
   return statistics_header("unsigned [mm, mm^2]") + statistics_row("points to truth", e.accuracy) +
-         statistics_row("truth to points", e.completeness) + score_rows(e.scores) + counted + "\n";
+         statistics_row("truth to points", e.completeness) + score_rows(e.scores) +
+         fmt::format("{:.5f} of the points are farther than {:.3g} mm from the truth\n",
+                     e.gross_share, e.gross * 1e3) +
+         recall_rows(e) + counted + "\n";
 }
 
 std::string table(const DepthEvaluation& e) {

@@ -37,16 +37,18 @@ std::vector<double> cumulative_area(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count,
-                                            std::uint64_t seed) {
+std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed,
+                                            std::vector<std::uint32_t>* faces) {
   const std::vector<double> sums = cumulative_area(mesh);
   std::vector<Eigen::Vector3f> samples(count);
+  if (faces) faces->resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double at = (static_cast<double>(i) + random_unit(seed, i, 0)) /
                       static_cast<double>(count) * sums.back();
     const auto found = std::upper_bound(sums.begin(), sums.end(), at);
     const std::size_t face =
         std::min(static_cast<std::size_t>(found - sums.begin()), sums.size() - 1);
+    if (faces) (*faces)[i] = static_cast<std::uint32_t>(face);
     const auto& corners = mesh.faces[face];
     const Eigen::Vector3d a = mesh.vertices[corners[0]].cast<double>();
     const Eigen::Vector3d b = mesh.vertices[corners[1]].cast<double>();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluate/views.h"
 
+#include <cmath>
 #include <map>
 #include <variant>
 
@@ -37,22 +38,40 @@ bool sees(const Camera& camera, const View& view, const Surface* surface,
          !(surface && surface->blocked(point, view.pose.to_world(camera.exit_point(image.pixel))));
 }
 
-std::vector<std::uint32_t> count(std::span<const Eigen::Vector3f> points,
-                                 std::span<const View> views, const Surface* surface) {
-  std::vector<std::uint32_t> counts(points.size(), 0);
+// Calls visit(i, camera, view) for every point and every view that sees it, view by view.
+// `surface` null: nothing stands in between. Concurrent for different points.
+template <class Visit>
+void for_each_sight(std::span<const Eigen::Vector3f> points, std::span<const View> views,
+                    const Surface* surface, const Visit& visit) {
   for (const View& view : views) {
     std::visit(
         [&](const auto& camera) {
           parallel_for(
               points.size(),
               [&](std::size_t i) {
-                if (sees(camera, view, surface, points[i].cast<double>())) ++counts[i];
+                if (sees(camera, view, surface, points[i].cast<double>())) visit(i, camera, view);
               },
               1024);
         },
         make_camera<double>(view.camera));
   }
+}
+
+std::vector<std::uint32_t> count(std::span<const Eigen::Vector3f> points,
+                                 std::span<const View> views, const Surface* surface) {
+  std::vector<std::uint32_t> counts(points.size(), 0);
+  for_each_sight(points, views, surface,
+                 [&](std::size_t i, const auto&, const View&) { ++counts[i]; });
   return counts;
+}
+
+// Of a pixel at a point that the camera sees: what moves its image by one pixel, as the mean of all
+// directions across the ray.
+template <class Camera>
+double pixel_width(const Camera& camera, const Eigen::Vector3d& in_camera) {
+  Eigen::Matrix<double, 2, 3> jacobian;
+  camera.project(in_camera, &jacobian);
+  return 1 / std::sqrt(std::sqrt((jacobian * jacobian.transpose()).determinant()));
 }
 
 }  // namespace
@@ -85,14 +104,18 @@ std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
   return count(points, views, nullptr);
 }
 
-std::vector<Eigen::Vector3f> seen_points(std::span<const Eigen::Vector3f> points,
-                                         std::span<const View> views, const Surface& surface,
-                                         std::uint32_t least) {
-  const std::vector<std::uint32_t> counts = count_views(points, views, surface);
-  std::vector<Eigen::Vector3f> seen;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (counts[i] >= least) seen.push_back(points[i]);
-  return seen;
+std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
+                                std::span<const View> views, const Surface& surface) {
+  std::vector<double> sums(points.size(), 0);
+  std::vector<std::uint32_t> counts(points.size(), 0);
+  for_each_sight(points, views, &surface, [&](std::size_t i, const auto& camera, const View& view) {
+    sums[i] += pixel_width(camera, view.pose.to_camera(points[i].cast<double>()));
+    ++counts[i];
+  });
+  std::vector<float> widths(points.size());
+  for (std::size_t i = 0; i < widths.size(); ++i)
+    widths[i] = counts[i] > 0 ? static_cast<float>(sums[i] / counts[i]) : 0.0f;
+  return widths;
 }
 
 }  // namespace axial::evaluate

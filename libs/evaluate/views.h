@@ -37,9 +37,9 @@ std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
 std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
                                         std::span<const View> views);
 
-// The points that at least `least` views see.
-std::vector<Eigen::Vector3f> seen_points(std::span<const Eigen::Vector3f> points,
-                                         std::span<const View> views, const Surface& surface,
-                                         std::uint32_t least);
+// The mean width [m] of a pixel, across the ray, at each point, over the views that see it as
+// count_views has it; 0 where none does.
+std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
+                                std::span<const View> views, const Surface& surface);
 
 }  // namespace axial::evaluate

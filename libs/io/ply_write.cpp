@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "io/byte_writer.h"
 #include "io/ply.h"
+#include "io/ply_property.h"
 
 namespace axial::io {
 namespace {
@@ -165,25 +166,44 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
   out.finish();
 }
 
-void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
-                    const PlyPlacement& placement) {
+namespace {
+
+// `property` null: none.
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const VertexProperty* property,
+                const PlyPlacement& placement) {
   if (!mesh.colors.empty())
     require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
   ByteWriter out;
   out.text(fmt::format("{}{}element vertex {}\n{}", kStart, geo_comment(placement),
                        mesh.vertices.size(), position_properties(placement)));
   if (!mesh.colors.empty()) out.text(kColor);
+  if (property) out.text(fmt::format("property float32 {}\n", property->name));
   out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\nend_header\n",
                        mesh.faces.size()));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     write_position(out, mesh.vertices[i], placement);
     if (!mesh.colors.empty()) out.write(std::span(mesh.colors[i]));
+    if (property) out.write(property->values[i]);
   }
   for (const auto& face : mesh.faces) {
     out.write(std::uint8_t{3});
     out.write(std::span(face));
   }
   write_atomically(path, out.bytes());
+}
+
+}  // namespace
+
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const PlyPlacement& placement) {
+  write_mesh(path, mesh, nullptr, placement);
+}
+
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const VertexProperty& property, const PlyPlacement& placement) {
+  require_length(property.values.size(), mesh.vertices.size(), property.name.c_str(),
+                 path.string());
+  write_mesh(path, mesh, &property, placement);
 }
 
 }  // namespace axial::io

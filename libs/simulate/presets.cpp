@@ -2,107 +2,16 @@
 #include "simulate/presets.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <iterator>
+#include <string_view>
 
 #include "base/error.h"
-#include "simulate/noise.h"
+#include "simulate/preset_parts.h"
 
 namespace axial::simulate {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
-
-// Numbers drawn one after the other.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : seed_(seed) {}
-  double between(double a, double b) { return a + (b - a) * uniform(seed_, index_++); }
-  std::uint32_t seed() { return static_cast<std::uint32_t>(between(0, 4294967295.0)); }
-
- private:
-  std::uint64_t seed_, index_ = 0;
-};
-
-// Camera at `centre` that looks at `target`, image up as near world up (or +y) as can be.
-View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
-             const Eigen::Vector3d& up) {
-  const Eigen::Vector3d z = (target - centre).normalized();
-  const Eigen::Vector3d x = z.cross(up).normalized();
-  View view;
-  view.rotation.row(0) = x;
-  view.rotation.row(1) = z.cross(x);
-  view.rotation.row(2) = z;
-  view.centre = centre;
-  return view;
-}
-
-// Turns the camera by up to `degrees` about each of its axes.
-void shake(View& view, double degrees, Draw& draw) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double angle = draw.between(-degrees, degrees) * kRadians;
-    view.rotation =
-        Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis)).toRotationMatrix() * view.rotation;
-  }
-}
-
-Blob boulder(const Floor& floor, double x, double y, double radius, Draw& draw) {
-  Blob blob;
-  blob.radii = {radius * draw.between(0.8, 1.25), radius * draw.between(0.8, 1.25),
-                radius * draw.between(0.65, 1.0)};
-  blob.turn = Eigen::AngleAxisd(draw.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-              Eigen::AngleAxisd(draw.between(-0.4, 0.4), Eigen::Vector3d::UnitX());
-  blob.centre = {x, y, floor.at(x, y) + draw.between(0.0, 0.35) * blob.radii.z()};
-  blob.roughness = draw.between(0.2, 0.34);
-  blob.seed = draw.seed();
-  return blob;
-}
-
-// A stalk and a cap that overhangs it all around.
-void add_mushroom(Terrain& terrain, double x, double y, double size, Draw& draw) {
-  const double ground = terrain.floor.at(x, y);
-  Blob stalk;
-  stalk.radii = {0.36 * size, 0.33 * size, 0.9 * size};
-  stalk.centre = {x, y, ground + 0.25 * size};
-  stalk.roughness = 0.25;
-  stalk.seed = draw.seed();
-  Blob cap;
-  cap.radii = {draw.between(0.85, 1.05) * size, draw.between(0.75, 0.95) * size, 0.38 * size};
-  cap.turn = Eigen::AngleAxisd(draw.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(draw.between(-0.25, 0.25), Eigen::Vector3d::UnitX());
-  cap.centre = {x + draw.between(-0.15, 0.15) * size, y + draw.between(-0.15, 0.15) * size,
-                ground + 1.05 * size};
-  cap.roughness = 0.24;
-  cap.seed = draw.seed();
-  terrain.blobs.push_back(stalk);
-  terrain.blobs.push_back(cap);
-}
-
-void add_arch(Terrain& terrain, double x, double y, double span_radius, Draw& draw) {
-  Arch arch;
-  const double turn = draw.between(0, 3.14);
-  arch.along = {std::cos(turn), std::sin(turn)};
-  arch.centre = {x, y, terrain.floor.at(x, y)};
-  arch.span_radius = span_radius;
-  arch.rise = draw.between(0.9, 1.1);
-  arch.tube_radius = 0.27 * span_radius;
-  arch.seed = draw.seed();
-  terrain.arches.push_back(arch);
-}
-
-// Boulders spread over a disc or rectangle, none nearer to the origin than `from`.
-void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double from,
-             const Eigen::Vector2d& radii, Draw& draw) {
-  while (count > 0) {
-    const double x = draw.between(-half.x(), half.x()), y = draw.between(-half.y(), half.y());
-    const double t = draw.between(0, 1);
-    if (std::hypot(x, y) < from) continue;
-    // Many small ones, few large ones.
-    const double radius = radii.x() + (radii.y() - radii.x()) * t * t;
-    terrain.blobs.push_back(boulder(terrain.floor, x, y, radius, draw));
-    --count;
-  }
-}
 
 void make_reef(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
@@ -122,19 +31,7 @@ void make_reef(Preset& preset, std::uint32_t seed, int views) {
   add_arch(terrain, -0.6, -0.8, 0.42, draw);
   add_arch(terrain, 1.0, 0.3, 0.38, draw);
 
-  constexpr double kHeight = 2.90;
-  const int columns = (views + 1) / 2;
-  for (int i = 0; i < views; ++i) {
-    const int row = i / columns;
-    // There along one row, back along the other.
-    const int column = row == 0 ? i : 2 * columns - 1 - i;
-    const Eigen::Vector3d centre(0.5 * (column - 0.5 * (columns - 1)) + draw.between(-0.06, 0.06),
-                                 0.55 * (row - 0.5) + draw.between(-0.06, 0.06),
-                                 kHeight + draw.between(-0.12, 0.12));
-    View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
-    shake(view, 6, draw);
-    preset.views.push_back(view);
-  }
+  add_two_rows(preset, views, 2.90, draw);
 }
 
 // There along one row, back along the next, over a seabed that grows with the number of rows.
@@ -214,27 +111,17 @@ void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   scatter(terrain, 8, {0.35, 0.35}, 0.20, {0.04, 0.09}, draw);
   scatter(terrain, 50, {1.1, 1.1}, 0.25, {0.015, 0.07}, draw);
 
-  // Two thirds of the views in a ring, the others in a narrower one above it.
-  const int lower = (2 * views + 2) / 3;
-  for (int i = 0; i < views; ++i) {
-    const bool low = i < lower;
-    const double step = low ? (i + 0.0) / lower : (i - lower + 0.35) / std::max(1, views - lower);
-    const double around = 2 * std::numbers::pi * step + draw.between(-0.06, 0.06);
-    const double elevation = ((low ? 57 : 77) + draw.between(-2, 2)) * kRadians;
-    const double range = 0.81 + draw.between(-0.03, 0.03);
-    const Eigen::Vector3d target(draw.between(-0.03, 0.03), draw.between(-0.03, 0.03), 0.06);
-    const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
-                                 std::cos(elevation) * std::sin(around), std::sin(elevation));
-    View view = look_at(target + range * offset, target, Eigen::Vector3d::UnitZ());
-    shake(view, 3, draw);
-    preset.views.push_back(view);
-  }
+  add_two_rings(preset, views, 0.81, draw);
 }
+
+// Leaves a seventh of the contrast.
+constexpr double kHaze = 6.0 / 7;
 
 void scale_terrain(Terrain& terrain, double scale) {
   for (double* length : {&terrain.floor.wavelength, &terrain.floor.height, &terrain.floor.bowl_from,
                          &terrain.floor.bowl_to, &terrain.floor.bowl_height, &terrain.floor.layer,
-                         &terrain.cell, &terrain.half_width, &terrain.half_height, &terrain.skirt})
+                         &terrain.floor.ripple_height, &terrain.floor.ripple_length, &terrain.cell,
+                         &terrain.half_width, &terrain.half_height, &terrain.skirt})
     *length *= scale;
   for (Blob& blob : terrain.blobs) {
     blob.centre *= scale;
@@ -244,6 +131,10 @@ void scale_terrain(Terrain& terrain, double scale) {
     arch.centre *= scale;
     arch.span_radius *= scale;
     arch.tube_radius *= scale;
+  }
+  for (Tube& tube : terrain.tubes) {
+    for (Eigen::Vector3d& point : tube.spine) point *= scale;
+    for (double& radius : tube.radii) radius *= scale;
   }
 }
 
@@ -291,17 +182,27 @@ Preset make_preset(const PresetOptions& options) {
   check_factor("coarseness", options.coarseness);
   Preset preset;
   preset.lens = make_lens(options.width, options.height, options.horizontal_fov_degrees);
-  const auto views_or = [&](int own) { return options.views > 0 ? options.views : own; };
-  if (options.name == "reef")
-    make_reef(preset, options.seed, views_or(10));
-  else if (options.name == "outcrop")
-    make_outcrop(preset, options.seed, views_or(10));
-  else if (options.name == "closeup")
-    make_closeup(preset, options.seed, views_or(12));
-  else if (options.name == "survey")
-    make_survey(preset, options.seed, views_or(50));
-  else
-    fail("preset '{}' is unknown: there are reef, outcrop, closeup and survey", options.name);
+  std::string name = options.name;
+  if (constexpr std::string_view kHazy = "-hazy"; name.ends_with(kHazy)) {
+    name.resize(name.size() - kHazy.size());
+    preset.haze = kHaze;
+  }
+  struct Named {
+    const char* name;
+    void (*make)(Preset& preset, std::uint32_t seed, int views);
+    int views;
+  };
+  constexpr Named kAll[] = {{"reef", make_reef, 10},        {"outcrop", make_outcrop, 10},
+                            {"closeup", make_closeup, 12},  {"survey", make_survey, 50},
+                            {"thicket", make_thicket, 12},  {"sand", make_sand, 10},
+                            {"transect", make_transect, 12}};
+  const auto found = std::ranges::find(kAll, name, [](const Named& one) { return one.name; });
+  if (found == std::end(kAll))
+    fail(
+        "preset '{}' is unknown: there are reef, outcrop, closeup, survey, thicket, sand and "
+        "transect, and the same in haze: NAME-hazy",
+        options.name);
+  found->make(preset, options.seed, options.views > 0 ? options.views : found->views);
   preset.terrain.relief = options.relief;
   preset.terrain.cell *= options.coarseness;
   scale_preset(preset, options.scale);

@@ -34,6 +34,7 @@ struct Preset {
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
+  double haze = 0;  // that the scene is photographed in, as add_haze
 };
 
 // "reef": a survey from above in two rows, seabed 2 to 3.5 m away, thin gap and thick glass.
@@ -41,8 +42,15 @@ struct Preset {
 // through reef's port.
 // "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
 // "survey": rows of ten views from above, as many as it takes; what a view sees does not depend on
-// how many there are. Error for another name, a number of views outside [0, 200], a scale, relief
-// or coarseness outside [0.01, 100], or what make_lens refuses.
+// how many there are.
+// "thicket": branching coral, ropes, plates and overhangs above a seabed that views look down on
+// from about 0.9 m all around: structures 1 to 16 pixels thick in views 1024 pixels wide. "sand":
+// low ripples under reef's views and port, with a texture of about the noise's contrast.
+// "transect": one strip from reef's height, each view 55 % over the one before under water, so that
+// most of the ground is seen by exactly two.
+// Each of them also as "NAME-hazy", in haze that leaves a seventh of the contrast. Error for
+// another name, a number of views outside [0, 200], a scale, relief or coarseness outside [0.01,
+// 100], or what make_lens refuses.
 Preset make_preset(const PresetOptions& options);
 
 // What `view` looks through: the preset's port, or the water's surface.

@@ -48,9 +48,10 @@ struct Material {
   float roughness;  // strength of the fine brightness variations
 };
 
+const Material kSediment{{0.60f, 0.54f, 0.42f}, 0.48f};
+
 // The material under a point: patches with ragged borders.
 Material material(const Eigen::Vector3d& p, float raggedness, const TextureOptions& options) {
-  static const Material kSediment{{0.60f, 0.54f, 0.42f}, 0.48f};
   static const Material kRock{{0.37f, 0.37f, 0.34f}, 0.62f};
   static const Material kAlgae{{0.30f, 0.34f, 0.21f}, 0.66f};
   static const Material kCoral{{0.52f, 0.35f, 0.38f}, 0.56f};
@@ -118,7 +119,9 @@ Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
   const float tone = 1.0f + 0.45f * d.coarse + m.roughness * d.fine + 0.28f * speckles(q, options);
   // The same slow fields tint the materials.
   const Eigen::Vector3f tint = Eigen::Vector3f::Ones() + 0.10f * bend.cast<float>();
-  return m.color.cwiseProduct(tint) * std::clamp(tone, 0.12f, 2.2f);
+  const Eigen::Vector3f albedo = m.color.cwiseProduct(tint) * std::clamp(tone, 0.12f, 2.2f);
+  if (options.contrast == 1) return albedo;
+  return kSediment.color + static_cast<float>(options.contrast) * (albedo - kSediment.color);
 }
 
 Shader seabed_shader(const TriangleMesh& mesh, const RayScene& scene,

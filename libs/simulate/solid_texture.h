@@ -11,6 +11,7 @@ namespace axial::simulate {
 struct TextureOptions {
   std::uint32_t seed = 1;
   double largest = 1.0;  // size of the largest patches [m]; detail goes down from there to a pixel
+  double contrast = 1;   // how far reflectances are from the sediment's, times this
 };
 
 // Reflectance (linear R G B) at a point. Detail finer than about a pixel's `footprint` [m] is left

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "simulate/noise.h"
 
@@ -58,6 +59,14 @@ double stair(double height, double layer) {
   return layer * (steps + 0.25 * within + 0.75 * smooth_step(0.6f, 0.95f, within));
 }
 
+// Crests that wander, above and below 0.
+double ripples(const Floor& floor, double x, double y) {
+  const Eigen::Vector3d p = Eigen::Vector3d(x, y, 0) / (6 * floor.ripple_length);
+  const auto bend = static_cast<double>(fractal_noise(p, floor.seed + 31u, 2, 0.5f));
+  const double phase = 2 * std::numbers::pi * (x / floor.ripple_length + 2 * bend);
+  return 0.5 * floor.ripple_height * std::sin(phase);
+}
+
 }  // namespace
 
 double Floor::at(double x, double y) const {
@@ -66,7 +75,8 @@ double Floor::at(double x, double y) const {
   const float ridges = 0.5f - std::abs(fractal_noise(turn_octave(1.7 * p), seed + 77u, 5, 0.5f));
   const auto r = static_cast<float>(std::sqrt(x * x + y * y));
   const float bowl = smooth_step(static_cast<float>(bowl_from), static_cast<float>(bowl_to), r);
-  const double smooth = height * (dunes + 0.45 * (ridges - 0.3)) + bowl_height * bowl;
+  double smooth = height * (dunes + 0.45 * (ridges - 0.3)) + bowl_height * bowl;
+  if (ripple_height > 0) smooth += ripples(*this, x, y);
   if (!(layer > 0)) return smooth;
   const double rise = dip.x() * x + dip.y() * y;
   return stair(smooth + rise, layer) - rise;
@@ -83,6 +93,7 @@ TriangleMesh terrain_mesh(const Terrain& terrain) {
   };
   for (const Blob& blob : terrain.blobs) add(blob_mesh(blob, terrain.cell), &blob);
   for (const Arch& arch : terrain.arches) add(arch_mesh(arch, terrain.cell), nullptr);
+  for (const Tube& tube : terrain.tubes) add(tube_mesh(tube, terrain.cell), nullptr);
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex.z() *= static_cast<float>(terrain.relief);
   return mesh;
 }

@@ -17,16 +17,19 @@ constexpr std::uint32_t kUnused = 0xFFFFFFFFu;
 void remove_unused_vertices(TriangleMesh& mesh) {
   std::vector<std::uint32_t> new_index(mesh.vertices.size(), kUnused);
   std::vector<Eigen::Vector3f> kept;
+  std::vector<float> thickness;
   for (Face& face : mesh.faces) {
     for (std::uint32_t& corner : face) {
       if (new_index[corner] == kUnused) {
         new_index[corner] = static_cast<std::uint32_t>(kept.size());
         kept.push_back(mesh.vertices[corner]);
+        if (!mesh.thickness.empty()) thickness.push_back(mesh.thickness[corner]);
       }
       corner = new_index[corner];
     }
   }
   mesh.vertices = std::move(kept);
+  mesh.thickness = std::move(thickness);
 }
 
 TriangleMesh icosahedron() {
@@ -65,6 +68,11 @@ TriangleMesh split_in_four(TriangleMesh mesh) {
 
 void append(TriangleMesh& mesh, const TriangleMesh& part) {
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  if (!mesh.thickness.empty() || !part.thickness.empty()) {
+    mesh.thickness.resize(mesh.vertices.size(), 0.0f);
+    mesh.thickness.insert(mesh.thickness.end(), part.thickness.begin(), part.thickness.end());
+    mesh.thickness.resize(mesh.vertices.size() + part.vertices.size(), 0.0f);
+  }
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
   mesh.faces.reserve(mesh.faces.size() + part.faces.size());
   for (const auto& [a, b, c] : part.faces) mesh.faces.push_back({a + base, b + base, c + base});

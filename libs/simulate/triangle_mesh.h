@@ -16,6 +16,9 @@ using Face = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Face> faces;
+  // Of the thin structure that a vertex is part of [m], 0 for all else; empty where nothing is
+  // thin.
+  std::vector<float> thickness = {};
 };
 
 // Appends `part` to `mesh`.

@@ -42,7 +42,7 @@ def scene(name, base):
     preset, *hazy = name.split("-")
     if not hazy:
         return runs.synthetic(name, base)
-    return runs.simulated(name, base, "--preset", preset, "--haze", 6 / 7, "--truth", 0,
+    return runs.simulated(name, base, "--preset", name, "--truth", 0,
                           tolerance=runs.TOLERANCES[preset])
 
 

@@ -34,7 +34,7 @@ TEST(EvaluateCloud, PointsAtAKnownOffsetFromASphere) {
   EXPECT_NEAR(e.accuracy.max, 0.004, facet);
   EXPECT_NEAR(e.scores[0].precision, 1 / 3.0, 1e-12);
   EXPECT_EQ(e.distances.size(), points.size());
-  EXPECT_EQ(e.counted_samples, 20000u);
+  EXPECT_EQ(e.places.size(), 20000u);
   EXPECT_EQ(e.views, 0u);
 }
 

@@ -17,6 +17,7 @@
 #include "io/image.h"
 #include "io/json.h"
 #include "io/ply.h"
+#include "io/ply_property.h"
 #include "support/program_run.h"
 
 namespace axial::evaluate {
@@ -88,6 +89,73 @@ TEST_F(Programs, EvaluateACloud) {
   EXPECT_EQ(errors.size(), 20000u);
   EXPECT_EQ(errors.colors.size(), 20000u);
   EXPECT_EQ(io::read_image_size(folder_ / "errors.png").width, 1024);
+}
+
+// Points with view lists and two numbers of what they are worth.
+std::string cloud_with_worth(const PointCloud& cloud) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "float "
+      "z\nproperty list uchar uint view_indices\nproperty float error\nproperty float "
+      "confidence\nend_header\n",
+      cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& x = cloud.positions[i];
+    text += fmt::format("{} {} {} {} 0.0018 0.95\n", x.x(), x.y(), x.z(),
+                        i % 4 == 0 ? "2 0 1" : "3 0 1 2");
+  }
+  return text;
+}
+
+TEST_F(Programs, EvaluateByViewsThicknessAndExpectedErrors) {
+  write_scene();
+  const Mesh truth = io::read_mesh_ply(folder_ / "truth.ply");
+  // A pixel is some 5 mm wide: all of it is about 4 pixels thick.
+  const std::vector<float> thickness(truth.vertices.size(), 0.02f);
+  io::write_mesh_ply(folder_ / "thin.ply", truth, io::VertexProperty{"thickness", thickness});
+  write_atomically(folder_ / "worth.ply",
+                   cloud_with_worth(io::read_cloud_ply(folder_ / "cloud.ply")));
+  const Outcome outcome =
+      run("EvaluateReconstruction",
+          "-i worth.ply -m thin.ply --tolerance 0.02 --gross 0.001 --cameras true --samples 20000 "
+          "--json out.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  for (const char* title :
+       {"seen by views", "thickness [px]", "points of views", "expected error", "confidence"})
+    EXPECT_THAT(outcome.output, HasSubstr(title));
+  const auto json = read_json("out.json");
+  EXPECT_EQ(json["gross"]["distance"], 0.001);
+  EXPECT_GT(json["gross"]["share"], 0.9) << "2 mm off but on slopes";
+  ASSERT_EQ(json["by_views"].size(), 3u);
+  std::size_t places = 0;
+  for (const auto& one : json["by_views"]) places += one["places"].get<std::size_t>();
+  EXPECT_EQ(json["counted_samples"], places);
+  EXPECT_GT(json["by_views"][0]["recall"][0], 0.9);
+  EXPECT_GT(json["by_thickness"][2]["places"], 0.8 * static_cast<double>(places));
+  EXPECT_EQ(json["by_thickness"][6]["recall"][0], nullptr) << "nothing is not thin";
+  EXPECT_EQ(json["points_by_views"][0]["share"], 0.25);
+  EXPECT_EQ(json["points_by_views"][1]["share"], 0.75);
+  EXPECT_NEAR(json["calibration"]["rms"].get<double>(), 1, 0.1);
+  EXPECT_EQ(json["calibration"]["reliability"][9]["points"], 20000);
+  EXPECT_FALSE(json.contains("strip"));
+}
+
+TEST_F(Programs, CountTheWorthOfThePointsThatCount) {
+  write_scene();
+  write_atomically(folder_ / "worth.ply",
+                   cloud_with_worth(io::read_cloud_ply(folder_ / "cloud.ply")));
+  ASSERT_EQ(
+      run("EvaluateReconstruction",
+          "-i worth.ply -m truth.ply --framed-only --cameras true --samples 5000 --json o.json")
+          .exit_code,
+      0);
+  const auto json = read_json("o.json");
+  EXPECT_LT(json["accuracy"]["count"], 15000) << "of 20000";
+  EXPECT_EQ(json["calibration"]["points"], json["accuracy"]["count"]);
+  EXPECT_NEAR(json["points_by_views"][0]["share"].get<double>(), 0.25, 0.03);
+  refuses("no strip", "-i cloud.ply -m truth.ply --cameras true --samples 5000 --strip");
+  refuses("--strip needs --cameras", "-i cloud.ply -m truth.ply --strip");
+  refuses("--gross is -1", "-i cloud.ply -m truth.ply --gross -1");
 }
 
 TEST_F(Programs, WarnOfHousingEntriesWithoutAnImage) {

@@ -97,14 +97,17 @@ TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
   }
 }
 
-TEST(SeenPoints, KeepsThoseThatTwoViewsShare) {
-  const Mesh floor = flat_square(6, 1);
-  const auto samples = sample_surface(floor, 40000, 1);
-  // Fields of 2 x 1 m, shifted by 1 m: they share 1 m^2 of the 36 m^2.
-  const std::vector<View> views{camera_at({0, 0, 0}), camera_at({1, 0, 0})};
-  const auto seen = seen_points(samples, views, Surface(floor), 2);
-  // Standard error below sqrt(1111) samples, 3 %.
-  EXPECT_NEAR(static_cast<double>(seen.size()), 40000.0 / 36, 0.1 * 40000 / 36);
+TEST(PixelWidths, AreDistanceOverFocalLengthInTheMeanOfTheViewsThatSee) {
+  const Surface floor(flat_square(6, 2));
+  // From 2 m and 1 m above the floor, focal length 100 px.
+  const std::vector<View> views{camera_at({0, 0, 0}), camera_at({0, 0, 1})};
+  const std::vector<Eigen::Vector3f> points{{0, 0, 2}, {1.5f, 0, 2}, {2.9f, 0, 2}};
+  const auto widths = pixel_widths(points, views, floor);
+  EXPECT_NEAR(widths[0], 0.015, 1e-6) << "of both";
+  // Aside, 1 + x^2/z^2 = 1.25^2: a pixel of u is narrower across the ray than z/f by 1.25, one of v
+  // is not.
+  EXPECT_NEAR(widths[1], 0.02 / std::sqrt(1.25), 1e-5) << "of the farther one alone";
+  EXPECT_EQ(widths[2], 0.0f) << "of none";
 }
 
 io::ColmapModel small_model(const std::string& lens, std::vector<double> parameters) {

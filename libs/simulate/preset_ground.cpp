@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The presets "sand" and "transect": plain ground from above.
+#include <cmath>
+
+#include "simulate/preset_parts.h"
+
+namespace axial::simulate {
+namespace {
+
+constexpr double kHeight = 2.90;  // reef's
+
+// How much of the ground, along the image's height, a view from `height` sees through the port.
+double length_seen(const Preset& preset, double height) {
+  const double in_air = std::atan(0.5 * preset.lens.height / preset.lens.focal);
+  const double in_water = std::asin(std::sin(in_air) * preset.port.n_air / preset.port.n_water);
+  return 2 * height * std::tan(in_water);
+}
+
+}  // namespace
+
+void make_sand(Preset& preset, std::uint32_t seed, int views) {
+  preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
+  preset.texture = {seed + 5000u, 1.0, 0.047};
+  Draw draw(seed + 5000u);
+  Terrain& terrain = preset.terrain;
+  terrain.floor = {draw.seed(), 2.2, 0.03, 1, 2, 0};
+  terrain.floor.ripple_height = 0.004;
+  terrain.floor.ripple_length = 0.2;
+  terrain.cell = 0.012;
+  terrain.half_width = 4.4;
+  terrain.half_height = 3.6;
+  terrain.skirt = 12;
+  add_two_rows(preset, views, kHeight, draw);
+}
+
+void make_transect(Preset& preset, std::uint32_t seed, int views) {
+  constexpr double kOverlap = 0.55, kMargin = 0.5;
+  preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
+  preset.texture = {seed + 6000u, 1.0};
+  Draw draw(seed + 6000u);
+  const double step = (1 - kOverlap) * length_seen(preset, kHeight);
+  // In air the fields of view are wider.
+  const double pixel_in_air = kHeight / preset.lens.focal;
+  Terrain& terrain = preset.terrain;
+  terrain.floor = {draw.seed(), 2.2, 0.22, 1, 2, 0};
+  terrain.cell = 0.012;
+  terrain.half_width = 0.5 * preset.lens.width * pixel_in_air + kMargin;
+  terrain.half_height = 0.5 * (preset.lens.height * pixel_in_air + step * (views - 1)) + kMargin;
+  terrain.skirt = 8;
+  scatter(terrain, 4 * views, {terrain.half_width, terrain.half_height}, 0, {0.05, 0.22}, draw);
+  for (int i = 0; i < views; ++i) {
+    const Eigen::Vector3d centre(draw.between(-0.03, 0.03),
+                                 step * (i - 0.5 * (views - 1)) + draw.between(-0.03, 0.03),
+                                 kHeight + draw.between(-0.04, 0.04));
+    View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+    shake(view, 1, draw);
+    preset.views.push_back(view);
+  }
+}
+
+}  // namespace axial::simulate
