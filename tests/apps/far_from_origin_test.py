@@ -281,7 +281,7 @@ class FarScene(ProgramTest):
     def test_evaluation_says_the_same(self):
         """Of local clouds with an offset and of world clouds, with the truth in doubles."""
         table, numbers = self.evaluated("near/scene_dense.ply", "near")
-        self.assertEqual(len(table), 3, table)
+        self.assertEqual(len(table), 4, table)
         for name in ("far", "odd"):
             result = self.evaluated(f"{name}/scene_dense.ply", name)[1]
             self.assertEqual(result["views"], 5)

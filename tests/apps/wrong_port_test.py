@@ -171,7 +171,7 @@ class FlatPort(PortTest):
 
 class Noise(PortTest):
     """Few pixels a sparse point: maps keep to these where photographs show nothing, and agree."""
-    SCENE = ("--preset", "closeup")
+    SCENE = ("closeup",)
     SMALL = ("--resolution-level", "1", "--min-resolution", "100")
 
     def test_photographs_of_noise(self):
