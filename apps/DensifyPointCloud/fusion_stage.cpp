@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fusion_stage.h"
 
+#include <nlohmann/json.hpp>
+
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -8,6 +10,7 @@
 #include "cloud/crop.h"
 #include "cloud/fuse.h"
 #include "cloud/normals.h"
+#include "io/json.h"
 #include "io/ply.h"
 
 namespace densify {
@@ -40,6 +43,7 @@ class CloudRun {
     const bool whole = options_.estimate_colors == 1 || options_.estimate_normals == 1;
     const std::size_t points = whole ? run_in_memory() : run_in_a_stream();
     if (removed_ > 0) axial::log_info("Region of interest: {} points outside removed", removed_);
+    report(points);
     return points;
   }
 
@@ -84,9 +88,25 @@ class CloudRun {
         [&](axial::PointCloud portion) {
           if (options_.crop_to_roi && project_.scene.region)
             removed_ += axial::cloud::crop(portion, *project_.scene.region);
+          count_points_of_two(portion);
           sink(std::move(portion));
         },
         axial::console_progress("Fused depth maps"));
+  }
+
+  void count_points_of_two(const axial::PointCloud& portion) {
+    for (std::size_t i = 0; i < portion.size(); ++i)
+      if (portion.view_begin[i + 1] - portion.view_begin[i] == 2) ++of_two_;
+  }
+
+  void report(std::size_t points) const {
+    if (of_two_ > 0)
+      axial::log_info("{} points ({:.1f} %) rest on two depth maps", of_two_,
+                      100.0 * static_cast<double>(of_two_) / static_cast<double>(points));
+    if (options_.report.empty()) return;
+    nlohmann::json report = axial::io::read_json(options_.report);
+    report["fusion"] = {{"points", points}, {"of_two_maps", of_two_}};
+    axial::io::write_json(options_.report, report);
   }
 
   const Project& project_;
@@ -96,6 +116,7 @@ class CloudRun {
   ImageStore& images_;
   const std::filesystem::path& ply_;
   std::size_t removed_ = 0;
+  std::size_t of_two_ = 0;
 };
 
 }  // namespace

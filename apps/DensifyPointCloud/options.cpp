@@ -79,7 +79,7 @@ void declare_matching(axial::OptionList& list, Options& options) {
   list.add_with_default("sub-resolution-levels", &options.matching.sub_resolution_levels,
                         "coarser levels matched first")
       .add_with_default("number-views", &options.number_views,
-                        "source views per image (0: all, 1: the best one)")
+                        "source views per image (0: all that suit, at most 12; 1: the best one)")
       .add_with_default("iters", &options.matching.iterations, "sweeps per resolution level")
       .add_with_default("geometric-iters", &options.geometric_iterations,
                         "sweeps with geometric consistency")
@@ -93,7 +93,9 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "0 depth maps and fusion, 1 depth maps only, -1 fuse the depth maps in the "
                         "working folder, whoever wrote them, and write none")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
-                        "views that must agree on a point (below 2: merge without agreement)")
+                        "views that must agree on a point (below 2: merge without agreement); if "
+                        "it is not given, 3, "
+                        "and 2 where only two can see the point")
       .add_with_default("estimate-colors", &options.estimate_colors,
                         "0 no, 1 from the nearest view, 2 from all views of a point")
       .add_with_default("estimate-normals", &options.estimate_normals,
@@ -276,6 +278,7 @@ Options parse_command_line(int argc, const char* const* argv) {
          options.pinhole_export.string());
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
+  options.fusion.two_where_two_see = !axial::given(options.parsed, "number-views-fuse");
   warn_of_options_without_effect(options);
   return options;
 }

@@ -46,7 +46,7 @@ struct Options {
   axial::depth::SpeckleOptions speckles;
   axial::depth::GapOptions gaps;
   std::string map_settings;  // of --dense-config-file, as text: depth maps depend on them
-  unsigned number_views = 5;
+  unsigned number_views = 0;
   int geometric_iterations = 2;
   unsigned postprocess = kSpeckles | kGaps;
 

@@ -26,7 +26,8 @@ class Fusion {
       : providers_(providers),
         options_(options),
         merge_(options.min_views < 2),
-        min_views_(std::min(options.min_views, views.size())) {
+        min_views_(std::min(options.min_views, views.size())),
+        fewest_(options.two_where_two_see ? std::min<std::size_t>(2, min_views_) : min_views_) {
     make_slots(scene, views);
     make_order(views);
   }
@@ -56,6 +57,7 @@ class Fusion {
   const FuseOptions& options_;
   bool merge_;
   std::size_t min_views_;
+  std::size_t fewest_;  // views of any point
   std::vector<Slot> slots_;
   std::vector<std::size_t> order_;
 };
@@ -87,7 +89,7 @@ void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
 
 void Fusion::make_order(std::span<const FusionView> views) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i].neighbours.size() + 1 >= min_views_) order_.push_back(i);
+    if (slots_[i].neighbours.size() + 1 >= fewest_) order_.push_back(i);
   }
   std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
     if (views[a].rank != views[b].rank) return views[a].rank > views[b].rank;

@@ -45,22 +45,26 @@ struct PixelPoints {
 // Fills the points; every pixel must have a depth.
 void back_project(const FusionMap& view, PixelPoints& where);
 
-// What a neighbour says to a pixel: nothing, "my pixel sees the same", or "my pixel sees through
-// you".
+// What a neighbour says to a pixel: "I cannot see you" (the point is outside the image, hidden, or
+// its surface turned away), "I should see you, but my map does not show you", "my pixel sees the
+// same", or "my pixel sees through you".
 class Answer {
  public:
-  Answer() = default;
+  Answer() = default;  // cannot see
+  static Answer lacks() { return Answer(kLacks); }
   static Answer joins(std::uint32_t pixel) { return Answer(pixel << 1); }
   static Answer contradicts(std::uint32_t pixel) { return Answer(pixel << 1 | 1u); }
 
-  bool none() const { return code_ == kNone; }
+  bool cannot_see() const { return code_ == kCannotSee; }
+  bool names_pixel() const { return code_ < kLacks; }
+  // Of an answer that names a pixel.
   bool agrees() const { return (code_ & 1u) == 0; }
   std::uint32_t pixel() const { return code_ >> 1; }
 
  private:
   explicit Answer(std::uint32_t code) : code_(code) {}
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-  std::uint32_t code_ = kNone;
+  static constexpr std::uint32_t kLacks = 0xFFFFFFFEu, kCannotSee = 0xFFFFFFFFu;
+  std::uint32_t code_ = kCannotSee;
 };
 
 // The answers of `neighbour` to the pixels `asking` of `reference`, in that order; `answers` has

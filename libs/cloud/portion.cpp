@@ -84,6 +84,22 @@ void Portion::ask(const FuseOptions& options) {
     answers_[n].resize(where_[0].pixels.size());
     ask_neighbour(*views_[0].map, *views_[n + 1].map, where_[0], options, answers_[n]);
   }
+  proved_by_two_.clear();
+  if (options.two_where_two_see && options.min_views > 2) find_proved_by_two(options);
+}
+
+void Portion::find_proved_by_two(const FuseOptions& options) {
+  proved_by_two_.resize(where_[0].pixels.size());
+  const auto max_difference = static_cast<float>(2 * options.depth_threshold);
+  parallel_for(
+      proved_by_two_.size(),
+      [&](std::size_t i) {
+        const std::optional<std::size_t> n = only_witness(answers_, i);
+        proved_by_two_[i] =
+            n && in_surface(*views_[0].map, where_[0].pixels[i], max_difference) &&
+            in_surface(*views_[*n + 1].map, answers_[*n][i].pixel(), max_difference);
+      },
+      kGrain);
 }
 
 // The one serial pass: who comes first gets the pixel.
@@ -95,13 +111,14 @@ void Portion::accept(std::size_t min_views) {
     disproved.clear();
     for (std::size_t v = 1; v < views_.size(); ++v) {
       const Answer answer = answers_[v - 1][i];
-      if (answer.none() || (*views_[v].taken)[answer.pixel()]) continue;
+      if (!answer.names_pixel() || (*views_[v].taken)[answer.pixel()]) continue;
       if (answer.agrees())
         joining.push_back(v);
       else
         disproved.emplace_back(v, answer.pixel());
     }
-    if (joining.size() + 1 < min_views) continue;
+    const bool by_two = joining.size() == 1 && !proved_by_two_.empty() && proved_by_two_[i];
+    if (joining.size() + 1 < min_views && !by_two) continue;
     (*views_[0].taken)[where_[0].pixels[i]] = true;
     supports_.push_back({0, static_cast<std::uint32_t>(i)});
     for (const std::size_t v : joining) {

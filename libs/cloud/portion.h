@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloud/fusion_map.h"
+#include "cloud/two_views.h"
 
 namespace axial::cloud {
 
@@ -26,10 +27,11 @@ class Portion {
   // where to go on.
   std::size_t collect(std::size_t pixel);
 
-  // Asks the neighbours what they say to these pixels.
+  // Asks the neighbours what they say to these pixels, and finds those that two views prove.
   void ask(const FuseOptions& options);
 
-  // Decides which pixels become points and takes their supports.
+  // Decides which pixels become points and takes their supports: with `min_views`, or with two
+  // where these prove it.
   void accept(std::size_t min_views);
 
   std::size_t size() const { return begin_.size() - 1; }  // accepted points
@@ -44,11 +46,13 @@ class Portion {
     std::uint32_t index;
   };
 
+  void find_proved_by_two(const FuseOptions& options);
   void average(std::size_t point, PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
   std::vector<PixelPoints> where_;  // the reference's pixels that ask; the others' supports
   std::vector<std::vector<Answer>> answers_;  // of each neighbour to each asking pixel
+  std::vector<std::uint8_t> proved_by_two_;   // of each asking pixel, or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])
   std::vector<std::size_t> begin_;
 };

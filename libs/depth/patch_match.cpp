@@ -258,7 +258,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     sweep.prior = state.prior.empty() ? nullptr : &state.prior;
     sweep.mask = state.mask.empty() ? nullptr : &state.mask;
     sweep.first = true;
-    sweep.all_views = halvings > 0;
+    sweep.many_views = halvings > 0;
     sweep.trial_pairs = options.first_pairs;
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);

@@ -34,6 +34,9 @@ namespace axial::depth {
 inline constexpr int kStripHeight = 32;
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
 inline constexpr std::size_t kOwnViews = 4;       // for a pixel's own plane
+// For all planes of a pixel in coarse levels, and for random ones. More find no more: the views
+// take turns from pixel to pixel, and a plane that is good in one view spreads with that view.
+inline constexpr std::size_t kManyViews = 5;
 
 // Mean of the two smallest costs; the second only counts below kOutsideCost.
 inline float aggregate(float smallest, float second) {
@@ -52,7 +55,7 @@ struct SweepInput {
   const cv::Mat1b* mask = nullptr;  // non-zero: work on this pixel
   int trial_pairs = 0;              // trials around the best hypothesis, at most 4 pairs
   bool first = false;               // fill pixels without a hypothesis at random
-  bool all_views = false;           // score all planes in all views
+  bool many_views = false;          // score all planes in kManyViews views
 };
 
 template <class Matcher>
@@ -250,14 +253,17 @@ class Sweep {
                   std::span<const PlanePixel* const> before) const {
     Views own;
     const std::size_t views = matcher_.views();
-    const std::size_t wanted = input_.all_views ? views : std::min(views, kOwnViews);
+    const std::size_t wanted = std::min(views, input_.many_views ? kManyViews : kOwnViews);
     if (wanted < views) {
       for (const std::uint8_t view : current.views) own.add(view);
       for (const PlanePixel* from : before) own.add(from->views[0]);
     }
-    std::size_t turn = static_cast<std::size_t>(x + y) + input_.sweep;
-    for (; own.count < wanted; ++turn) own.add(all_views_[turn % views]);
+    add_in_turn(own, static_cast<std::size_t>(x + y) + input_.sweep, wanted);
     return own;
+  }
+
+  void add_in_turn(Views& own, std::size_t turn, std::size_t wanted) const {
+    for (; own.count < wanted; ++turn) own.add(all_views_[turn % matcher_.views()]);
   }
 
   // Planes, and the views that each is scored in.
@@ -297,7 +303,7 @@ class Sweep {
       if (std::abs(plane.depth - other.depth) < 1e-5f * plane.depth &&
           plane.normal.dot(other.normal) > 0.99999f)
         return;
-    if (input_.all_views)
+    if (input_.many_views)
       candidates.add(plane, own.all());
     else if (from.views[0] == kNoView)
       candidates.add(plane, own.all().first(std::min(own.count, from.views.size())));
@@ -315,7 +321,7 @@ class Sweep {
   }
 
   bool trials_fit(const Candidates& candidates) const {
-    return !input_.all_views && input_.trial_pairs > 0 &&
+    return !input_.many_views && input_.trial_pairs > 0 &&
            candidates.count + 2 * static_cast<std::size_t>(input_.trial_pairs) <= kMaxCandidates;
   }
 
@@ -399,12 +405,20 @@ class Sweep {
     }
   }
 
-  // A hopeless pixel tries random planes in all views, without the neighbours' say. False if it
+  // A hopeless pixel tries random planes in many views, without the neighbours' say. False if it
   // stays hopeless.
   bool restart(const Visit& at, KeyedRandom& random, Best& best) const {
     Candidates candidates;
-    for (int trial = 0; trial < options_.restart_trials; ++trial)
-      candidates.add(random_plane(at.pixel, random), {all_views_.data(), matcher_.views()});
+    const std::size_t views = matcher_.views();
+    for (int trial = 0; trial < options_.restart_trials; ++trial) {
+      Views tried;
+      const PlaneHypothesis plane = random_plane(at.pixel, random);
+      const std::size_t turn =
+          views > kManyViews ? static_cast<std::size_t>(random.unit() * static_cast<float>(views))
+                             : 0;
+      add_in_turn(tried, turn, std::min(views, kManyViews));
+      candidates.add(plane, tried.all());
+    }
     keep_best({at.pixel, Neighbourhood(), at.scores}, candidates, best);
     return best.cost < options_.bad_cost;
   }
