@@ -19,7 +19,6 @@ namespace densify {
 namespace {
 
 constexpr std::size_t kImages = 16;
-constexpr std::size_t kNeighbours = 3;
 
 using axial::depth::Agreement;
 using axial::depth::AgreementLimits;
@@ -40,7 +39,7 @@ MapAgreement compare_image(const Project& project, std::size_t image,
   std::vector<Maps::Pointer> held{maps.get(image)};
   std::vector<const axial::DepthMap*> neighbours;
   for (const axial::ViewScore& source : project.sources[image]) {
-    if (!has_map[source.image] || neighbours.size() == kNeighbours) continue;
+    if (!has_map[source.image] || held.size() == kMapsCompared) continue;
     held.push_back(maps.get(source.image));
     neighbours.push_back(held.back().get());
   }

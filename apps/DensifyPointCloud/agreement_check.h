@@ -11,6 +11,9 @@
 
 namespace densify {
 
+// Maps that one image's comparison takes: its own and those of source views.
+inline constexpr std::size_t kMapsCompared = 4;
+
 // Compares the depth maps of up to 16 images, evenly spread over the scene, with its sparse points
 // and with the maps of up to three of their source views; a line with the numbers, which is a
 // warning if they disagree (AgreementLimits), and --report-file. `read_map`: the map of a reference

@@ -33,7 +33,7 @@ struct Stage {
   std::string name;
   std::string title;
   std::function<DepthMap(std::size_t image)> make;
-  bool matches = true;
+  bool matches = true;  // asks its source views for depths alone; else needs whole maps
 };
 
 // Maps of the stage before, read from their files: never handed over in memory, because a resumed
@@ -103,11 +103,15 @@ class DepthMapRun {
   }
 
   void run_stage(std::size_t stage) {
+    const bool depths = stages_[stage].matches;
+    stage_ = stage;
     previous_ = std::make_unique<MapCache>(
-        [this, stage](std::size_t image) {
-          return axial::io::read_dmap(path(stage - 1, image)).map;
+        [this, stage, depths](std::size_t image) {
+          DepthMap map = read_map(stage - 1, image);
+          if (depths) map.normal = cv::Mat3f(), map.confidence = cv::Mat1f();
+          return map;
         },
-        plan_.cached_maps);
+        depths ? plan_.cached_depths : plan_.cached_maps);
     const axial::ProgressSink progress = axial::console_progress(stages_[stage].title);
     std::mutex mutex;
     std::size_t done = 0;
@@ -127,11 +131,14 @@ class DepthMapRun {
     axial::return_freed_memory();
   }
 
+  DepthMap read_map(std::size_t stage, std::size_t image) const {
+    return axial::io::read_dmap(path(stage, image)).map;
+  }
+
   // Before the hours that later stages may take.
   void compare(std::size_t stage) const {
-    check_agreement(project_, options_, plan_, stage == 0, [this, stage](std::size_t image) {
-      return axial::io::read_dmap(path(stage, image)).map;
-    });
+    check_agreement(project_, options_, plan_, stage == 0,
+                    [this, stage](std::size_t image) { return read_map(stage, image); });
   }
 
   void draw(std::size_t stage) const {
@@ -198,8 +205,8 @@ class DepthMapRun {
       held.push_back(has_map ? previous_->get(source.image) : nullptr);
       maps.push_back(held.back().get());
     }
-    const DepthMap map = axial::depth::refine_depth_map(work->input, *previous_->get(image), maps,
-                                                        pass, last, options_.matching);
+    const DepthMap map = axial::depth::refine_depth_map(work->input, read_map(stage_ - 1, image),
+                                                        maps, pass, last, options_.matching);
     return named(last ? clean(map, image) : map, image);
   }
 
@@ -243,6 +250,7 @@ class DepthMapRun {
   const ExistingMaps& existing_;
   ImageStore& images_;
   std::vector<Stage> stages_;
+  std::size_t stage_ = 0;  // that is run
   std::unique_ptr<MapCache> previous_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "agreement_check.h"
 #include "base/error.h"
 #include "base/huge_pages.h"
 #include "base/log.h"
@@ -70,6 +71,7 @@ struct Sizes {
   std::uint64_t decode;       // while an image is read: its file, that file's pixels, the result
   std::uint64_t image;        // WorkImage
   std::uint64_t map;          // DepthMap: depth, normal, confidence
+  std::uint64_t depths;       // of it, the depths alone
   std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
   std::uint64_t match;     // matching, the results included
   std::uint64_t adjust;
@@ -120,6 +122,7 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.decode = decode + 4 * pixels;
   sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
   sizes.map = 20 * pixels;
+  sizes.depths = 4 * pixels;
   sizes.read_map = 44 * pixels;
   // Planes of this level and the one before, priors, the result and its filtered copies; a source's
   // pixels twice as words of 2 x 2 neighbours, its depths.
@@ -135,7 +138,8 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
 
 std::uint64_t matching(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
   const std::uint64_t images = counts.matched * sizes.image;
-  const std::uint64_t maps = std::max(counts.matched, counts.adjusted) * sizes.map;
+  const std::uint64_t maps =
+      std::max(sizes.map + (counts.matched - 1) * sizes.depths, counts.adjusted * sizes.map);
   const std::uint64_t work = std::max({sizes.match, sizes.adjust, sizes.decode});
   return in_flight * (images + maps + work + sizes.read_map);
 }
@@ -170,7 +174,6 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
   plan.in_flight = most(std::min(threads, counts.references), room,
                         [&](std::size_t k) { return least_for(sizes, counts, k); });
   const std::size_t images = counts.matched * plan.in_flight;
-  const std::size_t maps = std::max(counts.matched, counts.adjusted) * plan.in_flight;
   const std::uint64_t spare = room - least_for(sizes, counts, plan.in_flight);
   plan.cached_images = enlarged(images, sizes.image, spare / 2);
   const std::uint64_t kept = plan.cached_images * sizes.image;
@@ -178,8 +181,12 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
       most(threads, room - kept, [&](std::size_t k) { return k * (sizes.decode + sizes.image); });
 
   const std::uint64_t more_images = (plan.cached_images - images) * sizes.image;
+  // Stages of either kind come one after the other. The maps that are compared (agreement_check.h)
+  // take less than matching does.
+  const std::uint64_t for_maps = room - matching(sizes, counts, plan.in_flight) - more_images;
+  plan.cached_depths = enlarged((counts.matched - 1) * plan.in_flight, sizes.depths, for_maps);
   plan.cached_maps =
-      enlarged(maps, sizes.map, room - matching(sizes, counts, plan.in_flight) - more_images);
+      enlarged(std::max(counts.adjusted, kMapsCompared) * plan.in_flight, sizes.map, for_maps);
 
   const auto fuse = [&](std::size_t loads) { return fusing(sizes, counts.fused, loads); };
   plan.fusion_loads = most(std::min(threads, counts.fused), room - kept, fuse);
@@ -233,9 +240,9 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
                 cap / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
   axial::log_details(
-      "Memory {} MB, at least {}: {} images at a time, {} kept, {} maps, {} in fusion",
-      cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images, plan.cached_maps,
-      plan.fused_maps);
+      "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",
+      cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
+      plan.cached_depths, plan.cached_maps, plan.fused_maps);
   return plan;
 }
 

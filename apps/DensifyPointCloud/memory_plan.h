@@ -22,7 +22,8 @@ struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
   std::size_t decodes = 1;        // images that are decoded at the same time at the start
   std::size_t cached_images = 0;  // in the ImageStore
-  std::size_t cached_maps = 0;    // of the stage before
+  std::size_t cached_depths = 0;  // of the stage before, for geometric consistency
+  std::size_t cached_maps = 0;    // the same, whole maps
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
   std::size_t exports = 1;        // images resampled at the same time by --pinhole-export
