@@ -27,7 +27,7 @@ OPTIONS = {
     "iters": (2, (1, 3, 4)),
     "sub-resolution-levels": (1, (0, 2, 3)),
     "geometric-iters": (2, (0, 1, 3)),
-    "number-views": (5, (2, 3, 4, 8)),
+    "number-views": (0, (2, 3, 5, 8)),
     "resolution-level": (0, (1,)),
 }
 

@@ -12,7 +12,7 @@
 
 namespace axial::benchmarks {
 
-inline constexpr int kSourceViews = 5;  // the default of --number-views
+inline constexpr int kSourceViews = 5;
 
 struct Survey {
   std::vector<depth::MatchImage> views;  // the reference first
