@@ -9,22 +9,25 @@ namespace axial::cloud {
 namespace {
 
 // Fitted to the distances from the truth of clouds of SimulateUnderwater's closeup and reef (seeds
-// 21 and 22, in water and in air, fused with three views and with two), by the likelihood of
-// normally distributed errors.
-constexpr double kNoise = 5.4;        // of a pixel that matches at cost 1 [px]
-constexpr double kCostPower = 1.6;    // how it falls with the cost
-constexpr double kViewsPower = 0.75;  // 0: views count as independent; 0.5: as one another's copies
+// 21 and 22, in water and in air, at two resolutions), by the likelihood of normal errors.
+constexpr double kNoise = 3.67;       // of a match of cost 1 that looks along the normal [px]
+constexpr double kCostPower = 1.5;    // how it falls with the cost
+constexpr double kSlantPower = -0.8;  // how it grows as the cosine of ray and normal falls
+constexpr double kLeastCosine = 0.1;
 
 // The same for the odds of staying within 3 errors.
-constexpr double kOdds = 98;
-constexpr double kPixelPower = 0.8;      // of the error in pixels at the point
-constexpr double kScatterPower = -0.87;  // of the scatter in errors
+constexpr double kOdds = 91;
+constexpr double kPixelPower = 0.9;      // of the error in pixels at the point
+constexpr double kScatterPower = -1.07;  // of the scatter in errors
 constexpr double kLeastScatter = 0.05;   // [errors]
+constexpr double kLeastOdds = 4;         // no points have less that fusion accepts
 
-// Means over the supports.
+constexpr double kNoCost = 0.999;  // maps without confidence have 1, but for rounding
+
 struct Summary {
-  double cost = 0;
-  double pixel = 0;    // width of a pixel at the point [m]
+  double cost = 1;     // the least of the supports'
+  double pixel = 0;    // mean width of a pixel at the point [m]
+  double cosine = 0;   // mean of rays and normal
   double scatter = 0;  // standard deviation of the supports' points along the normal [m]
 };
 
@@ -33,8 +36,9 @@ Summary summarise(std::span<const PointSupport> supports, const Eigen::Vector3d&
   Summary sum;
   double offset = 0, square = 0;
   for (const PointSupport& support : supports) {
-    sum.cost += support.cost / views;
+    sum.cost = std::min(sum.cost, support.cost);
     sum.pixel += std::sqrt(2 / support.jacobian.squaredNorm()) / views;
+    sum.cosine += std::abs(normal.dot(support.ray)) / views;
     const double along = normal.dot(support.point - supports.front().point);
     offset += along / views;
     square += along * along / views;
@@ -60,6 +64,7 @@ PointSupport SupportCamera::support(std::uint32_t pixel, double depth, double co
   motion.col(2) = ray.direction;
   PointSupport support;
   support.point = pose_.to_world(ray.at(depth));
+  support.ray = pose_.rotation.transpose() * ray.direction;
   support.jacobian = motion.inverse().topRows<2>() * pose_.rotation;
   support.depth = depth;
   support.cost = cost;
@@ -80,12 +85,14 @@ double triangulated_error(std::span<const PointSupport> supports, const Eigen::V
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal) {
   if (supports.size() < 2) return {};
   const Summary summary = summarise(supports, normal);
-  if (!(summary.cost < 1)) return {};
+  if (!(summary.cost < kNoCost)) return {};
   const double noise = kNoise * std::pow(summary.cost, kCostPower) *
-                       std::pow(static_cast<double>(supports.size()), kViewsPower);
-  const double error = noise * triangulated_error(supports, normal);
-  const double odds = kOdds * std::pow(error / summary.pixel, kPixelPower) *
-                      std::pow(summary.scatter / error + kLeastScatter, kScatterPower);
+                       std::pow(std::max(summary.cosine, kLeastCosine), kSlantPower);
+  const auto views = static_cast<double>(supports.size());
+  const double error = noise * views * triangulated_error(supports, normal);
+  const double odds =
+      std::max(kLeastOdds, kOdds * std::pow(error / summary.pixel, kPixelPower) *
+                               std::pow(summary.scatter / error + kLeastScatter, kScatterPower));
   return {static_cast<float>(error), static_cast<float>(odds / (1 + odds))};
 }
 

@@ -14,6 +14,7 @@ namespace axial::cloud {
 // What one depth map says of a point, in the world's axes.
 struct PointSupport {
   Eigen::Vector3d point;                 // of the map's pixel [m]
+  Eigen::Vector3d ray;                   // of that pixel, unit
   Eigen::Matrix<double, 2, 3> jacobian;  // d(pixel)/d(point) there [px/m], through the port
   double depth;                          // along the pixel's ray [m]
   double cost;                           // of matching: 1 - the map's confidence; 1: not known
@@ -43,11 +44,13 @@ struct PointError {
   float confidence = 0;  // probability that the distance is at most 3 errors
 };
 
-// Of the mean of the supports' points, on a surface with this unit normal: triangulated_error()
-// times the error that a match of this mean cost has. Maps that agree were matched on the same
-// photographs: more of them help as far as they widen the angle between the rays. Confidence grows
-// as the points lie nearer to each other than the error. Unknown with less than two supports, and
-// where no cost is known. The constants were fitted to maps of this project's matching.
+// Of the mean of the supports' points, on a surface with this unit normal: triangulated_error(),
+// times the noise of the best match among them, which grows where the surface is seen at a slant,
+// times the number of supports. For maps that agree were matched on the same photographs, and what
+// smooths a surface is the same in all: another one helps as far as it widens the angle between the
+// rays or matches better, not by its number. Confidence grows as the supports' points lie nearer to
+// each other than the error. Unknown with less than two supports, and where no cost is known. The
+// constants were fitted to maps of this project's matching.
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
 }  // namespace axial::cloud

@@ -256,6 +256,17 @@ TEST_P(FuseWithCamera, EstimatesErrors) {
   EXPECT_TRUE(same_bytes(one, plain));
 }
 
+TEST_P(FuseWithCamera, KnowsNoErrorsOfMapsWithoutConfidence) {
+  Fixture fixture = make_fixture({}, model());
+  for (DepthMap& map : fixture.maps) map.confidence.release();
+  FuseOptions options;
+  options.errors = true;
+  const PointCloud cloud = run(fixture, options);
+  ASSERT_GT(cloud.errors.size(), 1000u);
+  EXPECT_THAT(cloud.errors, testing::Each(0.0f));
+  EXPECT_THAT(cloud.confidences, testing::Each(0.0f));
+}
+
 TEST_P(FuseWithCamera, EstimatesMissingNormals) {
   const AnalyticScene world;
   Fixture fixture = make_fixture(world, model());
