@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud/point_error.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,39 +11,34 @@ namespace {
 
 // Fitted to the distances from the truth of clouds of SimulateUnderwater's closeup and reef (seeds
 // 21 and 22, in water and in air, at two resolutions), by the likelihood of normal errors.
-constexpr double kNoise = 3.67;       // of a match of cost 1 that looks along the normal [px]
-constexpr double kCostPower = 1.5;    // how it falls with the cost
-constexpr double kSlantPower = -0.8;  // how it grows as the cosine of ray and normal falls
+// Powers are those that square roots give, which cost less than std::pow and fit as well.
+constexpr double kNoise = 3.7;  // of a match of cost 1 that looks along the normal [px]
+constexpr double kOdds = 100;   // of staying within 3 errors, times pixel / error, scatter / error
+constexpr double kLeastScatter = 0.05;  // [errors]
+constexpr double kLeastOdds = 4;        // no points have less that fusion accepts
 constexpr double kLeastCosine = 0.1;
-
-// The same for the odds of staying within 3 errors.
-constexpr double kOdds = 91;
-constexpr double kPixelPower = 0.9;      // of the error in pixels at the point
-constexpr double kScatterPower = -1.07;  // of the scatter in errors
-constexpr double kLeastScatter = 0.05;   // [errors]
-constexpr double kLeastOdds = 4;         // no points have less that fusion accepts
-
 constexpr double kNoCost = 0.999;  // maps without confidence have 1, but for rounding
 
 struct Summary {
   double cost = 1;     // the least of the supports'
-  double pixel = 0;    // mean width of a pixel at the point [m]
+  double pixel = 0;    // width of a pixel at the point [m]
   double cosine = 0;   // mean of rays and normal
   double scatter = 0;  // standard deviation of the supports' points along the normal [m]
 };
 
 Summary summarise(std::span<const PointSupport> supports, const Eigen::Vector3d& normal) {
-  const auto views = static_cast<double>(supports.size());
+  const double share = 1 / static_cast<double>(supports.size());
   Summary sum;
-  double offset = 0, square = 0;
+  double offset = 0, square = 0, squared_scale = 0;
   for (const PointSupport& support : supports) {
     sum.cost = std::min(sum.cost, support.cost);
-    sum.pixel += std::sqrt(2 / support.jacobian.squaredNorm()) / views;
-    sum.cosine += std::abs(normal.dot(support.ray)) / views;
+    squared_scale += 0.5 * share * support.jacobian.squaredNorm();
+    sum.cosine += share * std::abs(normal.dot(support.ray));
     const double along = normal.dot(support.point - supports.front().point);
-    offset += along / views;
-    square += along * along / views;
+    offset += share * along;
+    square += share * along * along;
   }
+  sum.pixel = 1 / std::sqrt(squared_scale);
   sum.scatter = std::sqrt(std::max(square - offset * offset, 0.0));
   return sum;
 }
@@ -56,16 +52,21 @@ SupportCamera::SupportCamera(const CameraModel& model, const Pose& pose)
 
 // Points move with pixel and depth by M = [dX/du, dX/dv, dX/ddepth]; the first two rows of its
 // inverse say how the pixel moves with the point.
-PointSupport SupportCamera::support(std::uint32_t pixel, double depth, double cost) const {
+PointSupport SupportCamera::support(std::uint32_t pixel, double depth, double cost,
+                                    const Eigen::Vector3d& point) const {
   refractive::AxialRayJacobian<double> by_pixel;
   const auto ray = camera_.ray({pixel % width_, pixel / width_}, by_pixel);
-  Eigen::Matrix3d motion;
-  motion.leftCols<2>() = by_pixel.origin + depth * by_pixel.direction;
-  motion.col(2) = ray.direction;
+  const Eigen::Vector3d by_u = by_pixel.origin.col(0) + depth * by_pixel.direction.col(0);
+  const Eigen::Vector3d by_v = by_pixel.origin.col(1) + depth * by_pixel.direction.col(1);
+  const Eigen::Vector3d across = by_v.cross(ray.direction);
+  const double scale = 1 / by_u.dot(across);
   PointSupport support;
-  support.point = pose_.to_world(ray.at(depth));
+  support.point = point;
   support.ray = pose_.rotation.transpose() * ray.direction;
-  support.jacobian = motion.inverse().topRows<2>() * pose_.rotation;
+  Eigen::Matrix<double, 2, 3> in_camera;
+  in_camera.row(0) = scale * across;
+  in_camera.row(1) = scale * ray.direction.cross(by_u);
+  support.jacobian = in_camera * pose_.rotation;
   support.depth = depth;
   support.cost = cost;
   return support;
@@ -76,8 +77,9 @@ double triangulated_error(std::span<const PointSupport> supports, const Eigen::V
   double depth = 0;
   for (const PointSupport& support : supports) {
     information += support.jacobian.transpose() * support.jacobian;
-    depth += support.depth / static_cast<double>(supports.size());
+    depth += support.depth;
   }
+  depth /= static_cast<double>(supports.size());
   information.diagonal().array() += 1 / (depth * depth);
   return std::sqrt(normal.dot(information.inverse() * normal));
 }
@@ -86,13 +88,13 @@ PointError expected_error(std::span<const PointSupport> supports, const Eigen::V
   if (supports.size() < 2) return {};
   const Summary summary = summarise(supports, normal);
   if (!(summary.cost < kNoCost)) return {};
-  const double noise = kNoise * std::pow(summary.cost, kCostPower) *
-                       std::pow(std::max(summary.cosine, kLeastCosine), kSlantPower);
+  const double cosine = std::max(summary.cosine, kLeastCosine);
+  const double noise =
+      kNoise * summary.cost * std::sqrt(summary.cost) / std::sqrt(cosine * std::sqrt(cosine));
   const auto views = static_cast<double>(supports.size());
   const double error = noise * views * triangulated_error(supports, normal);
-  const double odds =
-      std::max(kLeastOdds, kOdds * std::pow(error / summary.pixel, kPixelPower) *
-                               std::pow(summary.scatter / error + kLeastScatter, kScatterPower));
+  const double odds = std::max(
+      kLeastOdds, kOdds * error / summary.pixel / (summary.scatter / error + kLeastScatter));
   return {static_cast<float>(error), static_cast<float>(odds / (1 + odds))};
 }
 

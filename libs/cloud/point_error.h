@@ -25,8 +25,9 @@ class SupportCamera {
  public:
   SupportCamera(const CameraModel& model, const Pose& pose);
 
-  // Of pixel y * width + x, whose depth is above 0.
-  PointSupport support(std::uint32_t pixel, double depth, double cost) const;
+  // Of pixel y * width + x, whose depth is above 0, and whose point is this one of the world.
+  PointSupport support(std::uint32_t pixel, double depth, double cost,
+                       const Eigen::Vector3d& point) const;
 
  private:
   AnyCamera<double> camera_;

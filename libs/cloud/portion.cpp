@@ -162,7 +162,8 @@ void Portion::estimate_errors(PointCloud& cloud) const {
           const FusionMap& map = *views_[v].map;
           const std::uint32_t pixel = where_[v].pixels[index];
           const auto depth = static_cast<double>(map.depth_at(pixel));
-          supports.push_back(cameras[v].support(pixel, depth, map.cost_at(pixel)));
+          supports.push_back(cameras[v].support(pixel, depth, map.cost_at(pixel),
+                                                where_[v].points[index].cast<double>()));
         }
         const PointError error = expected_error(supports, cloud.normals[i].cast<double>());
         cloud.errors[i] = error.error;

@@ -32,11 +32,12 @@ std::vector<PointSupport> supports_of(const CameraModel& model, const std::vecto
     const Eigen::Vector3d X = pose.to_camera(point);
     const Eigen::Vector2d pixel = camera.project(X).pixel.array().round();
     const auto ray = camera.ray(pixel);
+    const double depth = (X - ray.origin).dot(ray.direction);
     const SupportCamera view(model, pose);
     supports.push_back(view.support(
         static_cast<std::uint32_t>(pixel.y()) * static_cast<std::uint32_t>(model.width) +
             static_cast<std::uint32_t>(pixel.x()),
-        (X - ray.origin).dot(ray.direction), cost));
+        depth, cost, pose.to_world(ray.at(depth))));
   }
   return supports;
 }
