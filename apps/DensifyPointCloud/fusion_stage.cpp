@@ -49,9 +49,10 @@ class CloudRun {
 
  private:
   std::size_t run_in_a_stream() {
-    axial::io::CloudWriter writer(
-        ply_, {options_.estimate_colors == 2, options_.estimate_normals == 2, true, true},
-        placement_of(project_, options_));
+    axial::io::CloudWriter writer(ply_,
+                                  {options_.estimate_colors == 2, options_.estimate_normals == 2,
+                                   true, true, options_.fusion.errors},
+                                  placement_of(project_, options_));
     fuse_into([&](const axial::PointCloud& portion) { writer.add(portion); });
     writer.finish();
     return writer.size();

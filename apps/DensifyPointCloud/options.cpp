@@ -100,6 +100,8 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "0 no, 1 from the nearest view, 2 from all views of a point")
       .add_with_default("estimate-normals", &options.estimate_normals,
                         "0 no, 1 from the cloud, 2 from the depth maps")
+      .add_with_default("estimate-uncertainty", &options.fusion.errors,
+                        "also write each point's expected error [m] and confidence")
       .add_with_default("estimate-roi", &raw.estimate_roi,
                         "region of interest from cameras and points: 0 off, 1 on, 2 adaptive")
       .add_with_default("roi-border", &options.roi_border,

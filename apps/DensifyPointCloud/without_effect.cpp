@@ -17,8 +17,8 @@ constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iter
                           "postprocess-dmaps",     "projection", "warp",
                           "overwrite-dmaps"};
 constexpr Names kMapSize{"resolution-level", "max-resolution", "min-resolution", "number-views"};
-constexpr Names kFusion{"number-views-fuse", "estimate-colors", "estimate-normals", "crop-to-roi",
-                        "remove-dmaps"};
+constexpr Names kFusion{"number-views-fuse",    "estimate-colors", "estimate-normals",
+                        "estimate-uncertainty", "crop-to-roi",     "remove-dmaps"};
 constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolution", "number-views",
                         "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
                         "roi-border",       "view-neighbors-file"};

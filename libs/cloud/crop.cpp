@@ -40,6 +40,8 @@ std::size_t crop(PointCloud& cloud, const OrientedBox& region) {
   keep(cloud.positions, kept);
   keep(cloud.normals, kept);
   keep(cloud.colors, kept);
+  keep(cloud.errors, kept);
+  keep(cloud.confidences, kept);
   return removed;
 }
 

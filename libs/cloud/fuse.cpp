@@ -132,7 +132,7 @@ void Fusion::fuse_view(std::size_t reference, const MapStore& store, const Cloud
     pixel = portion.collect(pixel);
     portion.ask(options_);
     portion.accept(min_views_);
-    if (portion.size() > 0) sink(portion.points(options_.normals));
+    if (portion.size() > 0) sink(portion.points(options_));
   }
 }
 
@@ -148,6 +148,8 @@ void append(PointCloud& cloud, const PointCloud& portion) {
   add(cloud.colors, portion.colors);
   add(cloud.view_images, portion.view_images);
   add(cloud.view_weights, portion.view_weights);
+  add(cloud.errors, portion.errors);
+  add(cloud.confidences, portion.confidences);
   for (std::size_t i = 1; i < portion.view_begin.size(); ++i)
     cloud.view_begin.push_back(first_view + portion.view_begin[i]);
 }

@@ -44,6 +44,7 @@ struct FuseOptions {
   double depth_threshold = 0.005;                             // relative, along the neighbour's ray
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
   bool normals = true;                                        // fill PointCloud::normals
+  bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
   // What memory allows; the cloud does not depend on it. Maps in memory at a time (20 bytes a
   // pixel, 3 more with colours), but never fewer than a view and its neighbours; calls of the

@@ -26,6 +26,11 @@ struct FusionMap {
   std::size_t pixels() const { return depth.total(); }
   float depth_at(std::size_t pixel) const { return depth.ptr<float>()[pixel]; }
   float weight_at(std::size_t pixel) const { return weight.ptr<float>()[pixel]; }
+  // Of matching, 1 - confidence, at least 0.03: what the weight was made of.
+  double cost_at(std::size_t pixel) const {
+    const auto depth_here = static_cast<double>(depth_at(pixel));
+    return 1 / (static_cast<double>(weight_at(pixel)) * depth_here * depth_here);
+  }
   Eigen::Vector3f normal_at(std::size_t pixel) const {
     return Eigen::Map<const Eigen::Vector3f>(normal.ptr<float>() + 3 * pixel);
   }

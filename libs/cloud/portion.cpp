@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "cloud/point_error.h"
 
 namespace axial::cloud {
 namespace {
@@ -134,16 +135,18 @@ void Portion::accept(std::size_t min_views) {
   for (std::size_t v = 1; v < views_.size(); ++v) back_project(*views_[v].map, where_[v]);
 }
 
-PointCloud Portion::points(bool normals) const {
+PointCloud Portion::points(const FuseOptions& options) const {
   PointCloud cloud;
   cloud.positions.resize(size());
-  if (normals) cloud.normals.resize(size());
+  if (options.normals || options.errors) cloud.normals.resize(size());
   if (!views_[0].map->color.empty()) cloud.colors.resize(size());
   cloud.view_begin = begin_;
   cloud.view_images.resize(supports_.size());
   cloud.view_weights.resize(supports_.size());
   parallel_for(
       size(), [&](std::size_t i) { average(i, cloud); }, kGrain);
+  if (options.errors) estimate_errors(cloud);
+  if (!options.normals) cloud.normals.clear();
   return cloud;
 }
 
@@ -159,6 +162,31 @@ void Portion::average(std::size_t point, PointCloud& cloud) const {
   cloud.positions[point] = mean.position();
   if (!cloud.normals.empty()) cloud.normals[point] = mean.normal(views_[0].map->pose.centre);
   if (!cloud.colors.empty()) cloud.colors[point] = mean.color();
+}
+
+void Portion::estimate_errors(PointCloud& cloud) const {
+  std::vector<SupportCamera> cameras;
+  for (const WorkingView& view : views_) cameras.emplace_back(view.map->camera, view.map->pose);
+  cloud.errors.resize(size());
+  cloud.confidences.resize(size());
+  parallel_for(
+      size(),
+      [&](std::size_t i) {
+        std::vector<PointSupport> supports;
+        supports.reserve(begin_[i + 1] - begin_[i]);
+        for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) {
+          const auto [v, index] = supports_[k];
+          const FusionMap& map = *views_[v].map;
+          const std::uint32_t pixel = where_[v].pixels[index];
+          const auto depth = static_cast<double>(map.depth_at(pixel));
+          supports.push_back(cameras[v].support(pixel, depth, map.cost_at(pixel),
+                                                where_[v].points[index].cast<double>()));
+        }
+        const PointError error = expected_error(supports, cloud.normals[i].cast<double>());
+        cloud.errors[i] = error.error;
+        cloud.confidences[i] = error.confidence;
+      },
+      kGrain);
 }
 
 }  // namespace axial::cloud

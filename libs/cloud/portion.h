@@ -37,7 +37,7 @@ class Portion {
   std::size_t size() const { return begin_.size() - 1; }  // accepted points
 
   // The accepted points, averaged; colours if the maps have them.
-  PointCloud points(bool normals) const;
+  PointCloud points(const FuseOptions& options) const;
 
  private:
   // One pixel that supports a point: entry `index` of where_[view].
@@ -48,6 +48,7 @@ class Portion {
 
   void find_proved_by_two(const FuseOptions& options);
   void average(std::size_t point, PointCloud& cloud) const;
+  void estimate_errors(PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
   std::vector<PixelPoints> where_;  // the reference's pixels that ask; the others' supports

@@ -42,12 +42,13 @@ struct PlyPlacement {
 // What every point of a cloud has besides its position.
 struct CloudLayout {
   bool colors = false, normals = false, views = false, view_weights = false;
+  bool errors = false;  // the expected error and the confidence
 };
 
 // A cloud written portion by portion, of any size. The file takes its name in finish(); until then,
 // and if that is never called, there is none. Layout as OpenMVS writes it: x y z, red green blue,
-// nx ny nz, view_indices, view_weights. The number of points is known last, so a comment line keeps
-// the room that its digits do not need.
+// nx ny nz, view_indices, view_weights; then error and confidence, of ours. The number of points is
+// known last, so a comment line keeps the room that its digits do not need.
 class CloudWriter {
  public:
   CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,

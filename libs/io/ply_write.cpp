@@ -68,6 +68,7 @@ std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placemen
   if (layout.normals) header += kNormal;
   if (layout.views) header += "property list uint8 uint32 view_indices\n";
   if (layout.view_weights) header += "property list uint8 float32 view_weights\n";
+  if (layout.errors) header += "property float32 error\nproperty float32 confidence\n";
   return header + "end_header\n";
 }
 
@@ -106,6 +107,9 @@ struct CloudWriter::File {
     if (layout.view_weights)
       require_length(portion.view_weights.size(), portion.view_images.size(), "view weights",
                      name());
+    if (layout.errors) require_length(portion.errors.size(), portion.size(), "errors", name());
+    if (layout.errors)
+      require_length(portion.confidences.size(), portion.size(), "confidences", name());
   }
 
   void write(const std::string& bytes) {
@@ -142,6 +146,9 @@ void CloudWriter::add(const PointCloud& portion) {
     if (layout.colors) out.write(std::span(portion.colors[i]));
     if (layout.normals) write_vector(out, portion.normals[i]);
     if (layout.views) write_views(out, portion, i, layout.view_weights);
+    if (!layout.errors) continue;
+    out.write(portion.errors[i]);
+    out.write(portion.confidences[i]);
   }
   file_->write(out.bytes());
   file_->points += portion.size();
@@ -158,10 +165,10 @@ void CloudWriter::finish() {
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views,
                      const PlyPlacement& placement) {
   const bool views = with_views && !cloud.view_begin.empty();
-  CloudWriter out(
-      path,
-      {!cloud.colors.empty(), !cloud.normals.empty(), views, views && !cloud.view_weights.empty()},
-      placement);
+  CloudWriter out(path,
+                  {!cloud.colors.empty(), !cloud.normals.empty(), views,
+                   views && !cloud.view_weights.empty(), !cloud.errors.empty()},
+                  placement);
   out.add(cloud);
   out.finish();
 }

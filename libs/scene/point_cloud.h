@@ -19,6 +19,8 @@ struct PointCloud {
   std::vector<std::size_t> view_begin;     // empty, or size() + 1 entries
   std::vector<std::uint32_t> view_images;  // indices into Scene::images
   std::vector<float> view_weights;         // as view_images
+  std::vector<float> errors;               // expected distance to the true surface [m]; 0: unknown
+  std::vector<float> confidences;          // probability that 3 such errors are not exceeded
 
   std::size_t size() const { return positions.size(); }
   std::span<const std::uint32_t> views_of(std::size_t i) const {

@@ -74,7 +74,8 @@ bool same_bytes(const PointCloud& a, const PointCloud& b) {
   };
   return same(a.positions, b.positions) && same(a.normals, b.normals) && same(a.colors, b.colors) &&
          same(a.view_begin, b.view_begin) && same(a.view_images, b.view_images) &&
-         same(a.view_weights, b.view_weights);
+         same(a.view_weights, b.view_weights) && same(a.errors, b.errors) &&
+         same(a.confidences, b.confidences);
 }
 
 class FuseWithCamera : public testing::TestWithParam<bool> {
@@ -223,6 +224,47 @@ TEST_P(FuseWithCamera, GivesTheSameBytesForAnyNumberOfThreads) {
   }
   EXPECT_GT(one.size(), 1000u);
   EXPECT_TRUE(same_bytes(one, two));
+}
+
+// They are estimated beside the rest, which keeps its bytes, with or without normals.
+TEST_P(FuseWithCamera, EstimatesErrors) {
+  Fixture fixture = make_fixture({}, model());
+  FuseOptions options;
+  options.normals = false;
+  const PointCloud plain = run(fixture, options);
+  EXPECT_TRUE(plain.errors.empty() && plain.confidences.empty());
+  options.errors = true;
+  PointCloud one, two;
+  {
+    const ThreadLimit limit(1);
+    one = run(fixture, options);
+  }
+  {
+    const ThreadLimit limit(2);
+    two = run(fixture, options);
+  }
+  EXPECT_TRUE(same_bytes(one, two));
+  ASSERT_EQ(one.errors.size(), one.size());
+  ASSERT_EQ(one.confidences.size(), one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_GT(one.errors[i], 0);
+    ASSERT_GT(one.confidences[i], 0);
+    ASSERT_LE(one.confidences[i], 1);
+  }
+  one.errors.clear();
+  one.confidences.clear();
+  EXPECT_TRUE(same_bytes(one, plain));
+}
+
+TEST_P(FuseWithCamera, KnowsNoErrorsOfMapsWithoutConfidence) {
+  Fixture fixture = make_fixture({}, model());
+  for (DepthMap& map : fixture.maps) map.confidence.release();
+  FuseOptions options;
+  options.errors = true;
+  const PointCloud cloud = run(fixture, options);
+  ASSERT_GT(cloud.errors.size(), 1000u);
+  EXPECT_THAT(cloud.errors, testing::Each(0.0f));
+  EXPECT_THAT(cloud.confidences, testing::Each(0.0f));
 }
 
 TEST_P(FuseWithCamera, EstimatesMissingNormals) {

@@ -9,6 +9,7 @@
 #include <bit>
 
 #include "base/atomic_file.h"
+#include "io/ply_property.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {
@@ -143,6 +144,24 @@ TEST_F(PlyTest, WritesPortionsAsOneCloud) {
     ASSERT_TRUE(std::ranges::equal(cloud.views_of(i), portion.views_of(i % 3)));
   }
   EXPECT_TRUE(cloud.normals.empty());
+}
+
+TEST_F(PlyTest, WritesErrorsBehindEverythingElse) {
+  PointCloud cloud = three_points();
+  write_cloud_ply(file_, cloud);
+  const std::string plain = read_file(file_);
+  cloud.errors = {0.5f, 0.25f, 0};
+  cloud.confidences = {1, 0.75f, 0};
+  write_cloud_ply(file_, cloud);
+  EXPECT_EQ(read_vertex_property(file_, "error"), cloud.errors);
+  EXPECT_EQ(read_vertex_property(file_, "confidence"), cloud.confidences);
+  EXPECT_EQ(read_file(file_).size(),
+            plain.size() + 24 +
+                std::string("property float32 error\nproperty float32 confidence\n").size());
+  EXPECT_EQ(read_cloud_ply(file_).view_weights, cloud.view_weights);
+  cloud.confidences.pop_back();
+  EXPECT_THAT(error_of([&] { write_cloud_ply(file_, cloud); }),
+              HasSubstr("2 confidences for 3 points"));
 }
 
 // The line that other programs look for has no padding, and the header no odd bytes.
