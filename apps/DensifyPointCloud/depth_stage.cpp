@@ -33,7 +33,7 @@ struct Stage {
   std::string name;
   std::string title;
   std::function<DepthMap(std::size_t image)> make;
-  bool matches = true;  // asks its source views for depths alone; else needs whole maps
+  bool matches = true;  // needs only the depths of its source views' maps; else whole maps
 };
 
 // Maps of the stage before, read from their files: never handed over in memory, because a resumed
@@ -108,7 +108,10 @@ class DepthMapRun {
     previous_ = std::make_unique<MapCache>(
         [this, stage, depths](std::size_t image) {
           DepthMap map = read_map(stage - 1, image);
-          if (depths) map.normal = cv::Mat3f(), map.confidence = cv::Mat1f();
+          if (depths) {
+            map.normal.release();
+            map.confidence.release();
+          }
           return map;
         },
         depths ? plan_.cached_depths : plan_.cached_maps);

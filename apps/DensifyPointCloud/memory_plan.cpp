@@ -181,8 +181,8 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
       most(threads, room - kept, [&](std::size_t k) { return k * (sizes.decode + sizes.image); });
 
   const std::uint64_t more_images = (plan.cached_images - images) * sizes.image;
-  // Stages of either kind come one after the other. The maps that are compared (agreement_check.h)
-  // take less than matching does.
+  // Stages that need depths and stages that need whole maps come one after the other. Comparing
+  // maps (agreement_check.h) takes less memory than matching.
   const std::uint64_t for_maps = room - matching(sizes, counts, plan.in_flight) - more_images;
   plan.cached_depths = enlarged((counts.matched - 1) * plan.in_flight, sizes.depths, for_maps);
   plan.cached_maps =

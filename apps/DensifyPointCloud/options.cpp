@@ -93,9 +93,8 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "0 depth maps and fusion, 1 depth maps only, -1 fuse the depth maps in the "
                         "working folder, whoever wrote them, and write none")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
-                        "views that must agree on a point (below 2: merge without agreement); if "
-                        "it is not given, 3, "
-                        "and 2 where only two can see the point")
+                        "views that must agree on a point (below 2: merge without agreement); by "
+                        "default 3, and 2 where only two can see the point")
       .add_with_default("estimate-colors", &options.estimate_colors,
                         "0 no, 1 from the nearest view, 2 from all views of a point")
       .add_with_default("estimate-normals", &options.estimate_normals,

@@ -38,8 +38,8 @@ struct FuseOptions {
   // Images that must agree on a point (their own included; capped by the number of views). Below 2:
   // plain merge, every valid pixel is a point with one view.
   std::size_t min_views = 3;
-  // Where fewer than min_views can see a point, two that agree on it are enough, on stricter
-  // evidence (fuse).
+  // With min_views above 2: two images that agree on a point are enough where no other image can
+  // see the point, on stricter evidence (fuse).
   bool two_where_two_see = true;
   double depth_threshold = 0.005;                             // relative, along the neighbour's ray
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]

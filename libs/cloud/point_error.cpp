@@ -9,9 +9,10 @@
 namespace axial::cloud {
 namespace {
 
-// Fitted to the distances from the truth of clouds of SimulateUnderwater's closeup and reef (seeds
-// 21 and 22, in water and in air, at two resolutions), by the likelihood of normal errors.
-// Powers are those that square roots give, which cost less than std::pow and fit as well.
+// kNoise and kOdds are rounded fits to distances from the truth: clouds of three maps and more of
+// SimulateUnderwater's closeup and reef (seeds 21 and 22, in water and in air, at two resolutions),
+// by the likelihood of normal errors. The powers of cost, number and cosine were chosen on the same
+// clouds and a few others, among powers that square roots give. kLeastOdds was set by hand.
 constexpr double kNoise = 3.7;  // of a match of cost 1 that looks along the normal [px]
 constexpr double kOdds = 100;   // of staying within 3 errors, times pixel / error, scatter / error
 constexpr double kLeastScatter = 0.05;  // [errors]

@@ -19,8 +19,8 @@ std::optional<std::size_t> only_witness(std::span<const std::vector<Answer>> ans
 
 // Whether the map shows a piece of surface around a pixel with a depth: of the eight pixels two
 // away, five or more differ from the pixel's depth by less than `max_difference` (relative), and at
-// most one with a depth differs by more. Wrong depths that two views agree on by chance are mostly
-// alone; a depth at the image's border has three pixels less around it.
+// most one with a depth differs by more. Wrong depths that two views agree on by chance mostly have
+// other depths around them. Five are enough, because a pixel at the image's border has no more.
 bool in_surface(const FusionMap& map, std::uint32_t pixel, float max_difference);
 
 }  // namespace axial::cloud

@@ -34,8 +34,9 @@ namespace axial::depth {
 inline constexpr int kStripHeight = 32;
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
 inline constexpr std::size_t kOwnViews = 4;       // for a pixel's own plane
-// For all planes of a pixel in coarse levels, and for random ones. More find no more: the views
-// take turns from pixel to pixel, and a plane that is good in one view spreads with that view.
+// For all planes of a pixel in coarse levels, and for random planes. More views find no better
+// planes: the views take turns from pixel to pixel, and a plane that is good in one view spreads
+// together with that view.
 inline constexpr std::size_t kManyViews = 5;
 
 // Mean of the two smallest costs; the second only counts below kOutsideCost.
