@@ -15,6 +15,7 @@
 #include "base/shared_cache.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
+#include "depth/weak_texture.h"
 #include "io/dmap.h"
 #include "io/dmap_pictures.h"
 
@@ -214,6 +215,7 @@ class DepthMapRun {
   }
 
   DepthMap clean(DepthMap map, std::size_t image) const {
+    map = axial::depth::remove_unconfirmed(map, images_.get(image)->grey);
     if (options_.postprocess & kSpeckles)
       map = axial::depth::remove_speckles(map, options_.speckles);
     if (options_.postprocess & kGaps) {
