@@ -91,14 +91,15 @@ void Portion::ask(const FuseOptions& options) {
 
 void Portion::find_proved_by_two(const FuseOptions& options) {
   proved_by_two_.resize(where_[0].pixels.size());
-  const auto max_difference = static_cast<float>(2 * options.depth_threshold);
+  const auto max_distance = static_cast<float>(0.5 * options.depth_threshold);
+  std::vector<SurfacePieces> pieces;
+  for (const WorkingView& view : views_) pieces.emplace_back(*view.map, max_distance);
   parallel_for(
       proved_by_two_.size(),
       [&](std::size_t i) {
         const std::optional<std::size_t> n = only_witness(answers_, i);
-        proved_by_two_[i] =
-            n && in_surface(*views_[0].map, where_[0].pixels[i], max_difference) &&
-            in_surface(*views_[*n + 1].map, answers_[*n][i].pixel(), max_difference);
+        proved_by_two_[i] = n && pieces[0].around(where_[0].pixels[i]) &&
+                            pieces[*n + 1].around(answers_[*n][i].pixel());
       },
       kGrain);
 }
