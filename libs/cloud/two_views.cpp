@@ -12,14 +12,14 @@ constexpr int kMostOffPlane = 3;
 
 }  // namespace
 
-std::optional<std::size_t> only_witness(std::span<const std::vector<Answer>> answers,
-                                        std::size_t i) {
+std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
+                                              std::size_t i) {
   std::optional<std::size_t> witness;
   for (std::size_t n = 0; n < answers.size(); ++n) {
     const Answer answer = answers[n][i];
     if (answer.cannot_see()) continue;
-    if (witness || !answer.names_pixel() || !answer.agrees()) return {};
-    witness = n;
+    if (!answer.names_pixel() || !answer.agrees()) return {};
+    if (!witness) witness = n;
   }
   return witness;
 }

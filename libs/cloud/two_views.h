@@ -12,10 +12,11 @@
 
 namespace axial::cloud {
 
-// The neighbour that shows the point of asking pixel `i`, if no other neighbour can see the point.
+// The first neighbour that shows the point of asking pixel `i`, if no neighbour sees through the
+// point or shows another normal there.
 // `answers[n][i]`: what neighbour n says to the pixel.
-std::optional<std::size_t> only_witness(std::span<const std::vector<Answer>> answers,
-                                        std::size_t i);
+std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
+                                              std::size_t i);
 
 // Tells where a map, which it refers to, shows a piece of surface. Wrong depths that two views
 // agree on by chance mostly have other depths around them.
