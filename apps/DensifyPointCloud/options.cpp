@@ -94,7 +94,7 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
                         "working folder, whoever wrote them, and write none")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement); by "
-                        "default 3, and 2 where only two can see the point")
+                        "default 3, and 2 where no other depth map disagrees")
       .add_with_default("estimate-colors", &options.estimate_colors,
                         "0 no, 1 from the nearest view, 2 from all views of a point")
       .add_with_default("estimate-normals", &options.estimate_normals,
@@ -279,7 +279,7 @@ Options parse_command_line(int argc, const char* const* argv) {
          options.pinhole_export.string());
   options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
   options.fusion.normals = options.estimate_normals == 2;
-  options.fusion.two_where_two_see = !axial::given(options.parsed, "number-views-fuse");
+  options.fusion.two_if_undisputed = !axial::given(options.parsed, "number-views-fuse");
   warn_of_options_without_effect(options);
   return options;
 }

@@ -27,7 +27,7 @@ class Fusion {
         options_(options),
         merge_(options.min_views < 2),
         min_views_(std::min(options.min_views, views.size())),
-        fewest_(options.two_where_two_see ? std::min<std::size_t>(2, min_views_) : min_views_) {
+        fewest_(options.two_if_undisputed ? std::min<std::size_t>(2, min_views_) : min_views_) {
     make_slots(scene, views);
     make_order(views);
   }

@@ -38,9 +38,9 @@ struct FuseOptions {
   // Images that must agree on a point (their own included; capped by the number of views). Below 2:
   // plain merge, every valid pixel is a point with one view.
   std::size_t min_views = 3;
-  // With min_views above 2: two images that agree on a point are enough where no other image can
-  // see the point, on stricter evidence (fuse).
-  bool two_where_two_see = true;
+  // With min_views above 2: two images that agree on a point are enough where no other image
+  // disagrees, on stricter evidence (fuse).
+  bool two_if_undisputed = true;
   double depth_threshold = 0.005;                             // relative, along the neighbour's ray
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
   bool normals = true;                                        // fill PointCloud::normals
@@ -62,19 +62,20 @@ using CloudSink = std::function<void(PointCloud portion)>;
 
 // Every pixel that belongs to no point yet asks its view's neighbours: those whose depth at the
 // projection agrees in depth and normal join, and their pixels are used up. With
-// `two_where_two_see`, one neighbour that joins is enough where all others cannot see the point:
-// it is outside their image, hidden behind the surface of their map, or they have no depth there
-// and look along its surface or at its back. A neighbour that should see the point and does not
-// confirm it, sees through it, or shows it in a point already, forbids that. In both maps the pixel
-// must lie in a piece of surface: six of the eight pixels two away differ in depth by less than
-// twice depth_threshold. A point with enough views is the mean of the back-projected pixels (eq.
-// 4), weighted with 1 / (max(1 - confidence, 0.03) depth^2), as are its colour and normal; depths
-// that it proves wrong (a neighbour sees behind it) are deleted. Each pixel of a depth map supports
-// at most one point. Positions, weights and views (sorted by image) are always filled. Maps without
-// normals get them from depth (estimate_map_normals); pixels without a normal skip the normal test.
-// The same bytes for any number of threads. The cloud is handed on in portions: besides the maps
-// only one bit a pixel is kept of the views that are not done yet. Error for a map whose size,
-// image and normals disagree.
+// `two_if_undisputed`, one neighbour that joins is enough where no other disagrees. A neighbour
+// disagrees that sees through the point or shows another normal there. It says nothing if the point
+// is outside its image or hidden behind the surface of its map, or if its map has no depth there;
+// and one that agrees, but whose pixel belongs to a point already, does not forbid the point. In
+// the pixel's map and in that of the first neighbour that agrees, the pixel must lie in a piece of
+// surface: of the eight pixels two away, four or more are less than half depth_threshold times the
+// depth away from the pixel's tangent plane, and at most three farther. A point with enough views
+// is the mean of the back-projected pixels (eq. 4), weighted with 1 / (max(1 - confidence, 0.03)
+// depth^2), as are its colour and normal; depths that it proves wrong (a neighbour sees behind it)
+// are deleted. Each pixel of a depth map supports at most one point. Positions, weights and views
+// (sorted by image) are always filled. Maps without normals get them from depth
+// (estimate_map_normals); pixels without a normal skip the normal test. The same bytes for any
+// number of threads. The cloud is handed on in portions: besides the maps only one bit a pixel is
+// kept of the views that are not done yet. Error for a map whose size, image and normals disagree.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 

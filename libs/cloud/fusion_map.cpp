@@ -11,7 +11,6 @@ namespace axial::cloud {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-constexpr float kGrazing = 0.1f;  // cosine between a surface and a line of sight
 
 void check(const DepthMap& map, const cv::Mat3b& color) {
   const cv::Size size = map.depth.size();
@@ -80,24 +79,17 @@ class Neighbour {
     }
     const auto pixel = static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) +
                        static_cast<std::uint32_t>(u);
-    const auto ray = camera_.ray(projection.pixel);
     const float seen = neighbour_.depth_at(pixel);
-    if (!(seen > 0)) return turned_away(asking, ray.direction) ? Answer() : Answer::lacks();
+    if (!(seen > 0)) return {};
+    const auto ray = camera_.ray(projection.pixel);
     const float depth = (X - ray.origin).dot(ray.direction);
     if (std::abs(depth - seen) >= depth_threshold_ * depth) {
       return depth < seen ? Answer::contradicts(pixel) : Answer();
     }
-    return same_normal(asking, pixel) ? Answer::joins(pixel) : Answer::lacks();
+    return same_normal(asking, pixel) ? Answer::joins(pixel) : Answer::differs();
   }
 
  private:
-  // Whether the neighbour looks along the asking pixel's surface, or at its back.
-  bool turned_away(std::uint32_t asking, const Eigen::Vector3f& direction) const {
-    const Eigen::Vector3d in_world =
-        neighbour_.pose.rotation.transpose() * direction.cast<double>();
-    return reference_.normal_at(asking).dot(in_world.cast<float>()) > -kGrazing;
-  }
-
   bool same_normal(std::uint32_t asking, std::uint32_t pixel) const {
     const Eigen::Vector3f mine = reference_.normal_at(asking);
     const Eigen::Vector3f other = neighbour_.normal_at(pixel);

@@ -51,24 +51,24 @@ struct PixelPoints {
 void back_project(const FusionMap& view, PixelPoints& where);
 
 // What a neighbour says to a pixel: "I cannot see you" (the point is outside the image, hidden, or
-// its surface turned away), "I should see you, but my map does not show you", "my pixel sees the
+// the map has no depth there), "my pixel has your depth, but another normal", "my pixel sees the
 // same", or "my pixel sees through you".
 class Answer {
  public:
   Answer() = default;  // cannot see
-  static Answer lacks() { return Answer(kLacks); }
+  static Answer differs() { return Answer(kDiffers); }
   static Answer joins(std::uint32_t pixel) { return Answer(pixel << 1); }
   static Answer contradicts(std::uint32_t pixel) { return Answer(pixel << 1 | 1u); }
 
   bool cannot_see() const { return code_ == kCannotSee; }
-  bool names_pixel() const { return code_ < kLacks; }
+  bool names_pixel() const { return code_ < kDiffers; }
   // Of an answer that names a pixel.
   bool agrees() const { return (code_ & 1u) == 0; }
   std::uint32_t pixel() const { return code_ >> 1; }
 
  private:
   explicit Answer(std::uint32_t code) : code_(code) {}
-  static constexpr std::uint32_t kLacks = 0xFFFFFFFEu, kCannotSee = 0xFFFFFFFFu;
+  static constexpr std::uint32_t kDiffers = 0xFFFFFFFEu, kCannotSee = 0xFFFFFFFFu;
   std::uint32_t code_ = kCannotSee;
 };
 

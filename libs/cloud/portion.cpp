@@ -86,19 +86,20 @@ void Portion::ask(const FuseOptions& options) {
     ask_neighbour(*views_[0].map, *views_[n + 1].map, where_[0], options, answers_[n]);
   }
   proved_by_two_.clear();
-  if (options.two_where_two_see && options.min_views > 2) find_proved_by_two(options);
+  if (options.two_if_undisputed && options.min_views > 2) find_proved_by_two(options);
 }
 
 void Portion::find_proved_by_two(const FuseOptions& options) {
   proved_by_two_.resize(where_[0].pixels.size());
-  const auto max_difference = static_cast<float>(2 * options.depth_threshold);
+  const auto max_distance = static_cast<float>(0.5 * options.depth_threshold);
+  std::vector<SurfacePieces> pieces;
+  for (const WorkingView& view : views_) pieces.emplace_back(*view.map, max_distance);
   parallel_for(
       proved_by_two_.size(),
       [&](std::size_t i) {
-        const std::optional<std::size_t> n = only_witness(answers_, i);
-        proved_by_two_[i] =
-            n && in_surface(*views_[0].map, where_[0].pixels[i], max_difference) &&
-            in_surface(*views_[*n + 1].map, answers_[*n][i].pixel(), max_difference);
+        const std::optional<std::size_t> n = undisputed_witness(answers_, i);
+        proved_by_two_[i] = n && pieces[0].around(where_[0].pixels[i]) &&
+                            pieces[*n + 1].around(answers_[*n][i].pixel());
       },
       kGrain);
 }
@@ -118,7 +119,7 @@ void Portion::accept(std::size_t min_views) {
       else
         disproved.emplace_back(v, answer.pixel());
     }
-    const bool by_two = joining.size() == 1 && !proved_by_two_.empty() && proved_by_two_[i];
+    const bool by_two = !joining.empty() && !proved_by_two_.empty() && proved_by_two_[i];
     if (joining.size() + 1 < min_views && !by_two) continue;
     (*views_[0].taken)[where_[0].pixels[i]] = true;
     supports_.push_back({0, static_cast<std::uint32_t>(i)});

@@ -30,8 +30,8 @@ class Portion {
   // Asks the neighbours what they say to these pixels, and finds those that two views prove.
   void ask(const FuseOptions& options);
 
-  // Decides which pixels become points and takes their supports: with `min_views`, or with two
-  // where these prove it.
+  // Decides which pixels become points and takes their supports: with `min_views`, or with two or
+  // more where two prove it.
   void accept(std::size_t min_views);
 
   std::size_t size() const { return begin_.size() - 1; }  // accepted points

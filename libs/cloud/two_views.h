@@ -12,15 +12,33 @@
 
 namespace axial::cloud {
 
-// The neighbour that shows the point of asking pixel `i`, if no other neighbour can see the point.
+// The first neighbour that shows the point of asking pixel `i`, if no neighbour sees through the
+// point or shows another normal there.
 // `answers[n][i]`: what neighbour n says to the pixel.
-std::optional<std::size_t> only_witness(std::span<const std::vector<Answer>> answers,
-                                        std::size_t i);
+std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
+                                              std::size_t i);
 
-// Whether the map shows a piece of surface around a pixel with a depth: of the eight pixels two
-// away, five or more differ from the pixel's depth by less than `max_difference` (relative), and at
-// most one with a depth differs by more. Wrong depths that two views agree on by chance mostly have
-// other depths around them. Five are enough, because a pixel at the image's border has no more.
-bool in_surface(const FusionMap& map, std::uint32_t pixel, float max_difference);
+// Tells where a map, which it refers to, shows a piece of surface. Wrong depths that two views
+// agree on by chance mostly have other depths around them.
+class SurfacePieces {
+ public:
+  // `max_distance`: how far from a pixel's tangent plane the points around it may lie, relative to
+  // the pixel's depth.
+  SurfacePieces(const FusionMap& map, float max_distance);
+
+  // Of the eight pixels two away from `pixel`, which has a depth, four or more lie on its tangent
+  // plane, and at most three with a depth lie off it. False for a pixel without a normal. (At an
+  // image's border a pixel has five around it, in a corner three.)
+  bool around(std::uint32_t pixel) const;
+
+ private:
+  template <class Camera>
+  bool enough_on_plane(const Camera& camera, int x, int y, const Eigen::Vector3f& normal) const;
+
+  const FusionMap& map_;
+  CameraVariant<float> camera_;
+  Eigen::Matrix3f to_camera_;
+  float max_distance_;
+};
 
 }  // namespace axial::cloud

@@ -106,7 +106,7 @@ TEST_P(FuseWithCamera, UsesEachPixelOnce) {
   for (const std::size_t min_views : {1u, 2u, 3u, 5u}) {
     FuseOptions options;
     options.min_views = min_views;
-    options.two_where_two_see = false;
+    options.two_if_undisputed = false;
     const PointCloud cloud = run(fixture, options);
     std::vector<std::size_t> used(fixture.maps.size(), 0);
     for (std::size_t i = 0; i < cloud.size(); ++i) {

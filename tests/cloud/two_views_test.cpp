@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "cloud/fuse.h"
 #include "support/analytic_scene.h"
 
@@ -11,60 +13,110 @@ namespace {
 
 using test::AnalyticScene;
 
-TEST(OnlyWitness, IsTheOneNeighbourThatSeesThePoint) {
-  const Answer unseen, lacks = Answer::lacks(), joins = Answer::joins(7),
+TEST(UndisputedWitness, IsTheFirstNeighbourThatShowsThePoint) {
+  const Answer unseen, differs = Answer::differs(), joins = Answer::joins(7),
                        through = Answer::contradicts(7);
   const auto witness = [](const std::vector<Answer>& of_neighbours) {
     std::vector<std::vector<Answer>> answers;
     for (const Answer answer : of_neighbours) answers.push_back({Answer(), answer});
-    return only_witness(answers, 1);
+    return undisputed_witness(answers, 1);
   };
   EXPECT_EQ(witness({}), std::nullopt);
   EXPECT_EQ(witness({unseen, unseen}), std::nullopt);
   EXPECT_EQ(witness({unseen, joins, unseen}), 1u);
-  EXPECT_EQ(witness({joins, joins}), std::nullopt);
-  for (const Answer other : {lacks, through}) {
+  EXPECT_EQ(witness({unseen, joins, joins}), 1u);
+  for (const Answer other : {differs, through}) {
     EXPECT_EQ(witness({other}), std::nullopt);
     EXPECT_EQ(witness({other, joins}), std::nullopt);
     EXPECT_EQ(witness({joins, other}), std::nullopt);
+    EXPECT_EQ(witness({joins, joins, other}), std::nullopt);
   }
 }
 
-FusionMap wall(float depth) {
-  DepthMap map;
-  map.camera = test::dry_camera();
-  map.depth = cv::Mat1f(map.camera.height, map.camera.width, depth);
-  map.normal = cv::Mat3f(map.depth.size(), cv::Vec3f(0, 0, -1));
-  return make_fusion_map(map, {});
+// A slanted plane, in a camera whose pixels are large: of the depth d, a step of two pixels changes
+// the depth along the ray by up to 2 / 75 * tan(60 degrees) = 4.6 %.
+class SurfaceAroundPixel : public testing::TestWithParam<bool> {
+ protected:
+  static CameraModel model() {
+    return GetParam() ? test::behind_port(test::dry_camera()) : test::dry_camera();
+  }
+
+  static DepthMap plane(double slant) {
+    AnalyticScene world;
+    world.plane = {Eigen::Vector3d(std::sin(slant), 0, -std::cos(slant)), Eigen::Vector3d(0, 0, 1)};
+    return exact_map(world, model(), {});
+  }
+
+  static bool around(const DepthMap& map, int x, int y, float max_distance = 0.0025f) {
+    const FusionMap fusion_map = make_fusion_map(map, {});
+    return SurfacePieces(fusion_map, max_distance)
+        .around(static_cast<std::uint32_t>(y * map.width() + x));
+  }
+
+  static bool near_border(const DepthMap& map, int x, int y) {
+    return x < 2 || y < 2 || x >= map.width() - 2 || y >= map.height() - 2;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Cameras, SurfaceAroundPixel, testing::Values(false, true),
+                         [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
+
+TEST_P(SurfaceAroundPixel, IsSeenHoweverThePlaneSlants) {
+  for (const double slant : {0.0, 0.5, 1.0}) {
+    const DepthMap map = plane(slant);
+    const FusionMap fusion_map = make_fusion_map(map, {});
+    const SurfacePieces pieces(fusion_map, 1e-5f);  // floats
+    for (int y = 2; y < map.height() - 2; ++y)
+      for (int x = 2; x < map.width() - 2; ++x)
+        ASSERT_TRUE(pieces.around(static_cast<std::uint32_t>(y * map.width() + x)))
+            << slant << ' ' << x << ' ' << y;
+  }
 }
 
-std::uint32_t pixel_at(const FusionMap& map, int x, int y) {
-  return static_cast<std::uint32_t>(y * map.depth.cols + x);
+TEST_P(SurfaceAroundPixel, HoldsOnBordersAndNotInCorners) {
+  const DepthMap map = plane(0.5);
+  for (const int x : {0, 1, map.width() - 1}) EXPECT_TRUE(around(map, x, 30)) << x;
+  for (const int y : {0, 1, map.height() - 1}) EXPECT_TRUE(around(map, 30, y)) << y;
+  EXPECT_FALSE(around(map, 0, 0));
 }
 
-TEST(InSurface, WantsMostPixelsAroundAtThePixelsDepth) {
-  FusionMap map = wall(2);
-  const auto here = [&](int x, int y) { return in_surface(map, pixel_at(map, x, y), 0.01f); };
-  EXPECT_TRUE(here(20, 20));
-  map.depth(20, 20) = 2.1f;  // alone
-  EXPECT_FALSE(here(20, 20));
-  EXPECT_TRUE(here(22, 22));  // one of eight differs
-  map.depth(22, 24) = 2.1f;
-  EXPECT_FALSE(here(22, 22));  // two do
-  map.depth(22, 24) = 2.01f;   // within 1 %
-  EXPECT_TRUE(here(22, 22));
+TEST_P(SurfaceAroundPixel, IsNotSeenAroundAPixelBesideIt) {
+  DepthMap map = plane(0.5);
+  map.depth(20, 20) *= 1.05f;
+  EXPECT_FALSE(around(map, 20, 20));
+  EXPECT_TRUE(around(map, 22, 22));  // one of eight is off its plane
 }
 
-TEST(InSurface, HoldsOnBordersAndNotBesideHoles) {
-  FusionMap map = wall(2);
-  const auto here = [&](int x, int y) { return in_surface(map, pixel_at(map, x, y), 0.01f); };
-  for (const int x : {0, 1, map.depth.cols - 1}) EXPECT_TRUE(here(x, 30)) << x;
-  for (const int y : {0, 1, map.depth.rows - 1}) EXPECT_TRUE(here(30, y)) << y;
-  EXPECT_FALSE(here(0, 0));
+TEST_P(SurfaceAroundPixel, MayHaveHoles) {
+  DepthMap map = plane(0.5);
   map.depth(cv::Rect(40, 20, 6, 6)) = 0;
-  EXPECT_TRUE(here(39, 22));  // three of eight lack a depth
   map.depth(20, 37) = 0;
-  EXPECT_FALSE(here(39, 22));  // four do
+  EXPECT_TRUE(around(map, 39, 22));  // four of eight lack a depth
+  map.depth(24, 37) = 0;
+  EXPECT_FALSE(around(map, 39, 22));  // five do
+}
+
+TEST_P(SurfaceAroundPixel, IsUnknownWithoutTheNormal) {
+  DepthMap map = plane(0.5);
+  map.normal(30, 30) = cv::Vec3f(0, 0, 0);
+  EXPECT_FALSE(around(map, 30, 30));
+  EXPECT_TRUE(around(map, 32, 32));
+}
+
+// Beside a straight depth edge five of eight pixels are left.
+TEST_P(SurfaceAroundPixel, EndsAtCornersOfDepthEdges) {
+  DepthMap map = plane(0.5);
+  map.depth(cv::Rect(40, 20, map.width() - 40, map.height() - 20)) *= 1.05f;
+  EXPECT_FALSE(around(map, 40, 20));
+  EXPECT_FALSE(around(map, 41, 21));
+  EXPECT_TRUE(around(map, 42, 22));
+  for (const int x : {39, 40}) EXPECT_TRUE(around(map, x, 40)) << x;
+}
+
+TEST_P(SurfaceAroundPixel, IsNotSeenOnStripsOfTwoPixels) {
+  DepthMap map = plane(0.5);
+  map.depth(cv::Rect(40, 0, 2, map.height())) *= 0.95f;
+  for (const int x : {40, 41}) EXPECT_FALSE(around(map, x, 30)) << x;
+  EXPECT_TRUE(around(map, 39, 30));
 }
 
 // A strip of cameras that look the same way, each seeing a part of its neighbours' ground.
@@ -132,24 +184,36 @@ std::size_t views_of(const PointCloud& cloud, std::size_t point) {
   return cloud.view_begin[point + 1] - cloud.view_begin[point];
 }
 
-TEST_P(FuseStrip, TakesTwoViewsExactlyWhereTwoCamerasSee) {
+TEST_P(FuseStrip, TakesTwoViewsWhereTwoCamerasSee) {
   Strip strip = FuseStrip::strip();
   const PointCloud cloud = strip.fused();
+  const auto in_two = [&](std::size_t i) {
+    return strip.cameras_that_see(cloud.positions[i].cast<double>(), 0) == 2;
+  };
   std::size_t of_two = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d point = cloud.positions[i].cast<double>();
-    ASSERT_LT(world().distance(point), 1e-6);
-    if (views_of(cloud, i) != 2) continue;
-    ++of_two;
-    // A point is a mean of pixels: its own image may lie a pixel beside theirs.
-    EXPECT_LE(strip.cameras_that_see(point, 1.0), 2);
+    ASSERT_LT(world().distance(cloud.positions[i].cast<double>()), 1e-6);
+    of_two += views_of(cloud, i) == 2 && in_two(i);
   }
   EXPECT_GT(of_two, 500u);
 
   FuseOptions three;
-  three.two_where_two_see = false;
+  three.two_if_undisputed = false;
   const PointCloud without = strip.fused(three);
   for (std::size_t i = 0; i < without.size(); ++i) ASSERT_GE(views_of(without, i), 3u);
+}
+
+// Where all maps agree, a pixel is left without a point only if all that agree with it belong to
+// points: nearly as many points as with two views everywhere, and more than with three.
+TEST_P(FuseStrip, CountsMapsThatAgreeButAreUsed) {
+  Strip strip = FuseStrip::strip();
+  const std::size_t found = strip.fused().size();
+  FuseOptions everywhere;
+  everywhere.min_views = 2;
+  EXPECT_GT(static_cast<double>(found), 0.95 * static_cast<double>(strip.fused(everywhere).size()));
+  everywhere.min_views = 3;
+  everywhere.two_if_undisputed = false;
+  EXPECT_GT(static_cast<double>(found), 1.3 * static_cast<double>(strip.fused(everywhere).size()));
 }
 
 TEST_P(FuseStrip, CoversTheGroundThatTwoCamerasSee) {
@@ -171,23 +235,45 @@ TEST_P(FuseStrip, CoversTheGroundThatTwoCamerasSee) {
   EXPECT_EQ(covered, seen);
 }
 
-// A third camera that should see the ground and has no depth there does not confirm it.
-TEST_P(FuseStrip, WantsThreeWhereAThirdCameraShouldSee) {
+std::size_t points_of_two(const PointCloud& cloud) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) count += views_of(cloud, i) == 2;
+  return count;
+}
+
+bool same_bytes(const PointCloud& a, const PointCloud& b) {
+  return a.size() == b.size() && a.view_images == b.view_images &&
+         std::memcmp(a.positions.data(), b.positions.data(), a.size() * sizeof(a.positions[0])) ==
+             0;
+}
+
+TEST_P(FuseStrip, HearsNothingFromAMapWithoutDepths) {
   Strip strip = FuseStrip::strip();
-  const PointCloud whole = strip.fused();
-  const auto of_two = [](const PointCloud& cloud) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) count += views_of(cloud, i) == 2;
-    return count;
-  };
   strip.maps[2].depth = 0.0f;
   const PointCloud cloud = strip.fused();
-  EXPECT_LT(cloud.size(), whole.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (views_of(cloud, i) != 2) continue;
-    EXPECT_LE(strip.cameras_that_see(cloud.positions[i].cast<double>(), 1.0), 2);
+  strip.views.erase(strip.views.begin() + 2);
+  const PointCloud without = strip.fused();
+  EXPECT_GT(points_of_two(without), 500u);
+  EXPECT_TRUE(same_bytes(cloud, without));
+}
+
+// A third map that sees through the ground or shows it with other normals.
+TEST_P(FuseStrip, WantsThreeWhereAThirdMapDisagrees) {
+  for (const bool farther : {false, true}) {
+    Strip strip = FuseStrip::strip();
+    const std::size_t whole = points_of_two(strip.fused());
+    if (farther)
+      strip.maps[2].depth *= 1.2;
+    else
+      strip.maps[2].normal = cv::Vec3f(0, 1, 0);
+    const PointCloud cloud = strip.fused();
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3d point = cloud.positions[i].cast<double>();
+      if (views_of(cloud, i) != 2 || world().distance(point) > 1e-3) continue;
+      EXPECT_LE(strip.cameras_that_see(point, 1.0), 2);
+    }
+    EXPECT_LT(points_of_two(cloud), whole);
   }
-  EXPECT_LT(of_two(cloud), of_two(whole));
 }
 
 // Pixels of two maps that agree on a wrong depth, each alone.
