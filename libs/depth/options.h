@@ -52,6 +52,13 @@ struct PatchMatchOptions {
   float refinement_angle = radians(28);  // normal trial
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
+  // Random planes across the ray, at most 5, that a pixel tries in a level's first sweep in place
+  // of half the trials, if its best plane so far costs more than `certain_cost`. A thin structure
+  // needs them: its pixels see the background at a fair cost, and a coarser level does not resolve
+  // it.
+  int search_planes = 4;
+  float certain_cost = 0.15f;
+
   float keep_cost = 1.2f;  // hypotheses at or above are cleared
 
   float geometric_weight = 0.25f;

@@ -228,10 +228,12 @@ void check(const MatchInput& input, const PatchMatchOptions& options) {
   if (input.sources.empty() || input.sources.size() > kMaxSources)
     fail("a reference view needs 1 to {} source views, not {}", kMaxSources, input.sources.size());
   const int pairs = std::max({options.first_pairs, options.later_pairs, options.last_pairs});
-  if (2 * pairs > static_cast<int>(kMaxCandidates) ||
-      options.restart_trials > static_cast<int>(kMaxCandidates))
-    fail("{} pairs of trials and {} restarts at a pixel: at most {} planes are scored at once",
-         pairs, options.restart_trials, kMaxCandidates);
+  constexpr int kMost = kMaxCandidates;
+  if (2 * pairs > kMost || options.restart_trials > kMost || 3 + options.search_planes > kMost)
+    fail(
+        "{} pairs of trials, {} restarts and {} random planes beside three at a pixel: at most {} "
+        "planes are scored at once",
+        pairs, options.restart_trials, options.search_planes, kMost);
 }
 
 constexpr std::uint32_t kSweepsPerLevel = 64;  // even, so that every level starts forwards

@@ -169,6 +169,13 @@ class Sweep {
     return {root * root, random.facing_normal(pixel.ray.direction)};
   }
 
+  // Facing the camera, and uniform in inverse depth, which is about uniform in the source images:
+  // what is close before the rest takes up most of them.
+  PlaneHypothesis facing_plane(const ReferencePixel& pixel, KeyedRandom& random) const {
+    const float nearest = 1 / input_.min_depth, farthest = 1 / input_.max_depth;
+    return {1 / (farthest + random.unit() * (nearest - farthest)), -pixel.ray.direction};
+  }
+
   void clear(PlanePixel& pixel) const { pixel = PlanePixel(); }
 
   // A hypothesis with its cost and the views that see it best.
@@ -183,6 +190,7 @@ class Sweep {
   struct Visit {
     const ReferencePixel& pixel;
     const Neighbourhood& around;
+    int trial_pairs;
     std::uint64_t& scores;  // counted up
   };
 
@@ -210,7 +218,6 @@ class Sweep {
     }
 
     const Neighbourhood around = neighbourhood(strip.number, x, y);
-    const Visit at{pixel, around, strip.scores};
     const PlanePixel none;
     const bool beside = x + step >= 0 && x + step < map_.width;
     const bool above = y + step >= 0 && y + step < map_.height;
@@ -228,7 +235,13 @@ class Sweep {
       offer(*plane, *from, likely);
       propagate(*plane, *from, own, candidates);
     }
-    const bool at_once = likely && trials_fit(candidates);
+    const bool search =
+        input_.first && options_.search_planes > 0 &&
+        std::min(current.cost, likely ? likely->cost : kMaxCost) > options_.certain_cost;
+    if (search) add_facing_planes(pixel, random, candidates);
+    const Visit at{pixel, around, search ? input_.trial_pairs / 2 : input_.trial_pairs,
+                   strip.scores};
+    const bool at_once = likely && trials_fit(candidates, at.trial_pairs);
     if (at_once) add_trials(at, *likely, random, candidates);
     Best best;
     keep_best(at, candidates, best);
@@ -264,7 +277,12 @@ class Sweep {
   }
 
   void add_in_turn(Views& own, std::size_t turn, std::size_t wanted) const {
-    for (; own.count < wanted; ++turn) own.add(all_views_[turn % matcher_.views()]);
+    add_in_turn(own, turn, wanted, matcher_.views());
+  }
+
+  // In turn of the first `of` views.
+  void add_in_turn(Views& own, std::size_t turn, std::size_t wanted, std::size_t of) const {
+    for (; own.count < wanted; ++turn) own.add(all_views_[turn % of]);
   }
 
   // Planes, and the views that each is scored in.
@@ -312,6 +330,20 @@ class Sweep {
       candidates.add(plane, distinct(from.views));
   }
 
+  // Adds planes from the whole range of depths, for what no neighbour knows: a thin structure
+  // before a background that its pixels have a fair cost at.
+  void add_facing_planes(const ReferencePixel& pixel, KeyedRandom& random,
+                         Candidates& candidates) const {
+    const std::size_t of = std::min(matcher_.views(), kManyViews);
+    for (int i = 0; i < options_.search_planes; ++i) {
+      Views tried;
+      const PlaneHypothesis plane = facing_plane(pixel, random);
+      const auto turn = static_cast<std::size_t>(random.unit() * static_cast<float>(of));
+      add_in_turn(tried, turn, std::min(of, BestViews().size()), of);
+      candidates.add(plane, tried.all());
+    }
+  }
+
   // Makes `plane` the likely best one of a pixel, if it cost less where it comes `from`. Only
   // planes that this level or pass has scored, whose motion is known: after a depth map was read,
   // none but those of the neighbours visited before.
@@ -321,9 +353,9 @@ class Sweep {
       likely = Best{plane, from.cost, from.views, from.motion};
   }
 
-  bool trials_fit(const Candidates& candidates) const {
-    return !input_.many_views && input_.trial_pairs > 0 &&
-           candidates.count + 2 * static_cast<std::size_t>(input_.trial_pairs) <= kMaxCandidates;
+  bool trials_fit(const Candidates& candidates, int pairs) const {
+    return !input_.many_views && pairs > 0 &&
+           candidates.count + 2 * static_cast<std::size_t>(pairs) <= kMaxCandidates;
   }
 
   // Scores the candidates and keeps the best, if it is better than `best`.
@@ -361,7 +393,7 @@ class Sweep {
   // Trials around the best plane, all scored at once in its two best views.
   void refine(const Visit& at, KeyedRandom& random, Best& best) const {
     if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
-    if (input_.trial_pairs == 0) return;
+    if (at.trial_pairs == 0) return;
     Candidates trials;
     add_trials(at, best, random, trials);
     keep_best(at, trials, best);
@@ -389,7 +421,7 @@ class Sweep {
     };
     const Eigen::Vector3f u = plane.normal.unitOrthogonal();
     const Eigen::Vector3f v = plane.normal.cross(u);
-    for (int pair = 0; pair < input_.trial_pairs; ++pair) {
+    for (int pair = 0; pair < at.trial_pairs; ++pair) {
       const std::array<float, 3> step = random.symmetric_triple();
       if (pair % 2 == 0) {
         const float move = step[0] * depth_range * scale;
@@ -420,7 +452,7 @@ class Sweep {
       add_in_turn(tried, turn, std::min(views, kManyViews));
       candidates.add(plane, tried.all());
     }
-    keep_best({at.pixel, Neighbourhood(), at.scores}, candidates, best);
+    keep_best({at.pixel, Neighbourhood(), at.trial_pairs, at.scores}, candidates, best);
     return best.cost < options_.bad_cost;
   }
 

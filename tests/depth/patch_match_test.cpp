@@ -59,9 +59,8 @@ refractive::FlatPort<double> thick_port() {
   return port;
 }
 
-Survey make_survey(Kind kind) {
+Survey make_survey(Kind kind, const test::TexturedScene& scene = {}) {
   Survey survey;
-  const test::TexturedScene scene;
   for (int i = 0; i < 4; ++i) {
     MatchImage view;
     view.id = static_cast<std::uint32_t>(10 + i);
@@ -89,7 +88,8 @@ Survey make_survey(Kind kind) {
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector3d direction(0.06 * (i % 10) - 0.27, 0.09 * (i / 10) - 0.22, 1);
     const Eigen::Vector3d unit = direction.normalized();
-    survey.points.push_back((unit * scene.depth(Eigen::Vector3d::Zero(), unit)).cast<float>());
+    survey.points.push_back(
+        (unit * scene.depth_without_bar(Eigen::Vector3d::Zero(), unit)).cast<float>());
   }
   return survey;
 }
@@ -187,6 +187,38 @@ TEST_P(PatchMatchOn, GivesTheSameBytesForAnyNumberOfThreads) {
     return estimate_depth_map(input, {});
   };
   EXPECT_TRUE(same_maps(run(1), run(2)));
+}
+
+// Of the pixels that show the bar.
+double share_of_bar_found(const DepthMap& map, const cv::Mat1f& truth) {
+  int shown = 0, found = 0;
+  for (int y = 8; y < map.height() - 8; ++y)
+    for (int x = 8; x < map.width() - 8; ++x) {
+      if (!(truth(y, x) < 1.45f)) continue;  // all else is farther
+      ++shown;
+      found += std::abs(map.depth(y, x) - truth(y, x)) < 0.01f * truth(y, x);
+    }
+  EXPECT_GT(shown, 300);
+  return static_cast<double>(found) / shown;
+}
+
+TEST_P(PatchMatchOn, FindsAThinBarBeforeTheFloor) {
+  test::TexturedScene scene;
+  scene.bar_width = 0.04;  // 5 pixels
+  Survey survey = make_survey(GetParam(), scene);
+  survey.points.push_back({0.35f, 0.3f, 1.2f});  // as near, but none is on the bar
+  const auto found = [&](const PatchMatchOptions& options) {
+    std::vector<const MatchImage*> sources;
+    double sum = 0;
+    for (std::size_t i = 0; i < survey.views.size(); ++i)
+      sum += share_of_bar_found(estimate_depth_map(survey.input(i, sources), options),
+                                survey.truth[i]);
+    return sum / static_cast<double>(survey.views.size());
+  };
+  PatchMatchOptions without_search;
+  without_search.search_planes = 0;
+  EXPECT_GT(found({}), 0.6);
+  EXPECT_GT(found({}), found(without_search) + 0.3);
 }
 
 // This share of the contrast is left, and all of a camera's noise.
@@ -363,6 +395,9 @@ TEST(PatchMatch, RefusesInputThatCannotBeMatched) {
   input = survey.input(0, sources);
   input.sources = {};
   EXPECT_THROW(estimate_depth_map(input, {}), Error);
+  PatchMatchOptions options;
+  options.search_planes = 6;
+  EXPECT_THROW(estimate_depth_map(survey.input(0, sources), options), Error);
 }
 
 }  // namespace

@@ -80,9 +80,10 @@ SweepInput input(int trial_pairs) {
   return sweep;
 }
 
-std::uint64_t run(const FormulaMatcher& matcher, PlaneMap& map, const SweepInput& sweep) {
+std::uint64_t run(const FormulaMatcher& matcher, PlaneMap& map, const SweepInput& sweep,
+                  const PatchMatchOptions& options = {}) {
   const ThreadLimit one(1);
-  return Sweep(matcher, map, PatchMatchOptions(), sweep).run();
+  return Sweep(matcher, map, options, sweep).run();
 }
 
 TEST(SweepScores, AreCounted) {
@@ -189,6 +190,84 @@ TEST(SweepViews, TurnUntilThoseAreFoundThatSeeThePixel) {
       const BestViews& views = map.at(x, y).views;
       ASSERT_EQ((std::set<int>{views[0], views[1]}), (std::set<int>{7, 9})) << x << " " << y;
     }
+}
+
+// How many planes a pixel was asked about whose normal is not the wall's.
+std::size_t searched(const FormulaMatcher& matcher, std::size_t call,
+                     const Eigen::Vector3f& of_wall) {
+  std::size_t count = 0;
+  const std::vector<PlaneHypothesis>& planes = matcher.planes_asked[call];
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    if (planes[plane].normal == of_wall) continue;
+    std::set<int> views;
+    for (const ScorePair& pair : matcher.calls[call])
+      if (pair.plane == plane) views.insert(pair.view);
+    EXPECT_EQ(views.size(), 2u);
+    EXPECT_LT(*views.rbegin(), 5);  // the best ones
+    ++count;
+  }
+  return count;
+}
+
+TEST(SweepSearch, TriesPlanesOfAllDepthsWhereThePlaneIsNotCertain) {
+  const Eigen::Vector3f normal = Eigen::Vector3f(0.13f, 0.07f, -1).normalized();  // across no ray
+  PatchMatchOptions options;
+  options.certain_cost = 0.05f;  // no plane of FormulaMatcher's costs less
+  for (const bool first : {true, false})
+    for (const float cost : {0.01f, 0.5f}) {
+      const FormulaMatcher matcher;
+      PlaneMap map = wall();
+      for (PlanePixel& pixel : map.pixels) {
+        pixel.cost = cost;
+        pixel.plane.normal = normal;
+      }
+      SweepInput sweep = input(0);
+      sweep.first = first;
+      run(matcher, map, sweep, options);
+      const std::size_t expected = first && cost > options.certain_cost ? 4 : 0;
+      float nearest = sweep.max_depth, farthest = sweep.min_depth;
+      for (std::size_t call = 0; call < matcher.calls.size(); ++call) {
+        ASSERT_EQ(searched(matcher, call, normal), expected);
+        ASSERT_LE(matcher.calls[call].size(), 16u);
+        for (const PlaneHypothesis& plane : matcher.planes_asked[call]) {
+          nearest = std::min(nearest, plane.depth);
+          farthest = std::max(farthest, plane.depth);
+        }
+      }
+      if (expected == 0) continue;
+      EXPECT_NEAR(nearest, sweep.min_depth, 0.01f);
+      EXPECT_NEAR(farthest, sweep.max_depth, 0.1f);
+    }
+}
+
+TEST(SweepSearch, TakesTheRoomOfHalfTheTrials) {
+  const auto scores = [](float cost) {
+    const FormulaMatcher matcher;
+    PlaneMap map = wall();
+    for (PlanePixel& pixel : map.pixels) pixel.cost = cost;
+    SweepInput sweep = input(4);
+    sweep.first = true;
+    return run(matcher, map, sweep);
+  };
+  EXPECT_LE(scores(0.5f), scores(0.1f));
+}
+
+// The views of the search see the wall badly, and its pixels are not so bad that they start anew.
+TEST(SweepSearch, FindsASurfaceFarFromWhatWasKnown) {
+  const FormulaMatcher matcher;
+  PlaneMap map = wall();
+  for (PlanePixel& pixel : map.pixels)
+    if (pixel.plane.depth > 0) pixel.plane.depth = 3.5f;
+  SweepInput sweep = input(2);
+  sweep.first = true;
+  run(matcher, map, sweep);
+  int found = 0, all = 0;
+  for (const PlanePixel& pixel : map.pixels) {
+    if (!(pixel.plane.depth > 0)) continue;
+    ++all;
+    found += std::abs(pixel.plane.depth - kDepth) < 0.1f;
+  }
+  EXPECT_GT(found, 9 * all / 10);
 }
 
 TEST(SweepViews, AreManyInTurnOnCoarseLevels) {

@@ -15,12 +15,20 @@
 
 namespace axial::test {
 
-// Floor z = 2, and a sphere of radius 0.5 around (0, 0, 2.2) rising out of it.
+// Floor z = 2, and a sphere of radius 0.5 around (0, 0, 2.2) rising out of it; with a bar along y
+// before them, if it has a width.
 struct TexturedScene {
-  double cell = 0.02;  // size of the finest texture detail [m]
+  double cell = 0.02;    // size of the finest texture detail [m]
+  double bar_width = 0;  // around x = -0.15, z = 1.2 [m]
 
   // Distance along the ray to the surface.
   double depth(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+    const double bar = (1.2 - origin.z()) / direction.z();
+    if (std::abs(origin.x() + bar * direction.x() + 0.15) < bar_width / 2) return bar;
+    return depth_without_bar(origin, direction);
+  }
+
+  double depth_without_bar(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
     const double floor = (2.0 - origin.z()) / direction.z();
     const Eigen::Vector3d to_centre = Eigen::Vector3d(0, 0, 2.2) - origin;
     const double along = to_centre.dot(direction);
