@@ -17,10 +17,10 @@ namespace {
 // SimulateUnderwater (seed 21, true poses): closeup and reef in water and in air, thicket in water,
 // at two resolutions each. kNoise is from sand in water: the others have texture enough. The powers
 // of cost and relief are those, of the likeliest few, that treat the scenes most alike.
-constexpr double kSmoothing = 3;       // of relief, cost 1, seen along the normal [pixels]
-constexpr double kTriangulated = 0.5;  // the same, of the triangulated error for one view
-constexpr double kLeastRelief = 1e-3;  // normals 2.6 degrees apart
-constexpr double kScatter = 0.9;       // of the supports' standard deviation
+constexpr double kSmoothing = 3.2;      // of relief, cost 1, seen along the normal [pixels]
+constexpr double kTriangulated = 0.53;  // the same, of the triangulated error for one view
+constexpr double kLeastRelief = 1e-3;   // normals 2.6 degrees apart
+constexpr double kScatter = 0.9;        // of the supports' standard deviation
 constexpr double kNoise = 0.26;  // of a photograph, mean over the matching window [grey levels]
 constexpr double kLeastTexture = 0.5;   // [grey levels per px]: they are rounded
 constexpr double kOdds = 70;            // of staying within 3 errors where scatter is one pixel
@@ -39,27 +39,34 @@ double fourth_root(double x) {
 }
 
 struct Summary {
-  double cost = 1;      // the least of the supports'
-  double pixel = 0;     // width of a pixel at the point [m]
-  double cosine = 0;    // mean of rays and normal
-  double variance = 0;  // of the supports' points along the normal [m^2]
+  double cost = 1;          // the least of the supports'
+  double pixel = 0;         // width of a pixel at the point [m]
+  double cosine = 0;        // mean of rays and normal
+  double variance = 0;      // of the supports' points along the normal [m^2]
+  double triangulated = 0;  // triangulated_error()
 };
 
 Summary summarise(std::span<const PointSupport> supports, const Eigen::Vector3d& normal) {
   const auto count = static_cast<double>(supports.size());
   Summary sum;
-  double offset = 0, square = 0, squared_scale = 0;
+  double offset = 0, square = 0, depth = 0, weights = 0;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const PointSupport& support : supports) {
     sum.cost = std::min(sum.cost, support.cost);
-    squared_scale += 1 / squared(support.pixel);
-    sum.cosine += std::abs(normal.dot(support.ray)) / count;
+    sum.cosine += std::abs(normal.dot(support.ray));
     const double along = normal.dot(support.point - supports.front().point);
     offset += along;
     square += along * along;
+    depth += support.depth;
+    const double weight = 1 / squared(support.pixel);
+    weights += weight;
+    information -= weight * support.ray * support.ray.transpose();
   }
-  sum.pixel = std::sqrt(count / squared_scale);
-  sum.cosine = std::max(sum.cosine, kLeastCosine);
-  sum.variance = std::max(square - offset * offset / count, 0.0) / (count - 1);
+  information.diagonal().array() += weights + squared(count / depth);
+  sum.pixel = std::sqrt(count / weights);
+  sum.cosine = std::max(sum.cosine / count, kLeastCosine);
+  sum.variance = std::max(square - offset * offset / count, 0.0) / std::max(count - 1, 1.0);
+  sum.triangulated = std::sqrt(normal.dot(information.inverse() * normal));
   return sum;
 }
 
@@ -82,8 +89,9 @@ int grey(const FusionMap& map, int x, int y) {  // times 4
 // RMS of the gradient of intensity [grey levels per px].
 double texture_at(const FusionMap& map, int x, int y) {
   int sum = 0, count = 0;
-  for (int v = std::max(y - kReach, 1); v <= std::min(y + kReach, map.color.rows - 1); v += 2)
-    for (int u = std::max(x - kReach, 1); u <= std::min(x + kReach, map.color.cols - 1); u += 2) {
+  for (int v = std::max(y - kReach, 1); v <= std::min(y + kReach, map.color.rows - 1); v += kReach)
+    for (int u = std::max(x - kReach, 1); u <= std::min(x + kReach, map.color.cols - 1);
+         u += kReach) {
       const int here = grey(map, u, v);
       const int by_u = here - grey(map, u - 1, v), by_v = here - grey(map, u, v - 1);
       sum += by_u * by_u + by_v * by_v;
@@ -101,8 +109,7 @@ double relief_at(const FusionMap& map, int x, int y) {
   int count = 0;
   for (const auto& [dx, dy] : kAround) {
     const int u = x + kReach * dx, v = y + kReach * dy;
-    if (u < 0 || v < 0 || u >= map.depth.cols || v >= map.depth.rows || !(map.depth(v, u) > 0))
-      continue;
+    if (u < 0 || v < 0 || u >= map.depth.cols || v >= map.depth.rows) continue;
     const cv::Vec3f& other = map.normal(v, u);
     if (other == cv::Vec3f::all(0)) continue;
     sum += 1 - static_cast<double>(normal.dot(other));
@@ -141,17 +148,7 @@ Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double redu
 }
 
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal) {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double depth = 0, diagonal = 0;
-  for (const PointSupport& support : supports) {
-    const double weight = 1 / squared(support.pixel);
-    information -= weight * support.ray * support.ray.transpose();
-    diagonal += weight;
-    depth += support.depth;
-  }
-  depth /= static_cast<double>(supports.size());
-  information.diagonal().array() += diagonal + 1 / (depth * depth);
-  return std::sqrt(normal.dot(information.inverse() * normal));
+  return summarise(supports, normal).triangulated;
 }
 
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal,
@@ -159,14 +156,13 @@ PointError expected_error(std::span<const PointSupport> supports, const Eigen::V
   if (supports.size() < 2) return {};
   const Summary summary = summarise(supports, normal);
   if (!(summary.cost < kNoCost)) return {};
-  const double triangulated = triangulated_error(supports, normal);
   const double smoothing =
       std::sqrt(summary.cost) * (around.relief + kLeastRelief) / squared(summary.cosine);
   const double of_one_view =
-      squared(kTriangulated * triangulated) * static_cast<double>(supports.size());
+      squared(kTriangulated * summary.triangulated) * static_cast<double>(supports.size());
   const double variance = smoothing * (of_one_view + squared(kSmoothing * summary.pixel)) +
                           squared(kScatter) * summary.variance +
-                          squared(around.noise * triangulated);
+                          squared(around.noise * summary.triangulated);
   const double error = std::sqrt(variance);
   const double scatter = std::sqrt(summary.variance) + kLeastScatter * error;
   const double odds = kOdds / fourth_root(scatter / summary.pixel);
