@@ -100,6 +100,10 @@ double texture_at(const FusionMap& map, int x, int y) {
   return std::max(kLeastTexture, std::sqrt(sum / std::max(16.0 * count, 1.0)));
 }
 
+bool unknown(const cv::Vec3f& normal) {
+  return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
+}
+
 // Mean of 1 - cosine; 0 where no normals are known.
 double relief_at(const FusionMap& map, int x, int y) {
   constexpr std::array<std::pair<int, int>, 8> kAround{
@@ -111,11 +115,11 @@ double relief_at(const FusionMap& map, int x, int y) {
     const int u = x + kReach * dx, v = y + kReach * dy;
     if (u < 0 || v < 0 || u >= map.depth.cols || v >= map.depth.rows) continue;
     const cv::Vec3f& other = map.normal(v, u);
-    if (other == cv::Vec3f::all(0)) continue;
+    if (unknown(other)) continue;
     sum += 1 - static_cast<double>(normal.dot(other));
     ++count;
   }
-  return normal == cv::Vec3f::all(0) ? 0 : std::max(sum, 0.0) / std::max(count, 1);
+  return unknown(normal) ? 0 : std::max(sum, 0.0) / std::max(count, 1);
 }
 
 }  // namespace

@@ -171,7 +171,8 @@ void Portion::estimate_errors(PointCloud& cloud) const {
   parallel_for(
       size(),
       [&](std::size_t i) {
-        thread_local std::vector<PointSupport> supports;  // its memory serves the next point
+        thread_local std::vector<PointSupport> memory;  // serves the next point, too
+        std::vector<PointSupport>& supports = memory;
         supports.clear();
         for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) {
           const auto [v, index] = supports_[k];
