@@ -15,8 +15,10 @@ namespace {
 
 // Rounded fits to distances from the truth, by the likelihood of normal errors, on clouds of
 // SimulateUnderwater (seed 21, true poses): closeup and reef in water and in air, thicket in water,
-// at two resolutions each. kNoise is from sand in water: the others have texture enough. The powers
-// of cost and relief are those, of the likeliest few, that treat the scenes most alike.
+// at two resolutions each. kNoise is from sand in water and reef-hazy in air: the others have
+// texture enough. The powers of cost and relief are those, of the likeliest few, that treat these
+// scenes and transect most alike. kSmoothing and kTriangulated were then raised by a fifteenth, for
+// whole clouds, with other seeds known. kOdds is rounded by hand.
 constexpr double kSmoothing = 3.2;      // of relief, cost 1, seen along the normal [pixels]
 constexpr double kTriangulated = 0.53;  // the same, of the triangulated error for one view
 constexpr double kLeastRelief = 1e-3;   // normals 2.6 degrees apart
