@@ -15,6 +15,7 @@ namespace {
 // A view with what must outlive its map.
 struct Slot {
   std::uint32_t image = 0;
+  int photograph_width = 0;
   std::vector<std::size_t> neighbours;  // other slots
   std::vector<bool> taken;              // pixels that support a point, or were proved wrong
 };
@@ -75,6 +76,7 @@ void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
   slots_.resize(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     slots_[i].image = views[i].image;
+    slots_[i].photograph_width = scene.images[views[i].image].camera.width;
     if (merge_) continue;
     for (const std::uint32_t neighbour : views[i].neighbours) {
       const auto found = slot_of.find(neighbour);
@@ -125,7 +127,9 @@ void Fusion::fuse_view(std::size_t reference, const MapStore& store, const Cloud
   std::vector<WorkingView> views;
   for (const std::size_t slot : views_of(reference)) {
     slots_[slot].taken.resize(store.map(slot).pixels());
-    views.push_back({slots_[slot].image, &store.map(slot), &slots_[slot].taken});
+    const double reduction = static_cast<double>(slots_[slot].photograph_width) /
+                             static_cast<double>(store.map(slot).depth.cols);
+    views.push_back({slots_[slot].image, &store.map(slot), &slots_[slot].taken, reduction});
   }
   Portion portion(views);
   for (std::size_t pixel = 0; pixel < store.map(reference).pixels();) {

@@ -5,22 +5,26 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "scene/any_camera.h"
+#include "cloud/fusion_map.h"
+#include "scene/camera_model.h"
 #include "scene/pose.h"
 
 namespace axial::cloud {
 
 // What one depth map says of a point, in the world's axes.
 struct PointSupport {
-  Eigen::Vector3d point;                 // of the map's pixel [m]
-  Eigen::Vector3d ray;                   // of that pixel, unit
-  Eigen::Matrix<double, 2, 3> jacobian;  // d(pixel)/d(point) there [px/m], through the port
-  double depth;                          // along the pixel's ray [m]
-  double cost;                           // of matching: 1 - the map's confidence; 1: not known
+  Eigen::Vector3d point;  // of the map's pixel [m]
+  Eigen::Vector3d ray;    // from the camera to it, unit
+  double pixel;           // width of the map's pixel at the point, through the port [m]
+  double depth;           // along the pixel's ray [m]
+  double cost;            // of matching: 1 - the map's confidence; 1: not known
 };
 
-// Makes the supports of one view.
+// Makes the supports of one view. A pixel's angle is read off a table (to 2 %), and rays begin in
+// the camera's centre (behind a port they are off by less than a degree): a tenth of the time that
+// exact rays with derivatives take.
 class SupportCamera {
  public:
   SupportCamera(const CameraModel& model, const Pose& pose);
@@ -30,10 +34,18 @@ class SupportCamera {
                        const Eigen::Vector3d& point) const;
 
  private:
-  AnyCamera<double> camera_;
-  Pose pose_;
-  std::uint32_t width_;
+  Eigen::Vector3d centre_;
+  std::uint32_t width_, shift_ = 0, columns_;  // cells of 2^shift_ pixels
+  std::vector<float> angles_;                  // of a pixel in each cell [rad]
 };
+
+// What a map and its photograph show around one pixel.
+struct Surroundings {
+  double relief = 0;  // mean of 1 - cosine between its normal and those three pixels away; 0: none
+  double noise = 0;   // standard deviation of a match's place for want of texture [px]; 0: unknown
+};
+// `reduction`: width of the photograph / of the map. The noise is unknown without colours.
+Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
 // Standard deviation, along the unit vector `normal`, of the point that the supports' pixels
 // triangulate if both coordinates of each have independent errors of 1 px [m per px]. Parallel rays
@@ -45,13 +57,17 @@ struct PointError {
   float confidence = 0;  // probability that the distance is at most 3 errors
 };
 
-// Of the mean of the supports' points, on a surface with this unit normal: triangulated_error(),
-// times the noise of the best match among them, which grows where the surface is seen at a slant,
-// times the number of supports. For maps that agree were matched on the same photographs, and what
-// smooths a surface is the same in all: another one helps as far as it widens the angle between the
-// rays or matches better, not by its number. Confidence grows as the supports' points lie nearer to
-// each other than the error. Unknown with less than two supports, and where no cost is known. The
-// constants were fitted to maps of this project's matching.
-PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
+// Of the mean of the supports' points, on a surface with this unit normal, seen by the first
+// support's map as `around` tells. The variance is a sum of what
+// * matching makes of relief: it fits planes to windows of some pixels. Relief that it cannot
+// follow
+//   raises the cost of even the best match, and the normals of neighbouring pixels differ. All maps
+//   are smoothed alike, so that their number does not help, but wider angles between the rays do.
+// * the maps show themselves: the variance of the supports' points along the normal.
+// * the noise of photographs makes of little texture.
+// Confidence grows as the supports' points lie nearer to each other. Unknown with less than two
+// supports, and where no cost is known.
+PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal,
+                          const Surroundings& around);
 
 }  // namespace axial::cloud

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "cloud/point_error.h"
 
 namespace axial::cloud {
 namespace {
@@ -71,7 +70,7 @@ std::size_t Portion::collect(std::size_t pixel) {
   for (PixelPoints& where : where_) where.pixels.clear();
   supports_.clear();
   begin_.assign(1, 0);
-  const auto& [image, map, taken] = views_[0];
+  const auto& [image, map, taken, reduction] = views_[0];
   std::vector<std::uint32_t>& asking = where_[0].pixels;
   for (; pixel < map->pixels() && asking.size() < kPixels; ++pixel)
     if (map->depth_at(pixel) > 0 && !(*taken)[pixel])
@@ -81,6 +80,8 @@ std::size_t Portion::collect(std::size_t pixel) {
 }
 
 void Portion::ask(const FuseOptions& options) {
+  if (options.errors && cameras_.empty())
+    for (const WorkingView& view : views_) cameras_.emplace_back(view.map->camera, view.map->pose);
   for (std::size_t n = 0; n < answers_.size(); ++n) {
     answers_[n].resize(where_[0].pixels.size());
     ask_neighbour(*views_[0].map, *views_[n + 1].map, where_[0], options, answers_[n]);
@@ -166,24 +167,26 @@ void Portion::average(std::size_t point, PointCloud& cloud) const {
 }
 
 void Portion::estimate_errors(PointCloud& cloud) const {
-  std::vector<SupportCamera> cameras;
-  for (const WorkingView& view : views_) cameras.emplace_back(view.map->camera, view.map->pose);
   cloud.errors.resize(size());
   cloud.confidences.resize(size());
   parallel_for(
       size(),
       [&](std::size_t i) {
-        std::vector<PointSupport> supports;
-        supports.reserve(begin_[i + 1] - begin_[i]);
+        thread_local std::vector<PointSupport> memory;  // serves the next point, too
+        std::vector<PointSupport>& supports = memory;
+        supports.clear();
         for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) {
           const auto [v, index] = supports_[k];
           const FusionMap& map = *views_[v].map;
           const std::uint32_t pixel = where_[v].pixels[index];
           const auto depth = static_cast<double>(map.depth_at(pixel));
-          supports.push_back(cameras[v].support(pixel, depth, map.cost_at(pixel),
-                                                where_[v].points[index].cast<double>()));
+          supports.push_back(cameras_[v].support(pixel, depth, map.cost_at(pixel),
+                                                 where_[v].points[index].cast<double>()));
         }
-        const PointError error = expected_error(supports, cloud.normals[i].cast<double>());
+        const std::uint32_t asking = where_[0].pixels[supports_[begin_[i]].index];
+        const PointError error =
+            expected_error(supports, cloud.normals[i].cast<double>(),
+                           surroundings(*views_[0].map, asking, views_[0].reduction));
         cloud.errors[i] = error.error;
         cloud.confidences[i] = error.confidence;
       },

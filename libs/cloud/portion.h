@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cloud/fusion_map.h"
+#include "cloud/point_error.h"
 #include "cloud/two_views.h"
 
 namespace axial::cloud {
@@ -15,6 +16,7 @@ struct WorkingView {
   std::uint32_t image;
   const FusionMap* map;
   std::vector<bool>* taken;
+  double reduction = 1;  // width of the photograph / of the map
 };
 
 // Call collect, ask, accept and points in this order, again and again.
@@ -56,6 +58,7 @@ class Portion {
   std::vector<std::uint8_t> proved_by_two_;   // of each asking pixel, or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])
   std::vector<std::size_t> begin_;
+  std::vector<SupportCamera> cameras_;  // of the views, or empty while nobody wants errors
 };
 
 }  // namespace axial::cloud

@@ -42,6 +42,19 @@ std::string share_cells(const std::vector<double>& shares, std::size_t of) {
   return text;
 }
 
+void add(const NormalisedErrors& errors, Json& json) {
+  json["points"] = errors.points;
+  json["rms"] = errors.points > 0 ? Json(errors.rms) : Json();
+  json["median"] = errors.points > 0 ? Json(errors.median) : Json();
+  json["within_1_2_3"] = errors.within;
+}
+
+std::string cells(const NormalisedErrors& errors) {
+  const auto& [one, two, three] = errors.within;
+  return fmt::format("{:>10}{:>10.3f}{:>10.3f}{:>10.4f}{:>10.4f}{:>10.4f}\n", errors.points,
+                     errors.rms, errors.median, one, two, three);
+}
+
 }  // namespace
 
 Json to_json(std::span<const RecallOfViews> classes) {
@@ -88,11 +101,16 @@ Json to_json(const Calibration& calibration) {
                        {"points", one.points},
                        {"mean_confidence", one.points > 0 ? Json(one.mean_confidence) : Json()},
                        {"within", one.points > 0 ? Json(one.within) : Json()}});
-  return {{"points", calibration.points},
-          {"rms", calibration.rms},
-          {"median", calibration.median},
-          {"within_1_2_3", calibration.within},
-          {"reliability", classes}};
+  Json by_views = Json::array();
+  for (const NormalisedErrorsOfViews& one : calibration.by_views) {
+    by_views.push_back({{"least", one.least}, {"most", one.most > 0 ? Json(one.most) : Json()}});
+    add(one.errors, by_views.back());
+  }
+  Json json;
+  add(calibration.all, json);
+  json["by_views"] = by_views;
+  json["reliability"] = classes;
+  return json;
 }
 
 Json to_json(const Strip& strip) {
@@ -137,11 +155,13 @@ std::string table(std::span<const ErrorsOfViews> classes, std::span<const double
 }
 
 std::string table(const Calibration& calibration) {
-  const auto& [one, two, three] = calibration.within;
-  std::string text = fmt::format(
-      "distance to truth / expected error of {} points: RMS {:.3f}, median {:.3f}; within 1, 2, 3: "
-      "{:.4f}, {:.4f}, {:.4f}\n",
-      calibration.points, calibration.rms, calibration.median, one, two, three);
+  std::string text = fmt::format("{:<22}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "expected errors",
+                                 "points", "RMS", "median", "within 1", "within 2", "within 3");
+  text += fmt::format("{:<22}", "all points") + cells(calibration.all);
+  for (const NormalisedErrorsOfViews& one : calibration.by_views)
+    if (one.errors.points > 0)
+      text += fmt::format("{:<22}", "of " + range_of_views(one.least, one.most) + " views") +
+              cells(one.errors);
   if (calibration.reliability.empty()) return text;
   text += fmt::format("{:<22}{:>10}{:>18}{:>18}\n", "confidence", "points", "its mean",
                       fmt::format("within {:g} errors", kReliableErrors));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "evaluate/statistics.h"
@@ -11,6 +12,8 @@ namespace axial::evaluate {
 namespace {
 
 constexpr std::size_t kConfidenceClasses = 10;
+constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 3> kClassesOfViews{
+    {{0, 2}, {3, 3}, {4, 0}}};
 
 double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
@@ -22,6 +25,24 @@ std::vector<double> shares_within(std::span<const float> distances,
   for (const double tolerance : tolerances)
     within.push_back(score(distances, {}, tolerance).precision);
   return within;
+}
+
+// The values of the points that rest on `least` to `most` views; most 0: or more.
+std::vector<float> of_views(std::span<const float> values, std::span<const std::uint32_t> views,
+                            std::uint32_t least, std::uint32_t most) {
+  std::vector<float> chosen;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (views[i] >= least && (most == 0 || views[i] <= most)) chosen.push_back(values[i]);
+  return chosen;
+}
+
+NormalisedErrors summary_of(std::vector<float> normalised) {
+  std::erase_if(normalised, [](float value) { return std::isnan(value); });
+  const DistanceStatistics statistics = summarise(normalised);
+  NormalisedErrors errors{normalised.size(), statistics.rms, statistics.median, {}};
+  for (std::size_t k = 0; k < errors.within.size(); ++k)
+    errors.within[k] = score(normalised, {}, static_cast<double>(k + 1)).precision;
+  return errors;
 }
 
 // Distances of points in units of their expected errors; not a number where none is expected.
@@ -63,10 +84,8 @@ std::vector<ErrorsOfViews> errors_by_views(std::span<const std::uint32_t> views,
                                            std::span<const float> distances,
                                            std::span<const double> tolerances, double gross) {
   std::vector<ErrorsOfViews> classes;
-  for (const auto& [least, most] : {std::pair{0u, 2u}, {3u, 3u}, {4u, 0u}}) {
-    std::vector<float> of_class;
-    for (std::size_t i = 0; i < distances.size(); ++i)
-      if (views[i] >= least && (most == 0 || views[i] <= most)) of_class.push_back(distances[i]);
+  for (const auto& [least, most] : kClassesOfViews) {
+    const std::vector<float> of_class = of_views(distances, views, least, most);
     const DistanceStatistics errors = summarise(of_class);
     const auto beyond = static_cast<std::size_t>(std::ranges::count_if(
         of_class, [&](float distance) { return static_cast<double>(distance) > gross; }));
@@ -81,12 +100,10 @@ std::optional<Calibration> calibration_of(const PointWorth& worth,
                                           std::span<const float> distances) {
   if (worth.error.empty()) return {};
   const std::vector<float> all = normalised(worth, distances);
-  std::vector<float> known = all;
-  std::erase_if(known, [](float value) { return std::isnan(value); });
-  const DistanceStatistics statistics = summarise(known);
-  Calibration result{known.size(), statistics.rms, statistics.median, {}, {}};
-  for (std::size_t k = 0; k < result.within.size(); ++k)
-    result.within[k] = score(known, {}, static_cast<double>(k + 1)).precision;
+  Calibration result{summary_of(all), {}, {}};
+  if (!worth.views.empty())
+    for (const auto& [least, most] : kClassesOfViews)
+      result.by_views.push_back({least, most, summary_of(of_views(all, worth.views, least, most))});
   if (!worth.confidence.empty()) result.reliability = reliability_of(worth.confidence, all);
   return result;
 }

@@ -42,12 +42,24 @@ struct Reliability {
 };
 inline constexpr double kReliableErrors = 3;
 
+// Distances to the truth / expected errors, of the points with an expected error above 0.
+struct NormalisedErrors {
+  std::size_t points = 0;
+  double rms = 0;  // 1 if they are calibrated
+  double median = 0;
+  std::array<double, 3> within{};  // share of the points within 1, 2 and 3 expected errors
+};
+
+// Of the points that rest on `least` to `most` views.
+struct NormalisedErrorsOfViews {
+  std::uint32_t least = 0, most = 0;  // most 0: or more
+  NormalisedErrors errors;
+};
+
 struct Calibration {
-  std::size_t points = 0;  // with an expected error above 0
-  double rms = 0;          // of distance to the truth / expected error: 1 if they are calibrated
-  double median = 0;       // of the same
-  std::array<double, 3> within{};        // share of the points within 1, 2 and 3 expected errors
-  std::vector<Reliability> reliability;  // empty unless there are confidences
+  NormalisedErrors all;
+  std::vector<NormalisedErrorsOfViews> by_views;  // classes as above; empty unless views are known
+  std::vector<Reliability> reliability;           // empty unless there are confidences
 };
 
 // Nothing where no expected errors are known. Error for a confidence outside [0, 1].

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -22,6 +23,8 @@ class PointErrorWithCamera : public testing::TestWithParam<bool> {
 };
 INSTANTIATE_TEST_SUITE_P(Cameras, PointErrorWithCamera, testing::Values(false, true),
                          [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
+
+constexpr Surroundings kPlain{0.01, 0};
 
 // A point's nearest pixel in every view, and the depth that the pixel's ray has next to the point.
 std::vector<PointSupport> supports_of(const CameraModel& model, const std::vector<Pose>& poses,
@@ -89,36 +92,145 @@ TEST_P(PointErrorWithCamera, IsThatOfTriangulation) {
       }
 }
 
-TEST_P(PointErrorWithCamera, GrowsWithCostAndFallsWithTheAngle) {
+TEST_P(PointErrorWithCamera, GrowsWithTheSquareOfTheDistanceWhereAnglesAreSmall) {
+  const Eigen::Vector3d normal(0, 0, -1);
+  const auto error = [&](double distance) {
+    // In the middle of two cameras that look the same way, without the rounding to whole pixels.
+    const Eigen::Vector3d point(0, 0, distance);
+    std::vector<PointSupport> supports = supports_of(model(), test::circle_of_poses(2), point);
+    for (const double side : {-1.0, 1.0}) {
+      PointSupport& support = supports[side > 0];
+      support.ray = (point - Eigen::Vector3d(0.1 * side, 0, 0)).normalized();
+      support.pixel *= distance / support.depth;
+      support.depth = distance;
+    }
+    return triangulated_error(supports, normal);
+  };
+  for (const double distance : {0.5, 1.0, 1.5})
+    EXPECT_NEAR(error(2 * distance) / error(distance), 4, 0.2) << distance;
+}
+
+// The camera's own projection is the oracle: all over the image, the corners included.
+TEST_P(PointErrorWithCamera, SupportsHaveTheCamerasRaysAndPixels) {
+  const CameraModel dry_or_wet = model();
+  const AnyCamera<double> camera(make_camera<double>(dry_or_wet));
+  const Pose pose = test::circle_of_poses(3, 0.4)[1];
+  const SupportCamera view(dry_or_wet, pose);
+  const int width = dry_or_wet.width, height = dry_or_wet.height;
+  for (int y = 0; y < height; y += height / 7 - 1)
+    for (int x = 0; x < width; x += width / 7 - 1)
+      for (const double depth : {0.5, 2.0}) {
+        const auto ray = camera.ray({x, y});
+        refractive::Matrix23<double> J;
+        camera.project(ray.at(depth), &J);
+        const PointSupport support = view.support(static_cast<std::uint32_t>(y * width + x), depth,
+                                                  0.1, pose.to_world(ray.at(depth)));
+        EXPECT_NEAR(support.pixel * std::sqrt(0.5 * J.squaredNorm()), 1, 0.05) << x << " " << y;
+        EXPECT_LT((pose.rotation * support.ray).cross(ray.direction).norm(), 0.02);
+        EXPECT_NEAR(support.ray.norm(), 1, 1e-9);
+      }
+}
+
+// The supports with their points in one place: the maps agree.
+std::vector<PointSupport> agreeing(std::vector<PointSupport> supports,
+                                   const Eigen::Vector3d& point) {
+  for (PointSupport& support : supports) support.point = point;
+  return supports;
+}
+
+TEST_P(PointErrorWithCamera, FallsWithTheAngleAndGrowsWithCostReliefAndNoise) {
   const Eigen::Vector3d point(0, 0, 1), normal(0, 0, -1);
-  const auto error = [&](std::size_t views, double radius, double cost) {
-    return expected_error(supports_of(model(), test::circle_of_poses(views, radius), point, cost),
-                          normal)
+  const auto error = [&](std::size_t views, double radius, double cost, Surroundings around) {
+    const auto poses = test::circle_of_poses(views, radius);
+    return expected_error(agreeing(supports_of(model(), poses, point, cost), point), normal, around)
         .error;
   };
-  EXPECT_GT(error(3, 0.2, 0.2), 2 * error(3, 0.2, 0.1));
-  EXPECT_GT(error(3, 0.1, 0.1), 1.7f * error(3, 0.2, 0.1));
-  // Copies of the same two views add nothing that can be believed.
-  std::vector<PointSupport> two = supports_of(model(), test::circle_of_poses(2, 0.2), point);
-  const float once = expected_error(two, normal).error;
-  for (int copies = 2; copies < 4; ++copies) {
-    const std::vector<PointSupport> more =
-        supports_of(model(), test::circle_of_poses(2, 0.2), point);
-    two.insert(two.end(), more.begin(), more.end());
-    EXPECT_GE(expected_error(two, normal).error, 0.999f * once);
+  for (const std::size_t views : {2u, 3u, 6u}) {
+    float wider = 0;
+    for (const double radius : {0.4, 0.2, 0.1, 0.05, 0.02}) {
+      const float narrow = error(views, radius, 0.1, kPlain);
+      EXPECT_GT(narrow, wider) << views << " views, radius " << radius;
+      wider = narrow;
+    }
+    EXPECT_GT(error(views, 0.05, 0.1, kPlain), 1.5f * error(views, 0.1, 0.1, kPlain));
+    EXPECT_GT(error(views, 0.2, 0.2, kPlain), 1.1f * error(views, 0.2, 0.1, kPlain));
+    EXPECT_GT(error(views, 0.2, 0.1, {0.1, 0}), 2 * error(views, 0.2, 0.1, kPlain));
+    EXPECT_GT(error(views, 0.2, 0.1, {0.01, 1}), 2 * error(views, 0.2, 0.1, kPlain));
   }
 }
 
-TEST_P(PointErrorWithCamera, IsConfidentWhereTheMapsAgree) {
+TEST_P(PointErrorWithCamera, CopiesOfTheSameMapsAddNothing) {
   const Eigen::Vector3d point(0, 0, 1), normal(0, 0, -1);
-  std::vector<PointSupport> supports = supports_of(model(), test::circle_of_poses(3, 0.2), point);
-  const PointError alike = expected_error(supports, normal);
-  supports[1].point.z() += 3 * static_cast<double>(alike.error);
-  const PointError apart = expected_error(supports, normal);
-  EXPECT_EQ(apart.error, alike.error);
-  EXPECT_GT(alike.confidence, 0.99f);
+  const std::vector<PointSupport> two =
+      agreeing(supports_of(model(), test::circle_of_poses(2, 0.2), point), point);
+  const float once = expected_error(two, normal, kPlain).error;
+  std::vector<PointSupport> copies = two;
+  for (int n = 2; n < 4; ++n) {
+    copies.insert(copies.end(), two.begin(), two.end());
+    EXPECT_GE(expected_error(copies, normal, kPlain).error, 0.999f * once);
+  }
+}
+
+// Of anything that two maps to twelve may say.
+std::vector<PointSupport> random_supports(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<PointSupport> supports(2 + random() % 11);
+  for (PointSupport& support : supports) {
+    support.depth = 0.5 + uniform(random);
+    support.ray = Eigen::Vector3d(uniform(random) - 0.5, uniform(random) - 0.5, 1).normalized();
+    support.pixel = support.depth * 1e-3 * (0.7 + 0.3 * uniform(random));
+    support.cost = 0.03 + 0.5 * uniform(random);
+    support.point = 1e-3 * Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
+  }
+  return supports;
+}
+
+TEST(PointError, HasTheUnitOfTheScene) {
+  std::mt19937 random(1);
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.3, 0.1, -1).normalized();
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<PointSupport> supports = random_supports(random);
+    const Surroundings around{0.001 * trial, 0.1};
+    const PointError metres = expected_error(supports, normal, around);
+    for (PointSupport& support : supports) {
+      support.depth *= 1000;
+      support.pixel *= 1000;
+      support.point *= 1000;
+    }
+    const PointError millimetres = expected_error(supports, normal, around);
+    EXPECT_NEAR(millimetres.error / metres.error, 1000, 0.01);
+    EXPECT_NEAR(millimetres.confidence, metres.confidence, 1e-6);
+    EXPECT_GT(metres.error, 0);
+    EXPECT_GT(metres.confidence, 0.5);
+    EXPECT_LT(metres.confidence, 1);
+  }
+}
+
+TEST(PointError, DoesNotDependOnTheOrderOfTheMaps) {
+  std::mt19937 random(2);
+  const Eigen::Vector3d normal(0, 0, -1);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<PointSupport> supports = random_supports(random);
+    const PointError one = expected_error(supports, normal, kPlain);
+    std::shuffle(supports.begin(), supports.end(), random);
+    EXPECT_NEAR(expected_error(supports, normal, kPlain).error / one.error, 1, 1e-5);
+  }
+}
+
+TEST_P(PointErrorWithCamera, IsSureWhereTheMapsAgree) {
+  const Eigen::Vector3d point(0, 0, 1), normal(0, 0, -1);
+  std::vector<PointSupport> supports =
+      agreeing(supports_of(model(), test::circle_of_poses(3, 0.2), point), point);
+  const PointError alike = expected_error(supports, normal, kPlain);
+  const double offset = 6 * static_cast<double>(alike.error);
+  supports[1].point.z() += offset;
+  const PointError apart = expected_error(supports, normal, kPlain);
+  // The standard deviation of 0, 0 and 1 is 0.577.
+  EXPECT_GT(apart.error, 0.5 * offset);
+  EXPECT_LT(apart.error, offset);
+  EXPECT_GT(alike.confidence, 0.98f);
   EXPECT_LE(alike.confidence, 1.0f);
-  EXPECT_GT(1 - apart.confidence, 5 * (1 - alike.confidence));
+  EXPECT_GT(1 - apart.confidence, 1.5f * (1 - alike.confidence));
 }
 
 TEST_P(PointErrorWithCamera, IsFiniteForRaysThatAreParallel) {
@@ -133,11 +245,69 @@ TEST_P(PointErrorWithCamera, IsFiniteForRaysThatAreParallel) {
 TEST_P(PointErrorWithCamera, IsUnknownForOneMapOrWithoutCosts) {
   const Eigen::Vector3d point(0, 0, 1), normal(0, 0, -1);
   for (const PointError& error :
-       {expected_error(supports_of(model(), test::circle_of_poses(1, 0.2), point), normal),
-        expected_error(supports_of(model(), test::circle_of_poses(3, 0.2), point, 1.0), normal)}) {
+       {expected_error(supports_of(model(), test::circle_of_poses(1, 0.2), point), normal, kPlain),
+        expected_error(supports_of(model(), test::circle_of_poses(3, 0.2), point, 1.0), normal,
+                       kPlain)}) {
     EXPECT_EQ(error.error, 0);
     EXPECT_EQ(error.confidence, 0);
   }
+}
+
+// A map of one depth whose normals turn about the y axis by `turn` a pixel, and a photograph whose
+// intensity grows by `across` and `down`.
+FusionMap turning_map(double turn, int across, int down, bool photograph = true) {
+  DepthMap map;
+  map.image_path = "turning";
+  map.camera = test::dry_camera();
+  const int width = map.camera.width, height = map.camera.height;
+  map.depth = cv::Mat1f(height, width, 1.0f);
+  map.normal = cv::Mat3f(height, width);
+  cv::Mat3b color(height, width);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      map.normal(y, x) = {static_cast<float>(std::sin(turn * x)), 0,
+                          static_cast<float>(-std::cos(turn * x))};
+      color(y, x) = cv::Vec3b::all(static_cast<std::uint8_t>((across * x + down * y) % 200));
+    }
+  return make_fusion_map(map, photograph ? color : cv::Mat3b());
+}
+
+std::uint32_t pixel_at(const FusionMap& map, int x, int y) {
+  return static_cast<std::uint32_t>(y * map.depth.cols + x);
+}
+
+TEST(Surroundings, TellHowNormalsTurnAndIntensityGrows) {
+  const FusionMap map = turning_map(0.02, 3, 4);
+  const Surroundings around = surroundings(map, pixel_at(map, 10, 12), 1);
+  // Six of the eight pixels lie three columns away.
+  EXPECT_NEAR(around.relief, 0.75 * (1 - std::cos(0.06)), 1e-5);
+  const Surroundings reduced = surroundings(map, pixel_at(map, 10, 12), 2);
+  EXPECT_EQ(reduced.relief, around.relief);
+  EXPECT_NEAR(reduced.noise, around.noise / 2, 1e-9) << "a mean of four pixels";
+  const FusionMap plainer = turning_map(0, 0, 1);
+  EXPECT_NEAR(surroundings(plainer, pixel_at(plainer, 10, 12), 1).noise / around.noise, 5, 1e-6);
+  EXPECT_NEAR(surroundings(plainer, pixel_at(plainer, 10, 12), 1).relief, 0, 1e-6);
+  const FusionMap plain = turning_map(0, 0, 0), unseen = turning_map(0, 3, 4, false);
+  EXPECT_TRUE(std::isfinite(surroundings(plain, pixel_at(plain, 10, 12), 1).noise));
+  EXPECT_GT(surroundings(plain, pixel_at(plain, 10, 12), 1).noise, around.noise);
+  EXPECT_EQ(surroundings(unseen, pixel_at(unseen, 10, 12), 1).noise, 0);
+}
+
+TEST(Surroundings, StayInsideTheImageAndCountKnownNormals) {
+  FusionMap map = turning_map(0.02, 3, 4);
+  const int right = map.depth.cols - 1, bottom = map.depth.rows - 1;
+  for (const int x : {0, right})
+    for (const int y : {0, bottom}) {
+      const Surroundings around = surroundings(map, pixel_at(map, x, y), 1);
+      EXPECT_NEAR(around.relief, 2.0 / 3 * (1 - std::cos(0.06)), 1e-5);
+      EXPECT_GT(around.noise, 0);
+    }
+  map.normal(12, 13) = {0, 0, 0};
+  map.normal(12, 7) = {0, 0, 0};
+  EXPECT_NEAR(surroundings(map, pixel_at(map, 10, 12), 1).relief, 4.0 / 6 * (1 - std::cos(0.06)),
+              1e-5);
+  map.normal(12, 10) = {0, 0, 0};
+  EXPECT_EQ(surroundings(map, pixel_at(map, 10, 12), 1).relief, 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "base/error.h"
 
@@ -54,14 +55,14 @@ TEST(Calibration, IsOneWhereErrorsAreAsExpected) {
   for (std::size_t i = 0; i < cloud.distances.size(); i += 10) cloud.distances[i] /= 10;
   const auto calibration = calibration_of(cloud.worth, cloud.distances);
   ASSERT_TRUE(calibration);
-  EXPECT_EQ(calibration->points, 100000u);
+  EXPECT_EQ(calibration->all.points, 100000u);
   // Standard error of the RMS of n normal numbers: 1 / sqrt(2 n).
-  EXPECT_NEAR(calibration->rms, 1, 0.01);
-  EXPECT_NEAR(calibration->median, 0.6745, 0.01);
-  EXPECT_NEAR(calibration->within[0], 0.6827, 0.01);
-  EXPECT_NEAR(calibration->within[2], 0.9973, 0.002);
+  EXPECT_NEAR(calibration->all.rms, 1, 0.01);
+  EXPECT_NEAR(calibration->all.median, 0.6745, 0.01);
+  EXPECT_NEAR(calibration->all.within[0], 0.6827, 0.01);
+  EXPECT_NEAR(calibration->all.within[2], 0.9973, 0.002);
   for (float& error : cloud.worth.error) error *= 2;
-  EXPECT_NEAR(calibration_of(cloud.worth, cloud.distances)->rms, 0.5, 0.005);
+  EXPECT_NEAR(calibration_of(cloud.worth, cloud.distances)->all.rms, 0.5, 0.005);
 }
 
 TEST(Calibration, TellsOfEveryConfidenceHowManyPointsDeserveIt) {
@@ -77,13 +78,36 @@ TEST(Calibration, TellsOfEveryConfidenceHowManyPointsDeserveIt) {
   EXPECT_EQ(calibration->reliability[5].points, 0u);
 }
 
+// Points of two maps with errors of half the size that is expected, points of more as expected.
+TEST(Calibration, TellsPointsOfTwoMapsFromTheRest) {
+  Cloud cloud = honest_cloud();
+  EXPECT_TRUE(calibration_of(cloud.worth, cloud.distances)->by_views.empty());
+  for (std::size_t i = 0; i < cloud.distances.size(); ++i) {
+    cloud.worth.views.push_back(static_cast<std::uint32_t>(i % 10 == 0 ? 2 : 4 + i % 3));
+    if (i % 10 == 0) cloud.distances[i] /= 20;
+  }
+  cloud.worth.error[0] = 0;
+  const auto calibration = calibration_of(cloud.worth, cloud.distances);
+  ASSERT_EQ(calibration->by_views.size(), 3u);
+  const auto& [two, three, more] =
+      std::tie(calibration->by_views[0], calibration->by_views[1], calibration->by_views[2]);
+  EXPECT_EQ(two.most, 2u);
+  EXPECT_EQ(two.errors.points, 9999u);
+  EXPECT_NEAR(two.errors.rms, 0.5, 0.02);
+  EXPECT_NEAR(two.errors.within[0], 0.9545, 0.02);
+  EXPECT_EQ(three.errors.points, 0u);
+  EXPECT_EQ(more.least, 4u);
+  EXPECT_EQ(more.errors.points, 90000u);
+  EXPECT_NEAR(more.errors.rms, 1, 0.01);
+}
+
 TEST(Calibration, GoesByThePointsThatExpectAnError) {
   const std::vector<float> distances{0.001f, 0.002f, 0.003f, 0.004f};
   EXPECT_FALSE(calibration_of({}, distances));
   PointWorth worth;
   worth.error = {0.001f, 0.0f, NAN, 0.004f};
-  EXPECT_EQ(calibration_of(worth, distances)->points, 2u);
-  EXPECT_NEAR(calibration_of(worth, distances)->rms, 1, 1e-6);
+  EXPECT_EQ(calibration_of(worth, distances)->all.points, 2u);
+  EXPECT_NEAR(calibration_of(worth, distances)->all.rms, 1, 1e-6);
   EXPECT_TRUE(calibration_of(worth, distances)->reliability.empty());
   worth.confidence = {0.5f, 0.5f, 0.5f, 1.5f};
   EXPECT_THROW(calibration_of(worth, distances), Error);

@@ -136,6 +136,8 @@ TEST_F(Programs, EvaluateByViewsThicknessAndExpectedErrors) {
   EXPECT_EQ(json["points_by_views"][0]["share"], 0.25);
   EXPECT_EQ(json["points_by_views"][1]["share"], 0.75);
   EXPECT_NEAR(json["calibration"]["rms"].get<double>(), 1, 0.1);
+  EXPECT_EQ(json["calibration"]["by_views"][0]["points"], 5000);
+  EXPECT_EQ(json["calibration"]["by_views"][2]["rms"], nullptr) << "no point of four maps";
   EXPECT_EQ(json["calibration"]["reliability"][9]["points"], 20000);
   EXPECT_FALSE(json.contains("strip"));
 }
