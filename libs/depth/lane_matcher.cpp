@@ -60,9 +60,10 @@ void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std:
   if (!with_depths) return;
   tables.has_depth[view] = source.depth ? 1.0f : 0.0f;
   tables.depths.resize(tables.words.size(), 0.0f);
-  if (source.depth)
-    std::copy(source.depth->begin(), source.depth->end(),
-              tables.depths.end() - static_cast<std::ptrdiff_t>(pixels));
+  if (!source.depth) return;
+  const cv::Mat1f& depth = *source.depth;
+  float* to = tables.depths.data() + (tables.depths.size() - pixels);
+  for (int y = 0; y < depth.rows; ++y, to += depth.cols) std::copy_n(depth[y], depth.cols, to);
 }
 
 // Precondition: all `sources` are of one kind.

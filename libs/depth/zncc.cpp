@@ -11,16 +11,16 @@ QuadImage::QuadImage(const cv::Mat1b& image)
     : width_(image.cols),
       height_(image.rows),
       words_(static_cast<std::size_t>(image.cols) * static_cast<std::size_t>(image.rows)) {
-  std::size_t i = 0;
-  for (int y = 0; y < height_; ++y) {
+  const auto word = [](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    return a | b << 8 | c << 16 | d << 24;
+  };
+  std::uint32_t* words = words_.data();
+  for (int y = 0; y < height_; ++y, words += width_) {
     const std::uint8_t* row = image.ptr<std::uint8_t>(y);
     const std::uint8_t* below = image.ptr<std::uint8_t>(y + 1 < height_ ? y + 1 : y);
-    for (int x = 0; x < width_; ++x, ++i) {
-      const int right = x + 1 < width_ ? x + 1 : x;
-      words_[i] = static_cast<std::uint32_t>(row[x]) | static_cast<std::uint32_t>(row[right]) << 8 |
-                  static_cast<std::uint32_t>(below[x]) << 16 |
-                  static_cast<std::uint32_t>(below[right]) << 24;
-    }
+    const int last = width_ - 1;  // apart, so that the others go into vectors
+    for (int x = 0; x < last; ++x) words[x] = word(row[x], row[x + 1], below[x], below[x + 1]);
+    words[last] = word(row[last], row[last], below[last], below[last]);
   }
 }
 
