@@ -79,18 +79,21 @@ void say(const Project& project, const Agreement& found) {
                                          100 * found.consistent, found.asked);
   const Disagreement wrong = judge(found, limits);
   if (!wrong.cameras()) axial::log_info("Agreement: {}; {}", points, pixels);
+  const std::string scores = fmt::format(
+      "patches at {} sparse points match with a median score of {:.2f} (usual: over {})",
+      found.scored, found.score, limits.score);
   if (!wrong.cameras() && wrong.score)
     axial::log_warning(
-        "The photographs do not seem to show the scene: patches at {} sparse points match with a "
-        "median score of {:.2f} (usual: over {}). Are these the photographs of these poses?",
-        found.scored, found.score, limits.score);
+        "The photographs do not seem to show the scene: {}. Are these the photographs of these "
+        "poses?",
+        scores);
   if (!wrong.cameras()) return;
   axial::log_warning(
       "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
-      "(usual: "
-      "over {:.0f} %). Likely causes: {}",
+      "(usual: over {:.0f} %){}. Likely causes: {}{}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
-      likely_causes(project));
+      wrong.score ? "; " + scores : "", likely_causes(project),
+      wrong.score ? ", or photographs of something else" : "");
 }
 
 void write_report(const std::filesystem::path& file, const Agreement& found) {

@@ -108,8 +108,14 @@ class Neighbour {
 FusionMap make_fusion_map(DepthMap map, const cv::Mat3b& color) {
   check(map, color);
   if (map.normal.empty()) map.normal = estimate_map_normals(map);
-  FusionMap view{map.image_path,   map.pose, map.camera, in_one_run(map.depth), {}, {},
-                 in_one_run(color)};
+  FusionMap view{map.image_path,
+                 map.pose,
+                 map.camera,
+                 in_one_run(map.depth),
+                 {},
+                 {},
+                 in_one_run(color),
+                 !map.confidence.empty()};
   view.normal = cv::Mat3f(map.depth.size(), cv::Vec3f::all(0));
   view.weight = cv::Mat1f(map.depth.size(), 0.0f);
   parallel_for(static_cast<std::size_t>(map.height()),

@@ -2,6 +2,7 @@
 // Inside of fuse(): one view's map, and what it answers to another view.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <span>
@@ -18,18 +19,20 @@ struct FusionMap {
   std::string image_path;
   Pose pose;
   CameraModel camera;
-  cv::Mat1f depth;   // 0: none
-  cv::Mat3f normal;  // world frame; 0: unknown
-  cv::Mat1f weight;  // 1 / (max(1 - confidence, 0.03) depth^2); meaningless without depth
-  cv::Mat3b color;   // may be empty
+  cv::Mat1f depth;       // 0: none
+  cv::Mat3f normal;      // world frame; 0: unknown
+  cv::Mat1f weight;      // 1 / (max(1 - confidence, 0.03) depth^2); meaningless without depth
+  cv::Mat3b color;       // may be empty
+  bool matched = false;  // the map has confidences
 
   std::size_t pixels() const { return depth.total(); }
   float depth_at(std::size_t pixel) const { return depth.ptr<float>()[pixel]; }
   float weight_at(std::size_t pixel) const { return weight.ptr<float>()[pixel]; }
-  // Of matching, 1 - confidence, at least 0.03: what the weight was made of.
+  // Of matching, 1 - confidence, from 0.03 to 0.99: what the weight was made of. 1: not known.
   double cost_at(std::size_t pixel) const {
+    if (!matched) return 1;
     const auto depth_here = static_cast<double>(depth_at(pixel));
-    return 1 / (static_cast<double>(weight_at(pixel)) * depth_here * depth_here);
+    return std::min(0.99, 1 / (static_cast<double>(weight_at(pixel)) * depth_here * depth_here));
   }
   Eigen::Vector3f normal_at(std::size_t pixel) const {
     return Eigen::Map<const Eigen::Vector3f>(normal.ptr<float>() + 3 * pixel);

@@ -28,7 +28,7 @@ constexpr double kLeastTexture = 0.5;   // [grey levels per px]: they are rounde
 constexpr double kOdds = 70;            // of staying within 3 errors where scatter is one pixel
 constexpr double kLeastScatter = 0.05;  // [errors]
 constexpr double kLeastCosine = 0.1;
-constexpr double kNoCost = 0.999;  // maps without confidence have 1, but for rounding
+constexpr double kNoCost = 0.999;  // 1 but for rounding
 
 constexpr int kReach = 3;                 // of surroundings [px]
 constexpr std::uint32_t kMostCells = 32;  // along an image's side
