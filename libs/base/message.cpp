@@ -7,6 +7,8 @@ namespace axial {
 namespace {
 
 constexpr std::string_view kGap = "...";
+// Between words: without blanks it would join two words to one that is too long.
+constexpr std::string_view kGapOfWords = " ... ";
 
 bool continues_character(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0) == 0x80;
@@ -17,14 +19,14 @@ bool is_control(char byte) {
 }
 
 // The first and the last part of `text`, at most `longest` bytes with the gap.
-std::string without_middle(std::string_view text, std::size_t longest) {
+std::string without_middle(std::string_view text, std::size_t longest, std::string_view gap) {
   if (text.size() <= longest) return std::string(text);
-  std::size_t head = (longest - kGap.size() + 1) / 2;
-  std::size_t tail = text.size() - (longest - kGap.size()) / 2;
+  std::size_t head = (longest - gap.size() + 1) / 2;
+  std::size_t tail = text.size() - (longest - gap.size()) / 2;
   // Of bytes that are no UTF-8 there may be any number in a row.
   for (int i = 0; i < 3 && continues_character(text[head]); ++i) --head;
   for (int i = 0; i < 3 && tail < text.size() && continues_character(text[tail]); ++i) ++tail;
-  return std::string(text.substr(0, head)).append(kGap).append(text.substr(tail));
+  return std::string(text.substr(0, head)).append(gap).append(text.substr(tail));
 }
 
 }  // namespace
@@ -35,12 +37,12 @@ std::string as_message(std::string_view text) {
   std::string result;
   for (std::string_view rest = line; !rest.empty();) {
     const std::size_t blank = rest.find(' ');
-    result += without_middle(rest.substr(0, blank), kLongestWord);
+    result += without_middle(rest.substr(0, blank), kLongestWord, kGap);
     if (blank == std::string_view::npos) break;
     result += ' ';
     rest.remove_prefix(blank + 1);
   }
-  return without_middle(result, kLongestMessage);
+  return without_middle(result, kLongestMessage, kGapOfWords);
 }
 
 }  // namespace axial

@@ -58,13 +58,14 @@ struct PointError {
 };
 
 // Of the mean of the supports' points, on a surface with this unit normal, seen by the first
-// support's map as `around` tells. The variance is a sum of what
-// * matching makes of relief: it fits planes to windows of some pixels. Relief that it cannot
-// follow
-//   raises the cost of even the best match, and the normals of neighbouring pixels differ. All maps
-//   are smoothed alike, so that their number does not help, but wider angles between the rays do.
-// * the maps show themselves: the variance of the supports' points along the normal.
-// * the noise of photographs makes of little texture.
+// support's map as `around` tells. The variance is a sum of three parts:
+//
+// * relief: matching fits planes to windows of some pixels. Relief that they cannot follow raises
+//   the cost of even the best match, and the normals of neighbouring pixels differ. All maps are
+//   smoothed alike, so that their number does not help, but wider angles between the rays do;
+// * the variance of the supports' points along the normal;
+// * the photograph's noise, where there is little texture.
+//
 // Confidence grows as the supports' points lie nearer to each other. Unknown with less than two
 // supports, and where no cost is known.
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal,

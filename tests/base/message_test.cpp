@@ -52,6 +52,17 @@ RC_GTEST_PROP(Message, IsOneLineOfBoundedLength, ()) {
   RC_ASSERT(as_message(line) == line);
 }
 
+// The words on both sides of the cut stay two.
+TEST(Message, StaysAsItIsOnceItIsCut) {
+  for (std::size_t length = 1; length <= 2 * kLongestWord; ++length) {
+    std::string text;
+    while (text.size() < 2 * kLongestMessage) text += std::string(length, 'w') + ' ';
+    const std::string line = as_message(text);
+    ASSERT_LE(line.size(), kLongestMessage);
+    ASSERT_EQ(as_message(line), line) << length;
+  }
+}
+
 RC_GTEST_PROP(Message, CutsIntoNoCharacter, (std::uint16_t length)) {
   for (const std::string character : {"\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x90\x9F"}) {
     std::string text = "x";
