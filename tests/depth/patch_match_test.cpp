@@ -253,10 +253,15 @@ TEST(PatchMatch, CoarserLevelsCostNoAccuracyInHaze) {
   }
 }
 
-TEST(PatchMatch, CoarserLevelsHoldWhatHasHardlyMoreTextureThanNoise) {
+// Smooth texture about as strong as the noise of one grey level.
+Survey weakly_textured() {
   Survey smooth = make_survey(Kind::flat_port);
   for (MatchImage& view : smooth.views) cv::GaussianBlur(view.grey, view.grey, {}, 3);
-  const Survey survey = hazy(smooth, 0.3);
+  return hazy(smooth, 0.3);
+}
+
+TEST(PatchMatch, CoarserLevelsHoldWhatHasHardlyMoreTextureThanNoise) {
+  const Survey survey = weakly_textured();
   std::vector<const MatchImage*> sources;
   const MatchInput input = survey.input(0, sources);
   PatchMatchOptions options;
@@ -274,12 +279,9 @@ TEST(PatchMatch, CoarserLevelsHoldWhatHasHardlyMoreTextureThanNoise) {
   EXPECT_GT(held.valid_fraction, none.valid_fraction + 0.05);
 }
 
-// Smooth texture as strong as the noise of one grey level. OpenMVS's threshold gives up pixels
-// whose depths are as good as the others'.
+// OpenMVS's threshold gives up pixels whose depths are as good as the others'.
 TEST(PatchMatch, KeepsWhatHasHardlyMoreTextureThanNoise) {
-  Survey smooth = make_survey(Kind::flat_port);
-  for (MatchImage& view : smooth.views) cv::GaussianBlur(view.grey, view.grey, {}, 3);
-  const Survey survey = hazy(smooth, 0.3);
+  const Survey survey = weakly_textured();
   std::vector<const MatchImage*> sources;
   const MatchInput input = survey.input(0, sources);
   PatchMatchOptions options;
