@@ -28,9 +28,9 @@ struct PatchMatchOptions {
   float sigma_color = 0.1f;  // bilateral weight: intensity, in [0, 1]
   float sigma_space = 3.0f;  // and distance [px]
   // Weighted sum of squared deviations below which a patch is textureless: a standard deviation of
-  // half a grey level. OpenMVS's 4e-4, three times as much, gives up three quarters of sand whose
-  // texture is as strong as the camera's noise; depths that the noise made up are removed
-  // afterwards (weak_texture.h).
+  // half a grey level. OpenMVS's 4e-4, three times the deviation, gives up nearly three
+  // quarters of sand whose texture is as strong as the camera's noise. Depths of weak texture that
+  // the pixels around them do not confirm are removed afterwards (weak_texture.h).
   float min_texture = 3.6e-5f;
 
   SmoothnessOptions smoothness;

@@ -8,8 +8,10 @@
 // that were visited before it in the two views which see these best: eight scores however many
 // views there are, one AVX2 register. Trials follow around the best of these planes; where there
 // are few, they are scored together with the planes, around the one that cost least when it was
-// scored before: one AVX-512 register. On coarse levels, where there is little to do and little
-// known, every plane is scored in every view, and trials follow.
+// scored before: one AVX-512 register. In a level's first sweep a pixel whose plane is not certain
+// tries random planes in place of half the trials (PatchMatchOptions::search_planes). On coarse
+// levels, where there is little to do and little known, every plane is scored in five views, and
+// trials follow.
 #pragma once
 
 #include <algorithm>

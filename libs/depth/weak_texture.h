@@ -10,8 +10,9 @@ namespace axial::depth {
 
 struct WeakTextureOptions {
   float deviation = 1.5f;  // of a 9x9 window's grey levels, below which its texture is weak
-  // Mean confidence of the pixels with weak texture in a 9x9 window. Sand whose texture is as
-  // strong as the noise has 0.65 or more nearly everywhere; noise alone seldom more than 0.6.
+  // Mean confidence of the pixels with weak texture in a 9x9 window. In
+  // SimulateUnderwater's preset sand 95 % of the windows have 0.68 or more; with a texture of a
+  // twentieth of that, half of them have less than 0.62.
   float least_confidence = 0.6f;
 };
 
