@@ -35,11 +35,15 @@ class PatchSampler {
  public:
   explicit PatchSampler(const PatchMatchOptions& options);
 
-  // Deviations count intensities from 0 to 1. Precondition: the window around (x, y) lies inside
-  // the image.
+  // Deviations count intensities from 0 to 1. Texels outside the image have weight 0.
+  // Precondition: (x, y) lies inside the image.
   void gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
 
  private:
+  // kWhole: the window lies inside the image.
+  template <bool kWhole>
+  void gather_window(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
+
   std::array<float, 511> color_weight_;  // of differences from -255 on
   std::array<float, kTexels> space_weight_;
 };

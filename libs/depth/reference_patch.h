@@ -11,6 +11,7 @@ namespace axial::depth {
 inline constexpr int kPatchRadius = 4;
 inline constexpr int kPatchStep = 2;
 inline constexpr int kTexels = 25;
+inline constexpr int kCentreTexel = 12;
 inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the rest has weight zero
 
 // The reference window gathered once per pixel and reused for every hypothesis and source view.
@@ -22,15 +23,23 @@ struct ReferencePatch {
   float texture;   // the same with weights of at most 1: what OpenMVS's threshold means
 };
 
-inline constexpr float kOutsideCost = 1.2f;  // of a patch that leaves the source image
+inline constexpr float kOutsideCost = 1.2f;  // of a patch without a correlation
 inline constexpr float kMaxCost = 2.0f;
 
-// Correlation of a patch that leaves the source image (a border of one pixel kept), is not a
-// number, or is flat in the source image. Below every possible correlation.
+// Correlation of a patch whose centre lies outside the source image or is not a number, of which
+// too little lies inside, or which is flat there. Below every possible correlation.
 inline constexpr float kNoCorrelation = -2.0f;
+
+// A texel counts in full if it lies at least a pixel inside the source image, and ever less towards
+// the image's edge, so that the correlation is a continuous function of the hypothesis. A patch has
+// a correlation if the texels that count have at least this share of all weights.
+inline constexpr float kLeastWeight = 0.3f;
 
 // A source patch with less variance [grey levels^2] tells nothing.
 inline constexpr float kFlatVariance = 0.25f;
+// Nor does the part of a reference patch that a source image shows, if it has less than this
+// variance, of intensities from 0 to 1.
+inline constexpr float kFlatReference = kFlatVariance / (255 * 255);
 
 // Relative difference of depth within which a source view's depth map shows the same surface.
 inline constexpr float kSameSurface = 0.03f;

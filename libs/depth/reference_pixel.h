@@ -48,7 +48,7 @@ class PixelSampler {
     return pixel;
   }
 
-  // `ray`: the pixel's own. Precondition: the window around (x, y) lies inside the image.
+  // `ray`: the pixel's own. Precondition: (x, y) lies inside the image.
   ReferencePixel prepare(int x, int y, const PixelRay& ray) const {
     ReferencePixel pixel;
     static_cast<PixelRay&>(pixel) = ray;

@@ -198,8 +198,7 @@ class Sweep {
 
   void visit(Strip& strip, int x, int y, int step) {
     PlanePixel& current = map_.at(x, y);
-    if (!window_inside(x, y, map_.width, map_.height) || (input_.mask && !(*input_.mask)(y, x)))
-      return clear(current);
+    if (input_.mask && !(*input_.mask)(y, x)) return clear(current);
     ReferencePixel pixel = matcher_.pixels().prepare(x, y, ray(x, y, strip.rays));
     float prior = input_.prior ? (*input_.prior)(y, x) : 0.0f;
     if (pixel.patch.texture < options_.min_texture) {

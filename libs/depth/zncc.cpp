@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "depth/part_sums.h"
 #include "depth/zncc_reduce.h"
 
 namespace axial::depth {
@@ -24,6 +25,46 @@ QuadImage::QuadImage(const cv::Mat1b& image)
   }
 }
 
+namespace {
+
+// Grey value. Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
+float bilinear(const QuadImage& source, float x, float y) {
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const float fx = x - static_cast<float>(column);
+  const float fy = y - static_cast<float>(row);
+  const std::uint32_t word =
+      source.words()[static_cast<std::size_t>(row) * static_cast<std::size_t>(source.width()) +
+                     static_cast<std::size_t>(column)];
+  const auto a = static_cast<float>(word & 0xFFu);
+  const auto b = static_cast<float>(word >> 8 & 0xFFu);
+  const auto c = static_cast<float>(word >> 16 & 0xFFu);
+  const auto d = static_cast<float>(word >> 24);
+  const float top = a + fx * (b - a);
+  const float bottom = c + fx * (d - c);
+  return top + fy * (bottom - top);
+}
+
+}  // namespace
+
+namespace detail {
+
+float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at) {
+  const auto right = static_cast<float>(source.width() - 1);
+  const auto bottom = static_cast<float>(source.height() - 1);
+  const auto share = [&](std::size_t k) { return share_inside(at.x[k], at.y[k], right, bottom); };
+  if (!(share(kCentreTexel) > 0)) return kNoCorrelation;
+  PartSums<float> sums;
+  for (std::size_t k = 0; k < kTexels; ++k) {
+    if (!(share(k) > 0) || !(patch.weight[k] > 0)) continue;
+    sums.add(share(k), patch.weight[k], patch.deviation[k],
+             bilinear(source, at.x[k], at.y[k]) - patch.mean);
+  }
+  return sums.correlation();
+}
+
+}  // namespace detail
+
 float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at) {
   const auto max_x = static_cast<float>(source.width() - 2);
   const auto max_y = static_cast<float>(source.height() - 2);
@@ -31,21 +72,9 @@ float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const Te
   for (std::size_t k = 0; k < kPaddedTexels; ++k) {
     const float x = at.x[k];
     const float y = at.y[k];
-    if (!(x >= 1.0f && y >= 1.0f && x <= max_x && y <= max_y)) return kNoCorrelation;
-    const int column = static_cast<int>(x);
-    const int row = static_cast<int>(y);
-    const float fx = x - static_cast<float>(column);
-    const float fy = y - static_cast<float>(row);
-    const std::uint32_t word =
-        source.words()[static_cast<std::size_t>(row) * static_cast<std::size_t>(source.width()) +
-                       static_cast<std::size_t>(column)];
-    const auto a = static_cast<float>(word & 0xFFu);
-    const auto b = static_cast<float>(word >> 8 & 0xFFu);
-    const auto c = static_cast<float>(word >> 16 & 0xFFu);
-    const auto d = static_cast<float>(word >> 24);
-    const float top = a + fx * (b - a);
-    const float bottom = c + fx * (d - c);
-    const float value = top + fy * (bottom - top) - patch.mean;
+    if (!(x >= 1.0f && y >= 1.0f && x <= max_x && y <= max_y))
+      return detail::zncc_of_part(patch, source, at);
+    const float value = bilinear(source, x, y) - patch.mean;
     const float weighted = patch.weight[k] * value;
     const std::size_t lane = k % 8;
     sums.mean[lane] += weighted;

@@ -46,7 +46,9 @@ float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const Te
 ZnccFunction fastest_zncc();
 
 namespace detail {
+// Of a patch that lies partly outside the source image: of the texels inside, all sums anew.
+float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
-}
+}  // namespace detail
 
 }  // namespace axial::depth

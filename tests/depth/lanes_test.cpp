@@ -168,8 +168,8 @@ std::vector<Question> questions() {
   std::uniform_real_distribution<float> unit(-1, 1);
   std::vector<Question> all;
   for (int i = 0; i < 150; ++i) {
-    Question question{4 + static_cast<int>(random() % (kWidth - 8)),
-                      4 + static_cast<int>(random() % (kHeight - 8)),
+    Question question{static_cast<int>(random() % kWidth),
+                      static_cast<int>(random() % kHeight),
                       i % 3 ? 0.0f : 2.1f,
                       {},
                       {}};

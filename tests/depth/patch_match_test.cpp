@@ -99,17 +99,20 @@ struct Errors {
   double valid_fraction = 0;
 };
 
-Errors compare(const DepthMap& map, const cv::Mat1f& truth) {
+// Of the pixels with at least `least` and fewer than `most` pixels between them and the border.
+Errors compare_ring(const DepthMap& map, const cv::Mat1f& truth, int least, int most) {
   std::vector<double> errors;
-  int inner = 0;
-  for (int y = 8; y < map.height() - 8; ++y)
-    for (int x = 8; x < map.width() - 8; ++x) {
-      ++inner;
+  int pixels = 0;
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) {
+      const int from_border = std::min({x, y, map.width() - 1 - x, map.height() - 1 - y});
+      if (from_border < least || from_border >= most) continue;
+      ++pixels;
       if (map.depth(y, x) > 0)
         errors.push_back(std::abs(map.depth(y, x) - truth(y, x)) / truth(y, x));
     }
   Errors result;
-  result.valid_fraction = static_cast<double>(errors.size()) / inner;
+  result.valid_fraction = static_cast<double>(errors.size()) / pixels;
   std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
                    errors.end());
   result.median_relative = errors.empty() ? 1 : errors[errors.size() / 2];
@@ -124,6 +127,10 @@ bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
 bool same_maps(const DepthMap& a, const DepthMap& b) {
   return same_bytes(a.depth, b.depth) && same_bytes(a.normal, b.normal) &&
          same_bytes(a.confidence, b.confidence);
+}
+
+Errors compare(const DepthMap& map, const cv::Mat1f& truth) {
+  return compare_ring(map, truth, 8, map.width());
 }
 
 class PatchMatchOn : public testing::TestWithParam<Kind> {};
@@ -151,6 +158,18 @@ TEST_P(PatchMatchOn, FindsTheSurface) {
   EXPECT_LT(errors.median_relative, 0.005);
   EXPECT_GT(errors.valid_fraction, 0.85);
   EXPECT_EQ(map.ids, (std::vector<std::uint32_t>{10, 11, 12, 13}));
+}
+
+// Pixels whose window leaves the image, and which the sources see if they see the surface at all.
+TEST_P(PatchMatchOn, FindsTheSurfaceUpToTheBorder) {
+  const Survey survey = make_survey(GetParam());
+  std::vector<const MatchImage*> sources;
+  const DepthMap map = estimate_depth_map(survey.input(0, sources), {});
+  const Errors inside = compare_ring(map, survey.truth[0], 4, 8);
+  const Errors border = compare_ring(map, survey.truth[0], 0, 4);
+  // A window of 15 texels instead of 25, at half the image's corners of fewer.
+  EXPECT_LT(border.median_relative, std::max(0.005, 1.5 * inside.median_relative));
+  EXPECT_GT(border.valid_fraction, 0.9 * inside.valid_fraction);
 }
 
 TEST_P(PatchMatchOn, GeometricPassImprovesAndNormalsFaceTheCamera) {

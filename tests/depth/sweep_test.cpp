@@ -62,8 +62,8 @@ class FormulaMatcher {
 PlaneMap wall() {
   PlaneMap map(kSide, kSide);
   const FormulaMatcher matcher;
-  for (int y = kPatchRadius; y < kSide - kPatchRadius; ++y)
-    for (int x = kPatchRadius; x < kSide - kPatchRadius; ++x) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       PlanePixel& pixel = map.at(x, y);
       pixel.plane = {kDepth, -Eigen::Vector3f::UnitZ()};
       pixel.point = matcher.pixels().prepare(x, y).ray.at(kDepth);
@@ -100,8 +100,8 @@ TEST(SweepViews, AreFewHoweverManyThereAre) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
   run(matcher, map, input(2));
-  constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
-  ASSERT_GE(matcher.calls.size(), kInner);
+  constexpr std::size_t kPixels = kSide * kSide;
+  ASSERT_GE(matcher.calls.size(), kPixels);
   for (const auto& pairs : matcher.calls) {
     std::array<std::set<int>, kMaxCandidates> of_plane;
     for (const ScorePair& pair : pairs) {
@@ -126,10 +126,10 @@ std::size_t calls_of_later_sweep(int trial_pairs) {
 }
 
 TEST(SweepTrials, AreScoredAtOnceWithTheOtherPlanesWhereTheyAreFew) {
-  constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
-  EXPECT_EQ(calls_of_later_sweep(0), kInner);
-  EXPECT_EQ(calls_of_later_sweep(2), kInner);
-  EXPECT_EQ(calls_of_later_sweep(4), 2 * kInner);
+  constexpr std::size_t kPixels = kSide * kSide;
+  EXPECT_EQ(calls_of_later_sweep(0), kPixels);
+  EXPECT_EQ(calls_of_later_sweep(2), kPixels);
+  EXPECT_EQ(calls_of_later_sweep(4), 2 * kPixels);
 }
 
 // What a pixel keeps of its plane, however it came by that.
@@ -155,9 +155,9 @@ TEST(SweepTrials, LeaveCostViewsAndMotionOfThePlaneThatWon) {
 TEST(SweepTrials, GoAroundTheNeighbourThatCostLess) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
-  PlanePixel& above = map.at(kPatchRadius, kStripHeight - 1);
+  PlanePixel& above = map.at(0, kStripHeight - 1);
   above.plane.depth = 2.4f;
-  above.point = matcher.pixels().prepare(kPatchRadius, kStripHeight - 1).ray.at(2.4f);
+  above.point = matcher.pixels().prepare(0, kStripHeight - 1).ray.at(2.4f);
   above.cost = 0.01f;
   above.views = {3, 4};
   above.motion = 100;
@@ -185,8 +185,8 @@ TEST(SweepViews, TurnUntilThoseAreFoundThatSeeThePixel) {
   PlaneMap map = wall();
   SweepInput sweep = input(0);
   for (sweep.sweep = 0; sweep.sweep < 3; ++sweep.sweep) run(matcher, map, sweep);
-  for (int y = kPatchRadius; y < kSide - kPatchRadius; ++y)
-    for (int x = kPatchRadius; x < kSide - kPatchRadius; ++x) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       const BestViews& views = map.at(x, y).views;
       ASSERT_EQ((std::set<int>{views[0], views[1]}), (std::set<int>{7, 9})) << x << " " << y;
     }

@@ -3,15 +3,16 @@
 #pragma once
 
 #include "depth/lanes/lane_images.h"
+#include "depth/lanes/lane_part_zncc.h"
 #include "depth/lanes/lane_texel.h"
 #include "depth/reference_patch.h"
 
 namespace axial::depth::lanes {
 
-// Correlation in [-1, 1], or kNoCorrelation as ZnccFunction gives it, in the lanes up to `used`.
-// The bounds are tested at the window's corners: the warp is affine. Rounding the centre and the
-// steps to 1/65536 pixel moves no sample by more than 1e-3 pixels, and the border that is kept is a
-// whole one, so that all samples lie where LaneSampler takes them.
+// Correlation in [-1, 1], or kNoCorrelation as ZnccFunction gives it. A lane's result does not
+// depend on the other lanes. The bounds of a whole window are tested at its corners: the warp is
+// affine. Rounding the centre and the steps to 1/65536 pixel moves no sample by more than 1e-3
+// pixels, and a border of one pixel is kept, so that all samples lie where LaneSampler takes them.
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
@@ -28,7 +29,13 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   const PackMask<Abi> inside = centre.visible && x - extent_x >= T(1) && y - extent_y >= T(1) &&
                                x + extent_x <= image.width - T(2) &&
                                y + extent_y <= image.height - T(2);
-  if (stdx::none_of(inside.part)) return T(kNoCorrelation);
+  const PackMask<Abi> partly = centre.visible && !inside && x > T(0) && y > T(0) &&
+                               x < image.width - T(1) && y < image.height - T(1);
+  const T of_part = stdx::any_of(partly.part)
+                        ? select(partly, lane_part_zncc<Abi>(patch, words, image, {x, y, warp}),
+                                 T(kNoCorrelation))
+                        : T(kNoCorrelation);
+  if (stdx::none_of(inside.part)) return of_part;
 
   const Part grey_mean(patch.mean * kGreyUnit);
   const auto fixed = [&](const T& value, float otherwise) {
@@ -57,7 +64,7 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   const T flat(kFlatVariance * kGreyUnit * kGreyUnit);
   const PackMask<Abi> known = inside && variance > flat && T(patch.variance) > T(0);
   const T value = cross / sqrt(T(patch.variance) * select(known, variance, T(1)));
-  return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
+  return select(known, min(max(value, T(-1)), T(1)), of_part);
 }
 
 }  // namespace axial::depth::lanes
