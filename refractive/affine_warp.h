@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The warp between two axial cameras induced by a plane: its exact centre and its exact first
-// derivative (DESIGN: "The paper's method, and the better warp"). One formula for all cameras.
+// The warp between two axial cameras that a plane induces: its exact value and its exact first
+// derivative at one pixel (docs/refraction.md, "The warp"). The formula is the same for all
+// cameras.
 //
 //     warp(q) = project_j(X_j(p)) + A (q - p),    A = Jproj_j(X_j) * R_ij * dX/dp
 //
 // Frames: X, the plane and the ray in the reference camera i; X_j = R_ij (X - C_ij) in the source
-// camera j. Metres and pixels. All functions are plain arithmetic: NaN in, NaN out.
+// camera j. Metres and pixels. No function checks its arguments; NaN arguments give NaN results.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -13,18 +14,19 @@
 namespace axial::refractive {
 
 // Distance along `ray` at which it meets the plane through X with normal n (the paper's eq. 8). n
-// need not be of unit length. A ray in the plane gives infinity or NaN.
+// may have any length. A ray parallel to the plane gives infinity or NaN.
 template <class T>
 T plane_intersection(const AxialRay<T>& ray, const Vector3<T>& X, const Vector3<T>& n) {
   return (X - ray.origin).dot(n) / ray.direction.dot(n);
 }
 
-// dX/dp [m/pixel]: how the point of the plane with normal n that the pixel sees moves with the
-// pixel, at X = ray.at(lambda):
+// dX/dp [m/px]: the derivative by the pixel p of the point X in which the pixel's ray meets the
+// plane with normal n, at X = ray.at(lambda):
 //
 //     dX/dp = (I - d n^T / (n.d)) (do/dp + lambda dd/dp)
 //
-// n need not be of unit length and its sign does not matter; n.d = 0 gives infinities or NaN.
+// with o and d the ray's origin and direction. n may have any length and either sign; n.d = 0
+// gives infinities or NaN. `jacobian`: the derivatives of `ray` by the pixel.
 template <class T>
 Matrix32<T> plane_point_derivative(const AxialRay<T>& ray, const AxialRayJacobian<T>& jacobian,
                                    const T& lambda, const Vector3<T>& n) {
@@ -36,8 +38,9 @@ Matrix32<T> plane_point_derivative(const AxialRay<T>& ray, const AxialRayJacobia
   return dX;
 }
 
-// A: pixels of the source image per pixel of the reference image. `projection_jacobian` is
-// d(pixel)/dX of the source camera at X_j, `rotation` is R_ij, `dX` from above.
+// The matrix A [pixels of the source image per pixel of the reference image].
+// `projection_jacobian`: d(pixel)/dX of the source camera at X_j. `rotation`: R_ij. `dX`: the
+// result of plane_point_derivative().
 template <class T>
 Matrix2<T> warp_derivative(const Matrix23<T>& projection_jacobian, const Matrix3<T>& rotation,
                            const Matrix32<T>& dX) {
@@ -45,19 +48,20 @@ Matrix2<T> warp_derivative(const Matrix23<T>& projection_jacobian, const Matrix3
   return projection_jacobian * rotated;
 }
 
-// The warp as the matcher uses it.
+// The warp from the reference image to the source image around the pixel p.
 template <class T>
 struct AffineWarp {
   Vector2<T> from;    // p in the reference image
-  Vector2<T> to;      // its exact image in the source image
+  Vector2<T> to;      // exact image of the plane's point in the source image
   Matrix2<T> linear;  // A
-  Mask<T> visible;    // false: the source camera does not see the plane's point; do not use
+  Mask<T> visible;    // false: the source camera does not see the point, the warp is meaningless
 
   Vector2<T> operator()(const Vector2<T>& q) const { return to + linear * (q - from); }
 };
 
-// All of the above at once, for the pixel p of the camera `reference`, whose plane passes through
-// the point at distance `lambda` on its ray with normal n. `rotation`, `centre`: R_ij and C_ij.
+// Computes the warp from `reference` to `source` for the pixel p of `reference`. The plane passes
+// through the point at distance `lambda` [m] on the ray of p and has the normal n [frame of
+// `reference`]. `rotation` and `centre`: R_ij and C_ij.
 template <class Reference, class Source, class T = typename Reference::Scalar>
 AffineWarp<T> affine_warp(const Reference& reference, const Source& source,
                           const Matrix3<T>& rotation, const Vector3<T>& centre, const Vector2<T>& p,

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one notion of camera the project is built on: an axial camera.
-//
-// Every pixel's ray in the scene medium meets one fixed axis through the camera centre. A camera is
-// any type with
+// The axial camera, the camera model of the whole project: the rays of all pixels in the scene
+// medium meet one axis through the camera centre. A camera is any type with
 //
 //     AxialRay<T>   ray(pixel)                      back-projection
-//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with derivatives by the pixel
+//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with its derivatives by the pixel
 //     Projection<T> project(X)                      exact forward projection
 //     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
 //     Vector3<T>    exit_point(pixel)               where the pixel's light enters the scene medium
 //
-// and, to be matched in SIMD lanes, each_field(visit): all its numbers in a fixed order, and
+// The SIMD code also needs
 //
+//     void             each_field(visit)            calls visit(number) for all numbers of the
+//                                                   camera in a fixed order
 //     Projector        projector()                  has each_field(visit), too
-//     Frame<T>         projector_frame()
-//     Image            projector().image(X)         of a point in that frame: its projection, how
-//                                                   it moves with the point, where its ray begins
+//     Frame<T>         projector_frame()            from the camera frame to the projector's frame
+//     Image            projector().image(X)         of a point X in the projector's frame: its
+//                                                   projection, the derivative of the pixel by X,
+//                                                   and the origin of the ray through X
 //
 // Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres at
 // integers.
@@ -41,7 +42,7 @@ template <class T>
 using Matrix32 = Eigen::Matrix<T, 3, 2>;
 
 // A ray in the scene medium: X = origin + lambda * direction (the paper's eq. 4). The origin lies
-// on the camera's axis (for a pinhole it is the centre itself), the direction is of unit length.
+// on the camera's axis; for a pinhole it is the camera centre. The direction has unit length.
 template <class T>
 struct AxialRay {
   Vector3<T> origin;
@@ -64,9 +65,9 @@ struct Frame {
   Vector3<T> translation;
 };
 
-// The image of a point. `pixel` is finite even where `visible` is false, but means nothing there.
-// `visible` says that light from X reaches the lens within the camera's field: it is not a test
-// against the image rectangle, which may be a little smaller.
+// The image of a point. `visible` is true if light from the point reaches the lens within the
+// camera's field. It is not a test against the image rectangle, which may be a little smaller than
+// the field. If `visible` is false, `pixel` is finite but meaningless.
 template <class T>
 struct Projection {
   Vector2<T> pixel;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lens with distortion: between pixels and tangents, the direction in air (u, v, 1).
+// A lens with distortion: converts between pixels and tangents. The tangents (u, v) stand for the
+// direction in air (u, v, 1) in the camera frame.
 #pragma once
 
 #include "refractive/lens_field.h"
@@ -11,11 +12,11 @@ struct DistortedLens {
   PinholeLens<T> pinhole;  // focal lengths and principal point [px]
   LensDistortion<T> distortion;
   T field = T(0);         // the lens is defined for |e| up to this (lens_field.h)
-  WidenedImage<T> image;  // what is projected
+  WidenedImage<T> image;  // a direction is visible if its pixel lies in this rectangle
 
-  DistortedLens() = default;  // means nothing before each_field() has filled it
+  DistortedLens() = default;  // invalid until each_field() has filled it
 
-  // width, height, margin: as FlatPortCamera's.
+  // width, height, margin [px]: as in the constructor of FlatPortCamera.
   DistortedLens(const PinholeLens<double>& lens, const LensDistortion<double>& bends, int width,
                 int height, int margin = -1)
       : pinhole(lens.cast<T>()), distortion(bends.template cast<T>()) {
@@ -24,13 +25,14 @@ struct DistortedLens {
     image = {width, height, static_cast<T>(widened)};
   }
 
-  // False where no direction is imaged at the pixel: it lies beyond the lens's field.
+  // False if the lens images no direction at the pixel, because the pixel lies beyond its field.
   bool shows(const Vector2<T>& pixel) const {
     const Vector2<T> found = project(tangents(pixel).point).projection.pixel;
     return (found - pixel).squaredNorm() < T(1e-4);
   }
 
-  // True if the corners of the image of width x height are shown, beyond which no pixel lies.
+  // True if shows() holds for the four corners of the image of width x height pixels. No pixel of
+  // the image is farther from the principal point than all corners.
   bool shows_all(int width, int height) const {
     bool all = true;
     for (const T& u : {T(0), T(width - 1)})
@@ -47,8 +49,8 @@ struct DistortedLens {
     image.each_field(visit);
   }
 
-  // The image of a direction in air. Not visible: beyond the lens's field or outside the widened
-  // image. `by`: d(pixel)/d(tangents). Everything is finite for finite tangents.
+  // The image of a direction in air. It is not visible beyond the lens's field or outside the
+  // widened image. `by`: d(pixel)/d(tangents). Finite tangents give finite results.
   struct Image {
     Projection<T> projection;
     Matrix2<T> by;
@@ -56,7 +58,7 @@ struct DistortedLens {
   Image project(const Vector2<T>& tangents) const {
     const PlanePoint<T> e = distortion.spread_out(tangents);
     const Mask<T> defined = e.point.x() * e.point.x() + e.point.y() * e.point.y() <= field * field;
-    // Far outside the polynomials leave single precision's range.
+    // Far outside the field the polynomials exceed the range of single precision.
     const PlanePoint<T> d = distortion.bent(detail::within(e.point, field));
     Image at;
     at.projection.pixel = {pinhole.fx * d.point.x() + pinhole.cx,
@@ -68,8 +70,9 @@ struct DistortedLens {
     return at;
   }
 
-  // The tangents a pixel sees, and d(tangents)/d(pixel). Pixels that no direction is imaged at get
-  // one at the edge of the lens's field, which projects elsewhere. NaN in, NaN out.
+  // The tangents of the direction that is imaged at the pixel, and d(tangents)/d(pixel). A pixel at
+  // which no direction is imaged gets a direction at the edge of the lens's field; project() maps
+  // this direction to another pixel. A NaN pixel gives NaN.
   PlanePoint<T> tangents(const Vector2<T>& pixel) const {
     const T inv_fx = T(1) / pinhole.fx, inv_fy = T(1) / pinhole.fy;
     const Vector2<T> d{(pixel.x() - pinhole.cx) * inv_fx, (pixel.y() - pinhole.cy) * inv_fy};

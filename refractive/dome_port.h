@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A dome port: a spherical shell of glass between the lens and the water, its centre C anywhere
-// near the camera's.
+// A dome port: a spherical shell of glass, with centre C, between the lens and the water. The
+// camera centre may lie anywhere within the inner sphere. docs/refraction.md explains the formulas.
 //
-// A ray that keeps its plane through C keeps n times its distance from C, too (Bouguer). Let r be
-// the unit direction in air, k = |r x C| its distance from C, mu relative to air, and 1/i the
-// radius of a surface times mu on one of its sides: at each surface the ray turns, away from the
-// axis through the camera centre and C, by a difference of arc sines of k i, in all by
+// A ray that is refracted at spheres around C stays in its plane through C, and the product of the
+// refractive index and the ray's distance from C is constant (Bouguer's law). Let r be the unit
+// direction in air, k = |r x C| the distance of the ray in air from C, and mu the indices relative
+// to air. On the side of index mu of a sphere of radius R, the sine of the angle of incidence or
+// refraction is k i with i = 1/(mu R). At each sphere the ray turns by the difference of two such
+// angles. Altogether it turns away from the axis through the camera centre and C by
 //
 //     delta = asin(k i_1) - asin(k i_2) + asin(k i_3) - asin(k i_4)
 //
 //     i_1 = 1/r_in   i_2 = 1/(mu_g r_in)   i_3 = 1/(mu_g r_out)   i_4 = 1/(mu_w r_out).
 //
-// With S = sin(delta)/k and Q = cos(delta) + (r.C) S, the ray in water has the direction
-// D = Q r - S C, of unit length, and begins on the axis at C_v = (1 - 1/(mu_w Q)) C. S and
-// cos(delta) are smooth functions of k^2, square roots alone: nothing is singular on the axis, and
-// nothing where the dome is centred.
+// With S = sin(delta)/k and Q = cos(delta) + (r.C) S, the ray in water has the unit direction
+// D = Q r - S C, and its origin on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta) are
+// smooth functions of k^2 and need square roots only. So the formulas have no singularity on the
+// axis, and none for a centred dome.
 #pragma once
 
 #include <cmath>
@@ -23,8 +25,9 @@
 
 namespace axial::refractive {
 
-// The port as it is measured, in the camera frame. Requirements, checked where housings are read
-// and not here: |centre| < inner_radius, thickness >= 0, n_glass and n_water >= n_air > 0.
+// The measured parameters of the port, in the camera frame. Preconditions, which are checked when
+// a housing is read and not here: |centre| < inner_radius, thickness >= 0, n_glass and n_water >=
+// n_air > 0.
 template <class T>
 struct DomePort {
   Vector3<T> centre{T(0), T(0), T(0)};  // of the spheres [m]
@@ -41,7 +44,7 @@ struct DomePort {
   }
 };
 
-// How much a ray at distance k from the centre turns, by k^2.
+// The angle delta by which a ray at distance k from the centre turns, as functions of k^2.
 template <class T>
 struct DomeTurn {
   T sine;                      // S = sin(delta) / k
@@ -49,7 +52,7 @@ struct DomeTurn {
   T sine_slope, cosine_slope;  // their derivatives by k^2
 };
 
-// The port's physics: only radii, indices and the centre matter.
+// The port's geometry and media, in the form that the formulas above use.
 template <class T>
 struct DomePortOptics {
   Vector3<T> centre;
@@ -82,6 +85,7 @@ struct DomePortOptics {
   // S on the axis, where k is 0.
   T axial_sine() const { return in_air - in_glass + out_glass - out_water; }
 
+  // The turn of a ray whose squared distance from C in air is k2 [m^2].
   DomeTurn<T> turn(const T& k2) const {
     const DomeTurn<T> inner = difference(in_air, in_glass, k2);
     const DomeTurn<T> outer = difference(out_glass, out_water, k2);
@@ -97,7 +101,7 @@ struct DomePortOptics {
   }
 
  private:
-  // Of the angle asin(k a) - asin(k b).
+  // The same terms for the angle asin(k a) - asin(k b).
   static DomeTurn<T> difference(const T& a, const T& b, const T& k2) {
     using std::sqrt;
     const T cos_a = sqrt(T(1) - k2 * a * a);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pinhole lens behind a dome port: the exact axial camera, in closed form from pixel to ray. Its
-// axis runs through the camera centre and the dome's; a centred dome bends nothing.
+// A pinhole lens behind a dome port: the exact axial camera. Rays are in closed form; projections
+// solve one scalar equation (dome_port_projector.h). The axis runs through the camera centre and
+// the centre of the dome. A centred dome does not refract.
 #pragma once
 
 #include <cmath>
@@ -11,8 +12,9 @@
 
 namespace axial::refractive {
 
-// `T` is float, double or an automatic-differentiation scalar. Float runs a fixed number of
-// steps without branches; every other scalar iterates to convergence.
+// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. Single
+// precision takes a fixed number of steps without branches. All other scalars iterate to
+// convergence.
 template <class T>
 class DomePortCamera {
  public:
@@ -27,14 +29,14 @@ class DomePortCamera {
                                        WidenedImage<T>::margin_or_default(width, height, margin))) {
   }
 
-  // The same for points within `image` [px].
+  // As above, but for points whose images lie within `image` [px].
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, const WidenedImage<T>& image)
       : lens_(lens),
         inv_fx_(T(1) / lens.fx),
         inv_fy_(T(1) / lens.fy),
         projector_(lens, port, image) {}
 
-  DomePortCamera() = default;  // means nothing before each_field() has filled it
+  DomePortCamera() = default;  // invalid until each_field() has filled it
 
   // As FlatPortCamera::each_field.
   template <class Visit>
@@ -47,10 +49,12 @@ class DomePortCamera {
   const PinholeLens<T>& lens() const { return lens_; }
   const DomePortOptics<T>& optics() const { return projector_.optics(); }
 
-  // How virtual cameras are turned: as the lens is, because the axis may point anywhere.
+  // The orientation of virtual cameras (virtual_camera.h). It is that of the lens, because the axis
+  // of a dome may have any direction.
   Matrix3<T> rotation_to_axis() const { return Matrix3<T>::Identity(); }
 
-  // The ray in water. Its origin is the virtual centre C_v on the axis. NaN in, NaN out.
+  // The ray in water of `pixel`, in the camera frame. Its origin is the virtual centre C_v on the
+  // axis. A NaN pixel gives a NaN ray.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     AxialRayJacobian<T> unused;
     return ray(pixel, unused);
@@ -68,7 +72,7 @@ class DomePortCamera {
     const T q = turn.cosine + p * turn.sine;
     const T shift = optics().inv_mu / q;
     for (int k = 0; k < 2; ++k) {
-      // The bearing's derivative is (1/fx, 0, 0) or (0, 1/fy, 0).
+      // The derivative of the bearing is (1/fx, 0, 0) or (0, 1/fy, 0).
       const T step = (k == 0 ? inv_fx_ : inv_fy_) * inv_norm;
       Vector3<T> dr = -(r(k) * step) * r;
       dr(k) += step;
@@ -82,7 +86,7 @@ class DomePortCamera {
     return {(T(1) - shift) * C, q * r - turn.sine * C};
   }
 
-  // The point where the pixel's light leaves the glass into the water, in the camera frame.
+  // The point of the outer sphere on the pixel's ray, between glass and water, in the camera frame.
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     using std::sqrt;
     const AxialRay<T> ray = this->ray(pixel);
@@ -92,14 +96,15 @@ class DomePortCamera {
     return ray.at(sqrt(back * back + outer2 - from_centre.squaredNorm()) - back);
   }
 
-  // What projects, and its frame: the camera's own.
+  // The projector, and the frame in which it takes points: the camera frame.
   using Projector = DomePortProjector<T>;
   const Projector& projector() const { return projector_; }
   Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // Exact forward projection of X [camera frame]. Not visible: inside the dome, outside the
-  // widened image, behind the lens, or NaN; pixel and Jacobian are then finite and mean nothing.
-  // `origin`: where the ray through X begins, the virtual centre C_v.
+  // Exact forward projection of X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of
+  // the ray through X, which is its virtual centre C_v. X is not visible if it is inside the dome,
+  // outside the widened image, behind the lens, a million kilometres away or farther, or NaN.
+  // Pixel and Jacobian of a point that is not visible are finite but meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     const DomePortImage<T> image = projector_.image(X);

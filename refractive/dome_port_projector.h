@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact forward projection through a dome port, camera frame, metres.
+// The exact forward projection through a dome port. Camera frame, metres. The symbols are those of
+// dome_port.h.
 //
-// The image of X lies in the plane through X and the axis, so its direction in air is
+// The direction in air r of the image of X lies in the plane through X and the axis:
 //
 //     r = (d - zeta C) / N         with d = X/|X| and N = |d - zeta C|
 //
-// and the ray D = Q r - S C from C_v passes through X where
+// The ray from C_v with direction D = Q r - S C passes through X if
 //
 //     h(zeta) = zeta - (1 - 1/(mu_w Q)) / |X| + S N / Q = 0.
 //
-// zeta is small and nearly the same for all points of a distance: h is close to a straight line.
+// zeta is small, and nearly the same for all points at the same range, so that h is nearly linear.
 #pragma once
 
 #include <cmath>
@@ -20,15 +21,15 @@
 
 namespace axial::refractive {
 
-// A point's image and how it moves with the point.
+// The image of a point, and its derivative by the point's position. Camera frame.
 template <class T>
 struct DomePortImage {
   Projection<T> projection;
 
-  // Where the ray through the point begins.
+  // The origin of the ray through the point: C_v.
   Vector3<T> origin() const { return origin_share * centre; }
 
-  // The pixel's motion [px] with a motion of the point [m], to first order.
+  // First-order motion of the pixel [px] when the point moves by `step` [m].
   Vector2<T> moved(const Vector3<T>& step) const {
     const T along = towards.dot(step);
     const Vector3<T> turn = inv_range * (step - along * towards);
@@ -41,15 +42,15 @@ struct DomePortImage {
   T inv_range;                 // 1/|X|
   T zeta_by_cosine;            // d(zeta)/d(d.C)
   T zeta_by_inv_range;         // d(zeta)/d(1/|X|) / |X|^2
-  PinholeImage<T> in_air;      // of d - zeta C, as if it were a point
+  PinholeImage<T> in_air;      // the pinhole image of d - zeta C, taken as a point
 };
 
 template <class T>
 class DomePortProjector {
  public:
-  DomePortProjector() = default;  // means nothing before each_field() has filled it
+  DomePortProjector() = default;  // invalid until each_field() has filled it
 
-  // Points are projected within `image` [px].
+  // Points are projected if their images lie within `image` [px].
   DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port,
                     const WidenedImage<T>& image)
       : optics_(port), in_air_(lens), image_(image), steps_(steps_for(optics_)) {}
@@ -65,16 +66,17 @@ class DomePortProjector {
 
   const DomePortOptics<T>& optics() const { return optics_; }
 
-  // The image of X, visible as DomePortCamera::project says.
+  // The image of X [camera frame]. DomePortCamera::project states when it is visible. Everything in
+  // the result is finite, for every X.
   DomePortImage<T> image(const Vector3<T>& X) const {
     using std::sqrt;
     const Vector3<T>& C = optics_.centre;
     const T from_centre2 = (X - C).squaredNorm();
-    // False for NaN; the bound keeps squares within single precision.
+    // False for NaN. The upper bound keeps squares within the range of single precision.
     const Mask<T> in_water = from_centre2 > optics_.outer_radius * optics_.outer_radius &&
                              from_centre2 < T(kFarthest * kFarthest);
     DomePortImage<T> image;
-    // Everything below stays finite, wherever X is.
+    // A point outside the water is replaced, so that all results are finite.
     const Vector3<T> safe{select(in_water, X.x(), T(0)), select(in_water, X.y(), T(0)),
                           select(in_water, X.z(), T(1))};
     image.inv_range = T(1) / sqrt(safe.squaredNorm());
@@ -117,7 +119,8 @@ class DomePortProjector {
       const T ratio = turn.sine * norm * inv_q;
       h = zeta - (T(1) - optics.inv_mu * inv_q) * inv_range + ratio;
 
-      // By either variable, from how it moves N, k^2 and p.
+      // Derivative of S N / Q - (1 - 1/(mu_w Q)) / |X|, from the derivatives of N, k^2 and p by the
+      // same variable.
       const auto slope = [&](const T& dnorm, const T& dk2, const T& dp) {
         const T dsine = turn.sine_slope * dk2;
         const T dq = turn.cosine_slope * dk2 + p * dsine + turn.sine * dp;
@@ -148,21 +151,22 @@ class DomePortProjector {
         if (still) break;
       }
     }
-    // The last step carries the derivatives of automatic-differentiation scalars, too.
+    // The last step also gives automatic-differentiation scalars their derivatives.
     const Slopes at(optics_, zeta, c, inv_range);
     const T inv = T(1) / at.by_zeta;
     return {zeta - at.h * inv, -at.by_cosine * inv, (T(1) - optics_.inv_mu * at.inv_q) * inv,
             T(1) - optics_.inv_mu * at.inv_q};
   }
 
-  // As if the ray ran near the axis.
+  // The solution for a ray near the axis, where k is 0 and N is 1.
   T guess(const T& c, const T& inv_range) const {
     const T sine = optics_.axial_sine();
     const T inv_q = T(1) / (T(1) + c * sine);
     return (T(1) - optics_.inv_mu * inv_q) * inv_range - sine * inv_q;
   }
 
-  // Enough for errors below 1e-4 px of a 1024 px wide image.
+  // The number of steps in single precision that keeps errors below 1e-4 px of a 1024 px wide
+  // image. It grows with the decentring |C| / inner_radius.
   static int steps_for(const DomePortOptics<T>& optics) {
     const T decentring2 = optics.centre2 * optics.in_air * optics.in_air;
     return decentring2 < T(0.01) ? 1 : (decentring2 < T(0.16) ? 2 : 4);

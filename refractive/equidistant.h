@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equidistant fisheye: a direction in air at the angle theta from the optical axis, whose
-// tangents are (x/z, y/z) with r = tan(theta), lies at the distance theta from the centre of the
-// image plane. Both ratios of theta and its tangent are functions of squares, so that nothing is
-// singular in the centre.
+// The equidistant fisheye. A direction in air at the angle theta from the optical axis has the
+// tangents (x/z, y/z) of length r = tan(theta), and is imaged at the distance theta from the centre
+// of the image plane. The ratios theta/tan(theta) and tan(theta)/theta are computed from r^2 and
+// theta^2, so that they have no singularity in the centre.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ T power_series(const std::array<A, N>& a, const T& x) {
   return sum;
 }
 
-// Half the angle twice: atan(r) = 2 atan(r / (1 + sqrt(1 + r^2))). What is left is below 0.42,
-// where nine terms of the series are good to 1e-8.
+// Halves the angle twice by atan(r) = 2 atan(r / (1 + sqrt(1 + r^2))). The tangent of the quarter
+// angle is below 0.42, where nine terms of the series have an error of 1e-8.
 template <class T>
 T arc_over_tangent_in_fixed_steps(const T& r2) {
   using std::sqrt;
@@ -35,7 +35,7 @@ T arc_over_tangent_in_fixed_steps(const T& r2) {
   return T(4) * half * quarter * power_series(kSeries, half2 * quarter * quarter);
 }
 
-// The series of sine and cosine, good to 1e-9 up to 90 degrees.
+// The quotient of the series of sine and cosine. Their errors are below 1e-9 up to 90 degrees.
 template <class T>
 T tangent_over_arc_in_fixed_steps(const T& theta2) {
   constexpr std::array<float, 7> kSine{
@@ -49,7 +49,7 @@ T tangent_over_arc_in_fixed_steps(const T& theta2) {
 
 }  // namespace detail
 
-// theta / tan(theta), by the squared tangent.
+// theta / tan(theta) as a function of r2 = tan^2(theta).
 template <class T>
 T arc_over_tangent(const T& r2) {
   if constexpr (kFixedSteps<T>) {
@@ -64,7 +64,7 @@ T arc_over_tangent(const T& r2) {
   }
 }
 
-// tan(theta) / theta, by the squared angle. Precondition: theta below 90 degrees.
+// tan(theta) / theta as a function of theta^2 [rad^2]. Precondition: theta below 90 degrees.
 template <class T>
 T tangent_over_arc(const T& theta2) {
   if constexpr (kFixedSteps<T>) {

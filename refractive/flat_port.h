@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A flat port: two parallel planes between the lens and the water (DESIGN: "Flat port in closed
-// form").
+// A flat port: two parallel planes between the lens and the water. docs/refraction.md derives the
+// formulas.
 //
-// Axis frame: origin at the camera centre, z along the port's normal, metres. An in-air direction
-// is (x, y, 1) there and s = x^2 + y^2 = tan^2 of the in-air angle. With mu relative to air and
+// Axis frame: origin at the camera centre, z along the port's normal, metres. In this frame a
+// direction in air is (x, y, 1), and s = x^2 + y^2 is the squared tangent of its angle to the
+// normal. With refractive indices mu relative to air and
 //
 //     q_g = sqrt(mu_g^2 + (mu_g^2 - 1) s)        q_w = sqrt(mu_w^2 + (mu_w^2 - 1) s)
 //
@@ -16,9 +17,9 @@
 
 namespace axial::refractive {
 
-// The port as it is measured, in the camera frame. Requirements, checked where housings are read
-// and not here: unit normal with normal.z > 0, distance and thickness >= 0, n_glass and n_water >=
-// n_air > 0.
+// The measured parameters of the port, in the camera frame. Preconditions, which are checked when
+// a housing is read and not here: unit normal with normal.z > 0, distance and thickness >= 0,
+// n_glass and n_water >= n_air > 0.
 template <class T>
 struct FlatPort {
   Vector3<T> normal{T(0), T(0), T(1)};  // from the camera to the water
@@ -35,7 +36,7 @@ struct FlatPort {
   }
 };
 
-// q of one medium: b = mu^2, c = mu^2 - 1.
+// Computes q(s) = sqrt(b + c s) of one medium, with b = mu^2 and c = mu^2 - 1.
 template <class T>
 struct Medium {
   T b, c, inv_mu;
@@ -50,7 +51,7 @@ struct Medium {
   }
 };
 
-// The port's physics in the axis frame, where only the distances and the indices matter.
+// The port's geometry and media in the axis frame. The normal is not needed in this frame.
 template <class T>
 struct FlatPortOptics {
   T distance, thickness;
@@ -71,22 +72,22 @@ struct FlatPortOptics {
       visit(medium->b), visit(medium->c), visit(medium->inv_mu);
   }
 
-  // Height of the outer (glass/water) plane on the axis.
+  // Height of the outer (glass/water) plane on the axis [m].
   T outer() const { return distance + thickness; }
 
-  // radius(t, z_water) / t for t -> 0.
+  // The limit of radius(t, z_water) / t for t -> 0.
   T paraxial_secant(const T& z_water) const {
     return distance + thickness * glass.inv_mu + z_water * water.inv_mu;
   }
 
-  // Distance from the axis of the point at height `z_water` above the outer plane on the ray whose
-  // in-air tangent is t. Strictly increasing in t.
+  // Distance [m] from the axis at which the ray with the in-air tangent t reaches the height
+  // `z_water` [m] above the outer plane. Strictly increasing in t.
   T radius(const T& t, const T& z_water) const {
     const T s = t * t;
     return t * (distance + thickness / glass.q(s) + z_water / water.q(s));
   }
 
-  // Height on the axis of the virtual camera centre C_v of the rays with s = tan^2(theta_air).
+  // Height [m] on the axis of the virtual camera centre C_v of the rays with s = tan^2(theta_air).
   T virtual_centre(const T& s) const {
     const T q_w = water.q(s);
     return outer() - (distance + thickness / glass.q(s)) * q_w;

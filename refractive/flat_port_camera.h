@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pinhole lens behind a flat port: the exact axial camera, in closed form both ways.
+// A pinhole lens behind a flat port: the exact axial camera. Rays are in closed form; projections
+// solve one scalar equation (flat_port_solver.h). The derivatives of both are in closed form.
 //
-// Rays are computed in the camera frame: with n the port's normal, a vector's part across the axis,
-// v - (n.v) n, plays the role of the x and y of the axis frame, so that a tilt costs nothing.
+// Rays are computed in the camera frame, without a rotation into the axis frame: with n the port's
+// normal, the component v - (n.v) n of a vector v replaces its x and y in the axis frame.
 // Projections are computed in the port's frame (flat_port_projector.h).
 #pragma once
 
@@ -14,8 +15,9 @@
 
 namespace axial::refractive {
 
-// `T` is float, double or an automatic-differentiation scalar. Float runs a fixed number of
-// steps without branches; every other scalar iterates to convergence.
+// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. Single
+// precision takes a fixed number of steps without branches. All other scalars iterate to
+// convergence.
 template <class T>
 class FlatPortCamera {
  public:
@@ -34,7 +36,8 @@ class FlatPortCamera {
         projector_(lens, port, width, height,
                    WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
-  // The same for points within `field`, which goes with the port, and `image` [px].
+  // As above, but for points within `field`, which must be computed for this port, and with an
+  // image within `image` [px].
   FlatPortCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, const FlatPortField<T>& field,
                  const WidenedImage<T>& image)
       : lens_(lens),
@@ -45,11 +48,11 @@ class FlatPortCamera {
         rotation_to_axis_(axis_from_camera(port.normal)),
         projector_(lens, port, field, image) {}
 
-  FlatPortCamera() = default;  // means nothing before each_field() has filled it
+  FlatPortCamera() = default;  // invalid until each_field() has filled it
 
-  // Calls visit(field) with every number the camera consists of, in a fixed order: how cameras are
-  // dealt to SIMD lanes. One of them is an int, the number of projection steps: lanes that work
-  // together take the largest.
+  // Calls visit(number) for every number that the camera consists of, in a fixed order. The SIMD
+  // code copies several cameras into the lanes of one camera in this way. One number is an int,
+  // the number of projection steps. Lanes that work together take the largest step count.
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -67,9 +70,10 @@ class FlatPortCamera {
   const FlatPortOptics<T>& optics() const { return optics_; }
   const Matrix3<T>& rotation_to_axis() const { return rotation_to_axis_; }
 
-  // The ray in water. Its origin is the virtual centre C_v on the axis. A pixel that looks along or
-  // away from the port has no ray in water: the result is then a grazing ray, finite, and its
-  // Jacobian finite without meaning. NaN in, NaN out.
+  // The ray in water of `pixel`, in the camera frame. Its origin is the virtual centre C_v on the
+  // axis. A pixel that looks parallel to the port or away from it has no ray in water: the result
+  // is then a finite grazing ray with a finite but meaningless Jacobian. A NaN pixel gives a NaN
+  // ray.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     using std::sqrt;
     const Vector3<T> across = air_direction(pixel).across;
@@ -83,32 +87,33 @@ class FlatPortCamera {
 
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const;
 
-  // The point where the pixel's light leaves the glass into the water, in the camera frame.
+  // The point of the outer plane on the pixel's ray, between glass and water, in the camera frame.
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     const Vector3<T> across = air_direction(pixel).across;
     const T k = optics_.distance + optics_.thickness / optics_.glass.q(across.squaredNorm());
     return k * across + optics_.outer() * port_.normal;
   }
 
-  // What projects, and its frame: points and directions are brought there first.
+  // The projector, and the frame in which it takes points: transform points with this frame first.
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
   Frame<T> projector_frame() const {
     return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 
-  // Exact forward projection of X [camera frame]. Not visible: on the lens's side of the outer
-  // plane, outside the widened image, beyond total reflection, or NaN, in single precision also
-  // nearer to the outer plane than 0.1 mm or farther than 100 km; pixel and Jacobian are then
-  // finite and mean nothing. `origin`: where the ray through X begins, the virtual centre C_v.
+  // Exact forward projection of X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of
+  // the ray through X, which is its virtual centre C_v. X is not visible if it is on the lens's
+  // side of the outer plane, outside the widened image, beyond total reflection, or NaN. In single
+  // precision X is not visible either if its distance to the outer plane is below 0.1 mm or above
+  // 100 km. Pixel and Jacobian of a point that is not visible are finite but meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const;
 
  private:
-  // A pixel's direction in air is n + across, with `across` at right angles to the normal n.
+  // A pixel's direction in air is n + across, with `across` perpendicular to the normal n.
   struct AirDirection {
     Vector3<T> across;
-    T inv_along;  // scale from the lens's bearing (z = 1)
+    T inv_along;  // n + across = inv_along * bearing, where the bearing has z = 1
   };
 
   AirDirection air_direction(const Vector2<T>& pixel) const {
@@ -141,13 +146,14 @@ AxialRay<T> FlatPortCamera<T>::ray(const Vector2<T>& pixel, AxialRayJacobian<T>&
   const T inv_norm = T(1) / sqrt(s * inv_qw * inv_qw + T(1));
   const Vector3<T> direction = (inv_qw * inv_norm) * a + inv_norm * n;
 
-  // d/ds of q_w, of the height of C_v, and of 1/q_w.
+  // Derivatives by s of q_w, of the height of C_v, and of 1/q_w.
   const T dqw = T(0.5) * optics_.water.c * inv_qw;
   const T dz = T(0.5) * glass_term * inv_qg * inv_qg * optics_.glass.c * q_w -
                (optics_.distance + glass_term) * dqw;
   const T dinv = -dqw * inv_qw * inv_qw;
   for (int k = 0; k < 2; ++k) {
-    // The bearing's derivative is (1/fx, 0, 0) or (0, 1/fy, 0); n + a is the bearing / (n.bearing).
+    // The derivative of the bearing is (1/fx, 0, 0) or (0, 1/fy, 0), and
+    // n + a = bearing / (n.bearing).
     const T step = (k == 0 ? inv_fx_ : inv_fy_) * air.inv_along;
     Vector3<T> da = -(n(k) * step) * (n + a);
     da(k) += step;

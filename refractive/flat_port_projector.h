@@ -25,9 +25,9 @@ Matrix3<T> axis_from_camera(const Vector3<T>& n) {
 }
 
 // Tangent of the largest in-air incidence on the port over the image rectangle, widened by `margin`
-// pixels on every side; the corners decide, because the pixels within an incidence form a convex
-// set. Corners that look away from the port (tilt and field of view beyond 90 degrees) count as
-// `kGrazing`.
+// pixels on every side. The four corners are enough, because the pixels below a given incidence
+// form a convex set. The result is at most kGrazing, which is also the result if a corner looks
+// away from the port (tilt and field of view beyond 90 degrees).
 template <class T>
 T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port, int width,
                             int height, const T& margin) {
@@ -47,18 +47,19 @@ T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port,
   return largest < kGrazing ? largest : kGrazing;
 }
 
-// A point's image and how it moves with the point.
+// The image of a point, and its derivative by the point's position. Port's frame.
 template <class T>
 struct FlatPortImage {
   Projection<T> projection;
-  T origin_height;  // of the virtual centre C_v
+  T origin_height;  // z of the virtual centre C_v [m]
 
-  // Where the ray through the point begins.
+  // The origin of the ray through the point: C_v.
   Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
-  // The pixel's motion [px] with a motion of the point [m], to first order. The in-air direction is
-  // (t/rho x, t/rho y, 1): along the radius it grows by dt/d(rho) instead, and height turns it
-  // inwards.
+  // First-order motion of the pixel [px] when the point moves by `step` [m]. The in-air direction
+  // is (x t/rho, y t/rho, 1). A motion of the point across the radius changes the direction by
+  // t/rho times the motion, a motion along the radius by dt/d(rho) times the motion, and a motion
+  // upwards turns it towards the axis.
   Vector2<T> moved(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();
     const T outwards = stretch * radial - sink * step.z();
@@ -67,17 +68,19 @@ struct FlatPortImage {
   }
 
   Vector2<T> across;  // the point's x and y
-  // t/rho; (dt/d(rho) - t/rho) / rho^2; -(dt/dz) / rho; all over the direction's depth in the lens
+  // m = t/rho, stretch = (dt/d(rho) - t/rho) / rho^2, sink = -(dt/dz) / rho. All three are divided
+  // by the z of the in-air direction in the camera frame.
   T m, stretch, sink;
-  Matrix2<T> lens;  // d(pixel)/d(in-air direction), times that depth
+  Matrix2<T> lens;  // d(pixel)/d(x and y of the in-air direction), times the same z
 };
 
 template <class T>
 class FlatPortProjector {
  public:
-  FlatPortProjector() = default;  // means nothing before each_field() has filled it
+  FlatPortProjector() = default;  // invalid until each_field() has filled it
 
-  // Points are projected within the image of width x height, widened by `margin` pixels.
+  // Points are projected within the image of width x height pixels, widened by `margin` pixels on
+  // every side.
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
       : FlatPortProjector(
@@ -87,7 +90,8 @@ class FlatPortProjector {
                              largest_incidence_tangent(lens, port, width, height, T(0))),
             WidenedImage<T>(width, height, margin)) {}
 
-  // Points are projected within `field`, which goes with the port, and `image` [px].
+  // Points are projected if they lie within `field`, which must be computed for this port, and
+  // their images within `image` [px].
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port,
                     const FlatPortField<T>& field, const WidenedImage<T>& image)
       : optics_(port), field_(field), cx_(lens.cx), cy_(lens.cy), image_(image) {
@@ -108,20 +112,21 @@ class FlatPortProjector {
     image_.each_field(visit);
   }
 
-  // The image of X [port's frame], visible as FlatPortCamera::project says.
+  // The image of X [port's frame]. FlatPortCamera::project states when it is visible. Everything
+  // in the result is finite, for every X.
   FlatPortImage<T> image(const Vector3<T>& X) const {
     FlatPortImage<T> image;
     const T radius2 = X.x() * X.x() + X.y() * X.y();
     const Mask<T> in_field = field_.contains(radius2, X.z());
-    // Everything below stays finite, wherever X is.
+    // A point outside the field is replaced by a point of its edge, so that all results are finite.
     const T z_water = field_.nearest_height(X.z());
     const T rho2 = field_.nearest_rho2(radius2, z_water);
     image.across = {select(in_field, X.x(), T(0)), select(in_field, X.y(), T(0))};
     const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
-    // In water the ray rises q_w/t for every metre that it leaves the axis.
+    // In water the ray rises by q_w/t metres for every metre of distance from the axis.
     image.origin_height = z_water - T(1) / (at.m * at.inv_qw);
 
-    // The camera's axes times the in-air direction.
+    // Scalar product of a row with the in-air direction.
     const auto along = [&](const Vector3<T>& row) {
       return at.m * (row.x() * image.across.x() + row.y() * image.across.y()) + row.z();
     };
@@ -132,7 +137,7 @@ class FlatPortProjector {
     const T u = along(row_u_) * inv_depth;
     const T v = along(row_v_) * inv_depth;
     image.m = at.m * inv_depth;
-    // In this order every product stays within single precision.
+    // This order of factors keeps every product within the range of single precision.
     image.stretch = (at.slope * image.m) * (at.m * at.spread) * at.m;
     image.sink = at.slope * at.inv_qw * image.m;
     image.lens << row_u_.x() - u * row_z_.x(), row_u_.y() - u * row_z_.y(),  //
@@ -145,7 +150,8 @@ class FlatPortProjector {
  private:
   FlatPortOptics<T> optics_;
   FlatPortField<T> field_;
-  Vector3<T> row_u_, row_v_, row_z_;  // the lens's focal lengths times the camera's axes
+  // The axes of the camera in the port's frame. The first two are multiplied by fx and fy.
+  Vector3<T> row_u_, row_v_, row_z_;
   T cx_, cy_;
   WidenedImage<T> image_;
 };

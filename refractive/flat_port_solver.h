@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one equation of the exact forward projection: which in-air tangent t reaches the radius rho
-// at height z_water above the outer plane of a flat port,
+// The equation of the exact forward projection through a flat port. Its root is the in-air tangent
+// t of the ray that passes through the point with distance rho from the axis and height z_water
+// above the outer plane:
 //
 //     t (d_a + d_g/q_g(t^2) + z_water/q_w(t^2)) - rho = 0               (axis frame, metres)
 //
-// It is solved for m = t / rho, which is finite on the axis and needs no more than rho^2:
+// It is solved for m = t / rho, because m is finite on the axis and depends on rho^2 only:
 //
 //     F(m) = m (d_a + d_g/q_g(s) + z_water/q_w(s)) - 1 = 0              with s = m^2 rho^2
 //
@@ -18,21 +19,23 @@
 
 namespace axial::refractive {
 
-// The points a camera can see: in water, and within the in-air incidence t <= largest_tangent on
-// the port. At height z_water above the outer plane that is a disc of radius offset + slope *
-// z_water; exact, because radius(t, z_water) increases with t. Points outside need no projection,
-// and must not reach the fixed-step solver, which could land inside the image.
+// The points that a camera can see: points in water whose in-air tangent is at most the largest
+// tangent of the image. At height z_water above the outer plane they fill a disc of radius
+// offset + slope * z_water. The disc is exact, because radius(t, z_water) increases with t. Points
+// outside the field must not reach the fixed-step solver: it could return a pixel inside the image.
 template <class T>
 struct FlatPortField {
-  T offset, slope;
-  // radius / t as a function of z_water
-  T known_offset, known_slope, inv_known2;  // at an incidence whose root the guess knows; 1 / t^2
-  T paraxial_offset, paraxial_slope;        // at the axis
-  int steps;  // of the solver, for single precision: errors below 1e-4 px of a 1024 px wide image
+  T offset, slope;  // radius of the disc at z_water: offset + slope * z_water [m]
+  // radius / t as a linear function of z_water, at the tangent `promised` ("known", because there
+  // the first guess of the solver is exact) and on the axis. inv_known2 is 1 / promised^2.
+  T known_offset, known_slope, inv_known2;
+  T paraxial_offset, paraxial_slope;
+  int steps;  // of the solver in single precision; all other scalars ignore it
 
   FlatPortField() = default;
-  // The errors are promised up to the in-air incidence `promised`, at most `tangent`; beyond, up to
-  // 1.3 times as much, they stay below 0.01 px.
+  // `tangent`: the largest in-air tangent of the field. `promised`, at most `tangent`: in single
+  // precision the number of steps keeps the errors below 1e-4 px of a 1024 px wide image up to
+  // this tangent. Up to 1.3 times this tangent the errors stay below 0.01 px.
   FlatPortField(const FlatPortOptics<T>& optics, const T& tangent, const T& promised)
       : inv_known2(T(1) / (promised * promised)),
         paraxial_offset(optics.paraxial_secant(T(0))),
@@ -58,13 +61,14 @@ struct FlatPortField {
 
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
-  // False for NaN.
+  // rho2: squared distance to the axis [m^2]. False for NaN.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
   }
 
-  // The point itself if the field contains it, else one at its edge.
+  // Height and squared radius of the point itself if the field contains it, and of a point on the
+  // field's edge if not.
   T nearest_height(const T& z_water) const {
     return lesser(greater(z_water, T(kLowest)), T(kHighest));
   }
@@ -74,12 +78,13 @@ struct FlatPortField {
   }
 
  private:
-  // In single precision sixth powers of lengths must stay within its range.
+  // Heights [m]. The solver forms sixth powers of lengths, which must stay within the range of
+  // single precision.
   static constexpr float kLowest = kFixedSteps<T> ? 1e-4f : 1e-9f;
   static constexpr float kHighest = kFixedSteps<T> ? 1e5f : 1e9f;
 };
 
-// m as a fraction, so that what needs no more than m^2 does not wait for the division.
+// m = 1 / secant as a fraction, so that terms in m^2 do not wait for the division.
 template <class T>
 struct InverseSecant {
   T numerator, denominator;
@@ -87,8 +92,8 @@ struct InverseSecant {
   T value() const { return numerator / denominator; }
 };
 
-// F and its derivatives. Written for a short chain of operations rather than for few: everything
-// that needs no root is ready when the roots are.
+// F and its derivatives at m. The code minimises the length of the chain of dependent operations,
+// not their number: terms without a square root are computed while the square roots are under way.
 template <class T>
 struct FlatPortSlopes {
   T inv_qw;
@@ -130,15 +135,15 @@ struct FlatPortSlopes {
       : FlatPortSlopes(optics, {m, T(1)}, rho2, z_water) {}
 };
 
-// A guess of m: the inverse of a secant between the paraxial one, exact on the axis, and that of
-// an incidence where the root is known: the secant runs from one to the other like the square of
-// the radius. That saves more than one step against the paraxial guess. Far beyond the known
-// incidence the secant would fall to zero and below it, and no step would come back from there: it
-// stops at half the known one.
+// The first guess of m, as the inverse of an interpolated secant radius / t. The interpolation is
+// linear in the squared radius, between the axis and the known tangent of the field, and exact at
+// both. Against the paraxial guess it saves more than one step. Far beyond the known tangent the
+// interpolated secant would become zero or negative, and no step could correct that: it is
+// therefore limited to at least half the secant of the known tangent.
 template <class T>
 struct FirstGuess {
   InverseSecant<T> m;
-  Mask<T> beyond;  // the known incidence
+  Mask<T> beyond;  // the point lies beyond the known tangent
 
   FirstGuess(const FlatPortField<T>& field, const T& rho2, const T& z_water) {
     const T known = field.known_offset + field.known_slope * z_water;
@@ -151,14 +156,14 @@ struct FirstGuess {
   }
 };
 
-// How far Halley's step goes down from m, where the slopes are `at`.
+// The decrement of m in a step of Halley's method. `at`: F and its derivatives at m.
 template <class T>
 T halley_step(const FlatPortSlopes<T>& at, const T& m) {
   const T f = m * at.secant - T(1);
   return f * at.tangent / (at.tangent * at.tangent - f * at.half_curvature);
 }
 
-// The root and what the projection's derivative needs there.
+// The root, and the terms that the derivative of the projection needs at the root.
 template <class T>
 struct FlatPortRoot {
   T m;       // t / rho, in-air tangent over radius
@@ -169,16 +174,16 @@ struct FlatPortRoot {
 
 namespace detail {
 
-// The last step is Chebyshev's: of third order like Halley's, and its only division is the one that
-// the derivative needs anyway. The slopes at the root are carried there from the step's start, to
-// first order: they only matter to the Jacobian.
+// The last step is Chebyshev's: it has third order, like Halley's, and its only division is one
+// that the derivative needs too. The derivatives at the root are extrapolated to first order from
+// the start of the last step, because only the Jacobian uses them.
 template <class T>
 FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
   const FirstGuess<T> guess(field, rho2, z_water);
   FlatPortSlopes<T> at(optics, guess.m, rho2, z_water);
   T m = guess.m.value();
-  // Far outside, where the steps need not be right, they must not lead back into the image.
+  // Far outside the image the steps may be inaccurate, but they must not lead back into the image.
   const T lowest = select(guess.beyond, T(0.5) * m, T(0));
   for (int step = 1; step < field.steps; ++step) {
     m -= halley_step(at, m);
@@ -201,8 +206,9 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
   T m = FirstGuess<T>(field, rho2, z_water).m.value();
   for (int step = 0; step < 2; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
-  // A Newton step of a concave function ends left of the root, the paraxial guess lies left of it
-  // too, and from there Newton rises monotonically: a step that no longer rises is rounding.
+  // F is concave, so that a Newton step ends left of the root. From a point left of the root,
+  // Newton's method rises monotonically. The paraxial solution lies left of the root and bounds
+  // the steps from below. A step that does not rise shows that only rounding errors are left.
   const T lowest = T(1) / optics.paraxial_secant(z_water);
   for (int step = 0; step < 60; ++step) {
     const FlatPortSlopes<T> at(optics, m, rho2, z_water);
@@ -212,7 +218,7 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
     m = next;
     if (!rising && step > 0) break;
   }
-  // One step from the root itself carries the derivatives of automatic-differentiation scalars.
+  // One more step from the root gives automatic-differentiation scalars their derivatives.
   const FlatPortSlopes<T> near(optics, m, rho2, z_water);
   m = m - (m * near.secant - T(1)) / near.tangent;
   const FlatPortSlopes<T> at(optics, m, rho2, z_water);
@@ -221,7 +227,8 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
 
 }  // namespace detail
 
-// The root, for points that the field contains. rho2: the squared distance to the axis.
+// Solves F(m) = 0. rho2: squared distance of the point to the axis [m^2]. z_water: its height above
+// the outer plane [m]. Precondition: `field` contains the point.
 template <class T>
 FlatPortRoot<T> solve_projection(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                  const T& rho2, const T& z_water) {

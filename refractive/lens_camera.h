@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lens with distortion in front of nothing, a flat port or a dome: any camera of this folder with
-// a straight lens, whose "pixels" are tangents in air, seen through the lens. Rays, projections and
-// derivatives are the inner camera's, by the chain rule.
+// A camera whose lens has distortion, without a port or behind a flat port or a dome. It combines a
+// DistortedLens, which maps tangents in air to pixels, with an inner camera of this folder whose
+// lens has no distortion. The "pixels" of the inner camera are tangents in air. Rays and
+// projections are those of the inner camera; derivatives follow by the chain rule.
 #pragma once
 
 #include <utility>
@@ -12,25 +13,25 @@
 
 namespace axial::refractive {
 
-// A point's image and how it moves with the point.
+// The image of a point, and its derivative by the point's position.
 template <class T, class InnerImage>
 struct LensImage {
   Projection<T> projection;
 
-  // Where the ray through the point begins.
+  // The origin of the ray through the point.
   Vector3<T> origin() const { return inner.origin(); }
 
-  // The pixel's motion [px] with a motion of the point [m], to first order.
+  // First-order motion of the pixel [px] when the point moves by `step` [m].
   Vector2<T> moved(const Vector3<T>& step) const { return by_tangents * inner.moved(step); }
 
-  InnerImage inner;        // in tangents
+  InnerImage inner;        // the inner camera's image, in tangents
   Matrix2<T> by_tangents;  // d(pixel)/d(tangents)
 };
 
 template <class T, class InnerProjector>
 class LensProjector {
  public:
-  LensProjector() = default;  // means nothing before each_field() has filled it
+  LensProjector() = default;  // invalid until each_field() has filled it
   LensProjector(const DistortedLens<T>& lens, const InnerProjector& inner)
       : lens_(lens), inner_(inner) {}
 
@@ -41,6 +42,7 @@ class LensProjector {
     inner_.each_field(visit);
   }
 
+  // The image of X [frame of the inner projector].
   auto image(const Vector3<T>& X) const {
     LensImage<T, decltype(inner_.image(X))> image;
     image.inner = inner_.image(X);
@@ -58,24 +60,27 @@ class LensProjector {
 
 namespace detail {
 
+// The lens of the inner camera: its pixels are tangents.
 template <class T>
 PinholeLens<T> tangent_lens() {
   return {T(1), T(1), T(0), T(0)};
 }
 
-// Larger than any image of tangents; what is outside is the lens's to say.
+// The image rectangle of the inner camera, larger than any image in tangents. The DistortedLens
+// tests against the real image rectangle.
 template <class T>
 WidenedImage<T> all_tangents() {
   return {1, 1, T(1e6)};
 }
 
-// The largest in-air incidence on the port over an image's border, inside which it grows towards.
+// Tangent of the largest in-air incidence on the port over `image` [px], at most kGrazing. Only the
+// border is sampled, because the incidence grows towards the border.
 template <class T>
 T largest_incidence_tangent(const DistortedLens<T>& lens, const FlatPort<T>& port,
                             const WidenedImage<T>& image) {
   using std::sqrt;
   constexpr int kSamples = 64;
-  constexpr float kBetween = 1.002f;  // more than incidences grow between samples
+  constexpr float kBetween = 1.002f;  // more than the incidence can grow between samples
   const T kGrazing(50);
   T largest = T(1e-3);
   const auto look = [&](const T& u, const T& v) {
@@ -121,16 +126,17 @@ DomePortCamera<T> inner_camera(const DistortedLens<T>&, const DomePort<T>& port)
 
 }  // namespace detail
 
-// `Inner` is one of the cameras with a straight lens.
+// `Inner`: PinholeCamera, FlatPortCamera or DomePortCamera.
 template <class Inner>
 class LensCamera {
  public:
   using Scalar = typename Inner::Scalar;
   using T = Scalar;
 
-  LensCamera() = default;  // means nothing before each_field() has filled it
+  LensCamera() = default;  // invalid until each_field() has filled it
 
-  // A dry camera, or one behind the port that Inner has.
+  // The camera without a port (Inner is PinholeCamera), and the camera behind a port of the kind
+  // that Inner has.
   explicit LensCamera(const DistortedLens<T>& lens)
       : lens_(lens), inner_(detail::inner_camera(lens)) {}
   template <class Port>
@@ -147,8 +153,8 @@ class LensCamera {
   const DistortedLens<T>& distorted_lens() const { return lens_; }
   const Inner& inner() const { return inner_; }
 
-  // The inner camera's, of a pixel that the lens images no direction at one of the edge of its
-  // field.
+  // The inner camera's ray for the pixel's tangents. A pixel at which the lens images no direction
+  // gets the ray of a direction at the edge of the lens's field.
   AxialRay<T> ray(const Vector2<T>& pixel) const { return inner_.ray(lens_.tangents(pixel).point); }
 
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
@@ -168,7 +174,8 @@ class LensCamera {
   Projector projector() const { return {lens_, inner_.projector()}; }
   Frame<T> projector_frame() const { return inner_.projector_frame(); }
 
-  // As the inner camera's; not visible is also what is beyond the lens's field.
+  // As project() of the inner camera. In addition, a point beyond the lens's field or outside the
+  // widened image of the lens is not visible.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     Matrix23<T> by_point;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a lens bends the straight picture, for all of COLMAP's polynomial models, the fisheyes among
-// them, and FOV in one formula (camera models: COLMAP's documentation).
+// The distortion of a lens. One formula covers all of COLMAP's polynomial models, including the
+// fisheyes, and its FOV model. COLMAP's documentation describes the camera models.
 //
-// A direction in air (u, v, 1) is first brought to the plane the polynomials are written in,
+// A direction in air (u, v, 1) is first mapped to the plane in which the polynomials are defined,
 //
 //     e = spread (u, v)                      perspective lenses (spread is 1)
 //     e = spread (u, v) theta / tan(theta)   fisheyes, with tan(theta) = spread |(u, v)|
 //
-// and then bent, with s = |e|^2 and e = (x, y):
+// and then distorted, with s = |e|^2 and e = (x, y):
 //
 //     d = e (above_0 + above_1 s + ... + above_4 s^4) / (1 + below_1 s + ... + below_3 s^3)
 //         + (2 p1 x y + p2 (s + 2 x^2), 2 p2 x y + p1 (s + 2 y^2)) + prism s
@@ -22,17 +22,18 @@
 
 namespace axial::refractive {
 
-// A point of a plane and its derivative by the point of another plane that it comes from.
+// The result of a mapping from plane to plane: the point, and `by`, its derivative by the point
+// that was mapped.
 template <class T>
 struct PlanePoint {
   Vector2<T> point;
   Matrix2<T> by;
 };
 
-// The default is the straight lens.
+// The parameters of the formula above. Their defaults describe a lens without distortion.
 template <class T>
 struct LensDistortion {
-  T fisheye = T(0);  // 1: fisheye, 0: perspective; a number, because lanes may differ in it
+  T fisheye = T(0);  // 1: fisheye, 0: perspective; a number, because SIMD lanes may differ in it
   T spread = T(1);
   std::array<T, 5> above{T(1), T(0), T(0), T(0), T(0)};
   std::array<T, 3> below{T(0), T(0), T(0)};
@@ -53,15 +54,17 @@ struct LensDistortion {
     visit(p1), visit(p2), visit(prism.x()), visit(prism.y());
   }
 
-  // e of the tangents (u, v), and back. The way back is for |e| below 90 degrees of a fisheye.
+  // Maps the tangents (u, v) to e, and its inverse, which maps e to the tangents. Precondition of
+  // the inverse for a fisheye: |e| below 90 degrees [rad].
   PlanePoint<T> spread_out(const Vector2<T>& tangents) const;
   PlanePoint<T> drawn_in(const Vector2<T>& e) const;
 
-  // d of e.
+  // Maps e to d.
   PlanePoint<T> bent(const Vector2<T>& e) const;
 
-  // e of d within |e| <= radius, the inverse of bent() by Newton's method; beyond, a point of that
-  // circle in about d's direction. `by` is d(e)/d(d). NaN in, NaN out.
+  // The inverse of bent() by Newton's method, for |e| <= radius. If e would lie beyond, the result
+  // is a point of the circle |e| = radius, roughly in the direction of d. `by` is d(e)/d(d). A NaN
+  // argument gives NaN.
   PlanePoint<T> straightened(const Vector2<T>& d, const T& radius) const;
 };
 
@@ -80,10 +83,11 @@ Matrix2<T> inverse_of(const Matrix2<T>& m) {
 
 namespace detail {
 
-// across I + (along - across) p p^T / p^2: one factor along p, another across it.
+// The matrix across I + (along - across) p p^T / p^2, which scales by `along` in the direction of p
+// and by `across` perpendicular to p.
 template <class T>
 Matrix2<T> stretch(const Vector2<T>& p, const T& p2, const T& along, const T& across) {
-  // In the centre both are the same, but for rounding.
+  // In the centre `along` and `across` differ by rounding only.
   const T turn = (along - across) / greater(p2, T(1e-12));
   Matrix2<T> matrix;
   matrix << across + turn * p.x() * p.x(), turn * p.x() * p.y(),  //
@@ -131,7 +135,7 @@ template <class T>
 PlanePoint<T> LensDistortion<T>::drawn_in(const Vector2<T>& e) const {
   const T theta2 = e.x() * e.x() + e.y() * e.y();
   const Mask<T> bends = fisheye > T(0);
-  // A perspective lens's e is no angle: its tangent would be anything.
+  // e of a perspective lens is not an angle, and may be too large for tangent_over_arc().
   const T across = select(bends, tangent_over_arc(select(bends, theta2, T(0))), T(1));
   const T along = select(bends, T(1) + across * across * theta2, T(1));
   const T inv = T(1) / spread;
@@ -144,7 +148,7 @@ PlanePoint<T> LensDistortion<T>::bent(const Vector2<T>& e) const {
   const T s = x * x + y * y;
   const T inv_below = T(1) / (T(1) + s * detail::power_series(below, s));
   const T ratio = detail::power_series(above, s) * inv_below;
-  // d(ratio)/ds, twice.
+  // The coefficients of the derivatives by s; `slope` is 2 d(ratio)/ds.
   const std::array<T, 4> above_slope{above[1], T(2) * above[2], T(3) * above[3], T(4) * above[4]};
   const std::array<T, 3> below_slope{below[0], T(2) * below[1], T(3) * below[2]};
   const T slope =
@@ -173,7 +177,7 @@ PlanePoint<T> LensDistortion<T>::straightened(const Vector2<T>& d, const T& radi
     return inverse;
   };
   if constexpr (kFixedSteps<T>) {
-    constexpr int kSteps = 8;  // two more than any lens of the tests takes
+    constexpr int kSteps = 8;  // two more than any lens of the tests needs
     for (int k = 0; k < kSteps; ++k) step();
   } else {
     constexpr int kMostSteps = 60;
@@ -184,7 +188,7 @@ PlanePoint<T> LensDistortion<T>::straightened(const Vector2<T>& d, const T& radi
       if (!((e - before).squaredNorm() > rounding)) break;
     }
   }
-  // From the root itself: carries the derivatives of automatic-differentiation scalars, too.
+  // One more step from the root gives automatic-differentiation scalars their derivatives.
   const Matrix2<T> by = step();
   return {e, by};
 }

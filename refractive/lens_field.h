@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far out a lens is defined: polynomials fold back beyond the field they were fitted to, and a
-// direction from there would land inside the image again.
+// The field of a lens: how far from the optical axis its distortion model is valid. Beyond the
+// field to which they were fitted, polynomials may turn back, and directions from there would be
+// projected into the image a second time.
 #pragma once
 
 #include <cmath>
@@ -12,27 +13,30 @@
 
 namespace axial::refractive {
 
-// Directions this far from the optical axis are no lens's in front of a port, nor on a plane.
+// The widest field of a lens [rad]. No lens behind a port images directions that are farther from
+// the optical axis, and at 90 degrees a direction has no finite tangents.
 inline constexpr double kWidestAngle = 85 * std::numbers::pi / 180;
 
 namespace detail {
 
-// |e| of the directions at `angle` from the optical axis.
+// |e| (lens_distortion.h) of the directions at `angle` [rad] from the optical axis.
 inline double field_at(const LensDistortion<double>& distortion, double angle) {
   const double r = distortion.spread * std::tan(angle);
   return distortion.fisheye > 0 ? std::atan(r) : r;
 }
 
-// What of a circle |e| = radius the lens shows.
+// Properties of the image of a circle |e| = radius.
 struct FieldCircle {
-  bool grows = true;     // everywhere outwards, and without turning the picture over
-  double reaches = 1e9;  // the smallest distance of its image from the centre's [focal lengths]
+  // A growing angle moves every point of the image outwards, and the image is not mirrored.
+  bool grows = true;
+  double reaches = 1e9;  // smallest distance of the image from the centre [focal lengths]
 };
 
-// `by_angle`: d|e|/d(angle) there.
+// Samples the circle |e| = radius. `by_angle`: d|e|/d(angle) at this radius.
 inline FieldCircle field_circle(const LensDistortion<double>& distortion, double radius,
                                 double by_angle) {
-  // Where hardly any pixel is left for an angle, single precision has no inverse.
+  // Least growth of the distance from the image's centre [focal lengths per radian]. Below it, the
+  // inverse of the distortion is not accurate in single precision.
   constexpr double kLeastGrowth = 0.02;
   constexpr int kDirections = 16;
   FieldCircle circle;
@@ -50,11 +54,13 @@ inline FieldCircle field_circle(const LensDistortion<double>& distortion, double
 
 }  // namespace detail
 
-// The largest |e| (lens_distortion.h) up to which every direction moves outwards in the image, but
-// not much beyond `image` [px], nor beyond kWidestAngle. 0: the lens is turned over, or no lens.
+// The largest |e| (lens_distortion.h) up to which a direction that moves away from the optical axis
+// also moves outwards in the image. The search ends once all directions of one |e| lie beyond the
+// corners of `image` [px], and at kWidestAngle. The result is 0 if the condition fails already next
+// to the axis, for example because the lens mirrors the image.
 inline double lens_field(const PinholeLens<double>& lens, const LensDistortion<double>& distortion,
                          const WidenedImage<double>& image) {
-  double corner = 0;  // the farthest, in focal lengths
+  double corner = 0;  // distance of the farthest corner from the principal point [focal lengths]
   for (const double u : {image.lowest, image.highest_u})
     for (const double v : {image.lowest, image.highest_v})
       corner = std::fmax(corner, std::hypot((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy));

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's forward projection: bisection on the line that the plane of refraction cuts from the
-// image, by the tabled rays alone (Algorithm 1). About a quarter of a pixel, for comparison and for
-// cameras known only as a table; the exact projection is faster.
+// The paper's forward projection (Algorithm 1): bisection on the intersection line of the plane of
+// refraction and the image, using only a table of the pixels' rays. Its error is about a quarter of
+// a pixel. It serves comparisons, and cameras of which only a table is known. The exact projection
+// is faster.
 //
-// Where the printed algorithm is silent or wrong (FIELD section 4, item 4), this one
-//   - tables one pixel more than the image on every side and clips the line half a pixel outside
-//     the image's area, so that rounding never leaves the table, and a point is outside the image
-//     iff the search ends outside that area. (Printed: points whose search ends within half a pixel
-//     of the line's end are dropped, though many of them are inside.)
-//   - tests at least once, also on a line too short to bisect, where `forward` had no value,
+// The printed algorithm leaves some cases open and treats others wrongly. This implementation
+//   - makes the table one pixel larger than the image on every side and clips the line half a pixel
+//     outside the image's area. So rounding never leaves the table, and a point is outside the
+//     image if and only if the search ends outside the image's area. (The printed algorithm drops
+//     points whose search ends within half a pixel of the line's end, though many are inside.)
+//   - tests at least once, also on a line that is too short to bisect, where the printed variable
+//     `forward` has no value,
 //   - returns x_p for a point on the axis, where the line has no direction,
-//   - takes the line's direction from X and n without x_n, which a port whose normal is at right
-//     angles to the optical axis has not,
+//   - computes the line's direction from X and n without x_n, because x_n does not exist if the
+//     port's normal is perpendicular to the optical axis,
 //   - rejects points on the lens's side of the outer plane, and NaN,
-//   - reads alpha and beta as cosines: the angle grows where the cosine falls.
-// Bisecting rounded positions is not monotone within 0.7 px, which is where most of the error is.
+//   - takes alpha and beta as cosines: a larger angle has a smaller cosine.
+// The search rounds positions to pixels, so that the comparison is not monotone within 0.7 px. Most
+// of the error comes from there.
 #pragma once
 
 #include <cmath>
@@ -26,13 +29,15 @@
 
 namespace axial::refractive {
 
+// A segment of a line in the image [px].
 template <class T>
 struct Segment {
   Vector2<T> start, end;
 };
 
 // The part of the ray start + t * step, t >= 0, inside the rectangle [low, high] (Liang and
-// Barsky). None: they do not meet, the step is zero, or something is not finite.
+// Barsky's algorithm). Empty if they do not meet, if the step is zero, or if `start` or `step` is
+// not finite.
 template <class T>
 std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& step,
                                    const Vector2<T>& low, const Vector2<T>& high) {
@@ -53,9 +58,10 @@ std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& st
   return Segment<T>{start + enter * step, start + *leave * step};
 }
 
-// Where the plane of refraction of X meets the image, from the pinhole image x_p of X away from the
-// axis: direction J e with J the lens's Jacobian at X and e the part of X across the axis, which is
-// that of x_p - x_n. Precondition X.z > 0. The length is about |x_p - x_n| pixels.
+// Direction of the line in which the plane of refraction of X meets the image, at the pinhole image
+// x_p of X and pointing away from the axis. It is J e, with J the lens's Jacobian at X and e the
+// component of X across the axis; it is parallel to x_p - x_n. The length is about |x_p - x_n|
+// pixels. `n`: the port's normal. X and n in the camera frame. Precondition: X.z > 0.
 template <class T>
 Vector2<T> refraction_line(const PinholeLens<T>& lens, const Vector3<T>& n, const Vector3<T>& X) {
   const T inv_z = T(1) / X.z();
@@ -63,7 +69,8 @@ Vector2<T> refraction_line(const PinholeLens<T>& lens, const Vector3<T>& n, cons
           lens.fy * (X.y() * n.z() - n.y() * X.z()) * inv_z};
 }
 
-// Algorithm 1's bisection on a clipped line. X [camera frame] beyond the port.
+// The bisection of Algorithm 1 on the clipped line `line`. Precondition: X [camera frame] lies
+// beyond the port.
 template <class T>
 Vector2<T> bisect_line(const PixelLookup<T>& lookup, Segment<T> line, const Vector3<T>& X) {
   using std::sqrt;
@@ -84,14 +91,16 @@ Vector2<T> bisect_line(const PixelLookup<T>& lookup, Segment<T> line, const Vect
   return x;
 }
 
-// A flat port camera that projects by Algorithm 1: for the paper's method, chosen by type alone.
-// Rays and Jacobians are those of the exact camera. `T` is float or double.
+// A flat port camera that projects by Algorithm 1. Its interface is that of FlatPortCamera, so that
+// the camera's type selects the paper's method. Rays and Jacobians are those of the exact camera.
+// `T` is float or double.
 template <class T>
 class LineSearchCamera {
  public:
   using Scalar = T;
 
-  // Copies share one table, of 4 numbers a pixel.
+  // width, height: the image in pixels. Copies of the camera share one table of 4 numbers per
+  // pixel.
   LineSearchCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height)
       : exact_(lens, port, width, height),
         low_(T(-1), T(-1)),
@@ -109,7 +118,9 @@ class LineSearchCamera {
     return exact_.ray(pixel, jacobian);
   }
 
-  // Visible: the search ends inside the image, not widened: u in [-1/2, width - 1/2].
+  // X [camera frame] is visible if the search ends inside the image, without a margin:
+  // u in [-1/2, width - 1/2], v in [-1/2, height - 1/2]. If not, the pixel is (0, 0). `jacobian`:
+  // d(pixel)/dX of the exact projection.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
     if (jacobian) exact_.project(X, jacobian);
     const Projection<T> none{Vector2<T>(T(0), T(0)), false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The point nearest to several rays.
+// The point nearest to several rays, in the least-squares sense.
 #pragma once
 
 #include <span>
@@ -8,14 +8,16 @@
 
 namespace axial::refractive {
 
-// normal * point = right for the point with the least sum of squared distances to the lines of
-// rays. `normal` is singular for parallel rays and for none.
+// The normal equations, normal * point = right, of the point whose sum of squared distances to the
+// lines of the rays is smallest. `normal` is singular if all rays are parallel or if there are no
+// rays.
 template <class T>
 struct NearestPointEquations {
   Matrix3<T> normal = Matrix3<T>::Zero();
   Vector3<T> right = Vector3<T>::Zero();
 };
 
+// Sums the equations over `rays`. Precondition: directions of unit length.
 template <class T>
 NearestPointEquations<T> nearest_point_equations(std::span<const AxialRay<T>> rays) {
   NearestPointEquations<T> equations;

@@ -8,7 +8,8 @@
 
 namespace axial::refractive {
 
-// In-air pinhole intrinsics in pixels: u = fx x/z + cx, v = fy y/z + cy, pixel centres at integers.
+// Pinhole intrinsics in air, in pixels: u = fx x/z + cx, v = fy y/z + cy. Pixel centres lie at
+// integers.
 template <class T>
 struct PinholeLens {
   T fx, fy, cx, cy;
@@ -18,27 +19,27 @@ struct PinholeLens {
     return {static_cast<U>(fx), static_cast<U>(fy), static_cast<U>(cx), static_cast<U>(cy)};
   }
 
-  // The viewing direction in air of a pixel, scaled to z = 1.
+  // The direction in air of a pixel, scaled to z = 1.
   Vector3<T> bearing(const Vector2<T>& pixel) const {
     return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, T(1)};
   }
 
-  // The pixel of an in-air direction with z > 0.
+  // The pixel of a direction in air. Precondition: z > 0.
   Vector2<T> pixel(const Vector3<T>& bearing_in_camera) const {
     return {fx * bearing_in_camera.x() / bearing_in_camera.z() + cx,
             fy * bearing_in_camera.y() / bearing_in_camera.z() + cy};
   }
 };
 
-// A point's image and how it moves with the point.
+// The image of a point, and its derivative by the point's position.
 template <class T>
 struct PinholeImage {
   Projection<T> projection;
 
-  // Where the ray through the point begins.
+  // The origin of the ray through the point: the camera centre.
   Vector3<T> origin() const { return {T(0), T(0), T(0)}; }
 
-  // The pixel's motion [px] with a motion of the point [m], to first order.
+  // First-order motion of the pixel [px] when the point moves by `step` [m].
   Vector2<T> moved(const Vector3<T>& step) const {
     return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
@@ -47,18 +48,17 @@ struct PinholeImage {
   T scale_u, scale_v;  // focal lengths divided by z
 };
 
-// A dry camera: all rays start at the centre. A point is visible when it is in front (z > 0) and
-// not absurdly far to the side; it has no image rectangle to test against.
+// A camera without a port: all rays start at the centre. A point is visible if 1e-20 < z < 1e20 and
+// |x| and |y| are at most 1e6 z. There is no test against an image rectangle.
 template <class T>
 class PinholeCamera {
  public:
   using Scalar = T;
 
-  PinholeCamera() = default;  // means nothing before each_field() has filled it
+  PinholeCamera() = default;  // invalid until each_field() has filled it
   explicit PinholeCamera(const PinholeLens<T>& lens) : lens_(lens) {}
 
-  // Calls visit(field) with every number the camera consists of, in a fixed order: how cameras are
-  // dealt to SIMD lanes.
+  // See FlatPortCamera.
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -66,6 +66,7 @@ class PinholeCamera {
 
   const PinholeLens<T>& lens() const { return lens_; }
 
+  // The ray of `pixel` in the camera frame. A NaN pixel gives a NaN direction.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     using std::sqrt;
     const Vector3<T> bearing = lens_.bearing(pixel);
@@ -85,19 +86,19 @@ class PinholeCamera {
     return {Vector3<T>::Zero(), direction};
   }
 
-  // The last point of the light's path in the scene's medium, in the camera frame.
+  // The point at which the pixel's light leaves the scene medium: the camera centre.
   Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
 
-  // What projects, and its frame: the camera itself.
+  // The projector and its frame: the camera itself and the camera frame.
   using Projector = PinholeCamera;
   const Projector& projector() const { return *this; }
   Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // Where X is not visible, the pixel and its motions are finite and mean nothing.
+  // The image of X [camera frame]. If X is not visible, the result is finite but meaningless.
   PinholeImage<T> image(const Vector3<T>& X) const {
     using std::abs;
     PinholeImage<T> image;
-    // False for NaN; the bounds keep pixel and motions within single precision.
+    // False for NaN. The bounds keep pixel and derivatives within the range of single precision.
     const T widest = T(1e6) * X.z();
     image.projection.visible =
         X.z() > T(1e-20) && X.z() < T(1e20) && abs(X.x()) <= widest && abs(X.y()) <= widest;
@@ -111,6 +112,8 @@ class PinholeCamera {
     return image;
   }
 
+  // Projects X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of the ray through X,
+  // which is the camera centre.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     const PinholeImage<T> image = this->image(X);

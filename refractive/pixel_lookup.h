@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's lookup L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of its pixels' rays.
+// The paper's lookup table L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of the rays of
+// its pixels.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,8 @@ struct IntegerPixel {
   int u, v;
 };
 
-// Four numbers a pixel: the height of C_v on the axis and the direction; c_v follows from them.
+// Stores four numbers per pixel: the height of C_v on the axis and the direction X_v. c_v is
+// computed from them.
 template <class T>
 class PixelLookup {
  public:
@@ -29,8 +31,8 @@ class PixelLookup {
     Vector3<T> direction;
   };
 
-  // Tables the rays of `camera` (any camera with `port()`), for the width x height image widened by
-  // `border` pixels on every side.
+  // Fills the table with the rays of `camera`, which is any camera with a flat port, for the image
+  // of width x height pixels widened by `border` pixels on every side.
   template <class Camera>
   PixelLookup(const Camera& camera, int width, int height, int border = 0)
       : lens_(camera.lens()),
@@ -51,13 +53,13 @@ class PixelLookup {
 
   const Vector3<T>& axis() const { return axis_; }
 
-  // The tabled pixel nearest to `pixel` (halves upwards); far outside it is the nearest one
-  // of the table's edge, and for NaN a corner.
+  // The pixel of the table nearest to `pixel`. Halves are rounded upwards. A pixel outside the
+  // table is moved to the table's edge. A NaN coordinate gives the smallest one of the table.
   IntegerPixel round(const Vector2<T>& pixel) const {
     return {round_clamped(pixel.x(), high_u_), round_clamped(pixel.y(), high_v_)};
   }
 
-  // Precondition: inside the table, as `round` gives it.
+  // Precondition: p lies inside the table, as the results of round() do.
   const Cell& cell(const IntegerPixel& p) const {
     const std::size_t stride = static_cast<std::size_t>(high_u_ - low_ + 1);
     return cells_[static_cast<std::size_t>(p.v - low_) * stride +
@@ -69,13 +71,13 @@ class PixelLookup {
     return {c.along * axis_, c.direction};
   }
 
-  // L of the nearest pixel.
+  // L of the pixel of the table nearest to `pixel`.
   Entry entry(const Vector2<T>& pixel) const {
     const VirtualCamera<T> camera = virtual_camera(pixel);
     return {camera.centre, cell(round(pixel)).direction, {camera.lens.cx, camera.lens.cy}};
   }
 
-  // The virtual camera of the nearest pixel.
+  // The virtual camera of the pixel of the table nearest to `pixel`.
   VirtualCamera<T> virtual_camera(const Vector2<T>& pixel) const {
     const IntegerPixel p = round(pixel);
     return refractive::virtual_camera(lens_, rotation_, ray(p),
@@ -92,7 +94,7 @@ class PixelLookup {
   PinholeLens<T> lens_;
   Vector3<T> axis_;
   Matrix3<T> rotation_;
-  int low_, high_u_, high_v_;  // the first and last tabled pixels
+  int low_, high_u_, high_v_;  // first u and v, last u and last v of the table
   std::vector<Cell> cells_;
 };
 

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forward projection through a flat port as a root of a polynomial of degree 12: a reference
-// for tests, slower and less accurate than FlatPortCamera::project().
+// The forward projection through a flat port as a root of a polynomial of degree 12. It is a
+// reference for tests, slower and less accurate than FlatPortCamera::project().
 //
-// From t (d_a + d_g/q_g + z/q_w) = rho: let t0 be the paraxial root, t = t0/u, and measure in units
-// of rho/t0, so that with a = d_a, g = d_g/mu_g, w = z/mu_w there
+// The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho. Let t0 be its paraxial root and
+// t = t0/u. In units of length of rho/t0, with a = d_a, g = d_g/mu_g and w = z/mu_w,
 //
 //     a + g + w = 1,    p = q_g^2/mu_g^2 = 1 + e_g/u^2,    q = q_w^2/mu_w^2 = 1 + e_w/u^2
 //     u - a = g/sqrt(p) + w/sqrt(q)
 //
-// Squaring twice removes the roots. Multiplied by powers of u, with P = u^2 + e_g, Q = u^2 + e_w:
+// Squaring twice removes the square roots. Multiplied by powers of u, with P = u^2 + e_g and
+// Q = u^2 + e_w, the equation becomes
 //
 //     [(u - a)^2 P Q - u^2 (g^2 Q + w^2 P)]^2 - 4 g^2 w^2 u^4 P Q = 0
 //
-// which is monic of degree 12 whatever the port, with all roots of the order of 1 or less: its
-// companion matrix needs no balancing. The wanted root lies in (a, 1]. Without glass one squaring
-// is enough, and the second would make the root double: (u - a)^2 Q - w^2 u^2 = 0.
+// For every port this polynomial is monic of degree 12, and its roots are of the order of 1 or
+// less, so that its companion matrix needs no balancing. The wanted root lies in (a, 1]. Without
+// glass, squaring once is enough: (u - a)^2 Q - w^2 u^2 = 0. Squaring twice would then make the
+// root a double root.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -30,7 +32,7 @@ namespace axial::refractive {
 
 namespace polynomial {
 
-// Coefficients, constant first.
+// The coefficients of a polynomial, the constant term first.
 template <class T, std::size_t N>
 using Polynomial = std::array<T, N>;
 
@@ -42,7 +44,7 @@ Polynomial<T, N + M - 1> product(const Polynomial<T, N>& a, const Polynomial<T, 
   return c;
 }
 
-// a + scale * u^shift * b, of a's degree.
+// a + scale * u^shift * b. The degree of the second term must not exceed the degree of a.
 template <std::size_t shift, class T, std::size_t N, std::size_t M>
 Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>& b) {
   static_assert(M + shift <= N);
@@ -50,8 +52,9 @@ Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>
   return a;
 }
 
-// Eigenvalues of the companion matrix of a monic polynomial, of degree 12 at most. One type of
-// matrix for every degree: a solver of fixed size is no faster, and takes twice as long to compile.
+// The complex roots of a monic polynomial of degree 12 at most, as the eigenvalues of its companion
+// matrix. All degrees share one matrix type: matrices of fixed size are no faster, and double the
+// compile time.
 template <class T>
 auto roots(std::span<const T> monic) {
   constexpr int kMostRoots = 12;
@@ -68,9 +71,10 @@ auto roots(std::span<const T> monic) {
 
 }  // namespace polynomial
 
-// The in-air tangent t that reaches the radius `rho` at height `z_water` above the outer plane
-// (axis frame), straight from the eigenvalues, without polishing. None: no such t (total
-// reflection, z_water <= 0, NaN). `T` is float or double.
+// The in-air tangent t of the ray that reaches the distance `rho` [m] from the axis at the height
+// `z_water` [m] above the outer plane (axis frame). It comes directly from the eigenvalues, without
+// further iterations. Empty if there is no such t: total reflection, z_water <= 0, rho < 0, or an
+// argument that is not finite. `T` is float or double.
 template <class T>
 std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T& rho,
                                        const T& z_water) {
@@ -86,8 +90,8 @@ std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T&
   const T e_g = optics.glass.c / optics.glass.b * t0 * t0;
   const T e_w = optics.water.c / optics.water.b * t0 * t0;
 
-  // Of the real roots (a nearly double one may come with a small imaginary part) the one that
-  // solves the equation before it was squared.
+  // Chooses the real root with the smallest residual in the equation before squaring. A nearly
+  // double root may have a small imaginary part.
   std::optional<T> best;
   T least(0);
   const auto consider = [&](const auto& candidates) {
@@ -117,13 +121,14 @@ std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T&
     const auto monic = plus<4>(product(inner, inner), T(T(-4) * g * g * w * w), PQ);
     consider(roots<T>(monic));
   }
-  // Spurious roots solve the equation with another sign of one of the terms.
+  // A spurious root solves the equation with the opposite sign of a term.
   if (best && least > T(1e-3)) return std::nullopt;
   return best;
 }
 
-// Forward projection of X [camera frame] by the polynomial. Visible: beyond the port, within total
-// reflection and in front of the lens; the image rectangle is not tested.
+// Forward projection of X [camera frame] by the polynomial. X is visible if it lies beyond the
+// port, if a ray reaches it (no total reflection), and if the ray comes from in front of the lens.
+// The image rectangle is not tested. The pixel of a point that is not visible is (0, 0).
 template <class T>
 Projection<T> project_by_polynomial(const FlatPortCamera<T>& camera, const Vector3<T>& X) {
   const Vector3<T>& n = camera.port().normal;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All kinds of ports, for code that only passes them on.
+// A port of any kind, for code that passes ports on without looking into them.
 #pragma once
 
 #include <variant>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the cameras ask of a scalar beyond arithmetic, so that one implementation serves float,
-// double, automatic differentiation and SIMD packs. A pack of lanes brings its own mask type (the
-// result of comparing), with &&, || and !, and overloads of `select`, `lesser`, `greater` and
-// `sqrt` in its namespace.
+// The operations that the cameras need from a scalar type besides arithmetic. With them, one
+// implementation serves float, double, automatic-differentiation scalars and SIMD packs. A SIMD
+// pack has to define a mask type (the result of a comparison) with &&, || and !, and overloads of
+// `select`, `lesser`, `greater` and `sqrt` in its own namespace.
 #pragma once
 
 #include <type_traits>
@@ -10,6 +10,7 @@
 
 namespace axial::refractive {
 
+// The type of a comparison: bool for plain scalars.
 template <class T>
 using Mask = std::decay_t<decltype(std::declval<const T&>() < std::declval<const T&>())>;
 
@@ -18,7 +19,7 @@ T select(bool condition, const T& yes, const T& no) {
   return condition ? yes : no;
 }
 
-// The second one if either is NaN.
+// The smaller and the larger of two numbers. Both functions return b if a or b is NaN.
 template <class T>
 T lesser(const T& a, const T& b) {
   return a < b ? a : b;
@@ -28,8 +29,8 @@ T greater(const T& a, const T& b) {
   return a > b ? a : b;
 }
 
-// True where projections take a fixed number of steps without branches: single precision, also in
-// packs of lanes. All other scalars iterate to convergence.
+// True for single precision, also in SIMD packs: the projections then take a fixed number of steps
+// and do not branch. All other scalars iterate to convergence.
 template <class T>
 inline constexpr bool kFixedSteps = std::is_same_v<T, float>;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's virtual cameras: for one pixel of an axial camera, the pinhole that sits at the
-// pixel's C_v on the axis, looks along the axis, has the focal length of the real lens (f_v = f)
-// and shows the pixel's ray at the pixel itself (eq. 3, with y in its second component).
+// The paper's virtual cameras. The virtual camera of one pixel of an axial camera is a pinhole with
+// its centre at the pixel's C_v. It looks along the axis, has the focal lengths of the real lens
+// (f_v = f) and images the pixel's ray at the same pixel (eq. 3; its second component is corrected
+// to y, see docs/refraction.md).
 //
 // Poses: x_virtual = rotation * (x_camera - centre), and for two views x_source = R (x_reference -
 // C). Metres and pixels.
@@ -18,12 +19,12 @@ struct VirtualCamera {
   Matrix3<T> rotation;  // virtual_from_camera
   PinholeLens<T> lens;  // f_v = f, principal point c_v
 
-  // Image of X [frame of the real camera]. Precondition: X in front of the virtual camera.
+  // Image [px] of X [frame of the real camera]. Precondition: X in front of the virtual camera.
   Vector2<T> pixel(const Vector3<T>& X) const { return lens.pixel(rotation * (X - centre)); }
 };
 
-// The principal point c_v that makes the virtual camera show the water ray `direction` [camera
-// frame] at `pixel` (eq. 3 corrected).
+// The principal point c_v with which the virtual camera images the ray in water `direction` [frame
+// of the real camera] at `pixel` (eq. 3, corrected). `rotation`: virtual_from_camera.
 template <class T>
 Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>& rotation,
                                    const Vector3<T>& direction, const Vector2<T>& pixel) {
@@ -31,8 +32,8 @@ Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>&
   return {pixel.x() - lens.fx * d.x() / d.z(), pixel.y() - lens.fy * d.y() / d.z()};
 }
 
-// From the ray of a pixel. For a ray without refraction (origin at the centre, direction that of
-// the lens, rotation identity) this is the lens's own camera.
+// The virtual camera of `pixel`, whose ray in water is `ray`. Without refraction and with the
+// identity as `rotation` it is the pinhole camera of the lens.
 template <class T>
 VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& rotation,
                                 const AxialRay<T>& ray, const Vector2<T>& pixel) {
@@ -40,8 +41,8 @@ VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& ro
   return {ray.origin, rotation, {lens.fx, lens.fy, c.x(), c.y()}};
 }
 
-// Exactly at the pixel, for any camera. Cameras with an axis say how it is aligned by
-// `rotation_to_axis()`; a pinhole has none.
+// The virtual camera of `pixel` of any camera; the pixel is not rounded. A camera without
+// rotation_to_axis(), like PinholeCamera, is its own virtual camera.
 template <class Camera, class T = typename Camera::Scalar>
 VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   if constexpr (requires { camera.rotation_to_axis(); }) {
@@ -52,7 +53,7 @@ VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   }
 }
 
-// Pose of the source's virtual camera in the frame of the reference's (eq. 1).
+// Pose of the source's virtual camera in the frame of the reference's virtual camera (eq. 1).
 template <class T>
 struct RelativePose {
   Matrix3<T> rotation;
@@ -66,9 +67,9 @@ RelativePose<T> relative_pose(const VirtualCamera<T>& reference, const VirtualCa
           reference.rotation * (C + R.transpose() * source.centre - reference.centre)};
 }
 
-// Homography from the reference image to the source image (eq. 2) induced by the plane through X
-// with normal n, both in the frame of the real reference camera. A plane through the reference's
-// C_v gives infinities or NaN.
+// Homography [px to px] from the reference image to the source image (eq. 2), induced by the plane
+// through X with normal n. X and n are in the frame of the real reference camera. R, C: pose of the
+// real source camera, as above. A plane through the reference's C_v gives infinities or NaN.
 template <class T>
 Matrix3<T> virtual_homography(const VirtualCamera<T>& reference, const VirtualCamera<T>& source,
                               const Matrix3<T>& R, const Vector3<T>& C, const Vector3<T>& X,
@@ -94,9 +95,10 @@ Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   return {image.x() / image.z(), image.y() / image.z()};
 }
 
-// Where the reference's virtual camera sees the point that the source image has at distance
-// `distance` on `source_ray` [source camera frame]: the reprojection of the consistency check (eq.
-// 7, with the source's own C_v and ray in place of K_j^-1). Compare with the reference pixel.
+// The pixel at which the reference's virtual camera images the point at distance `distance` [m] on
+// `source_ray` [frame of the source camera]. This is the reprojection of the consistency check (eq.
+// 7, with the refracted ray of the source camera and its C_v in place of K_j^-1), which compares
+// the result with the reference pixel.
 template <class T>
 Vector2<T> virtual_reprojection(const VirtualCamera<T>& reference, const AxialRay<T>& source_ray,
                                 const T& distance, const Matrix3<T>& R, const Vector3<T>& C) {

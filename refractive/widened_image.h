@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The image rectangle with a margin on every side, in which cameras behind ports project points.
+// The image rectangle widened by a margin on every side. A camera behind a port projects the points
+// whose images lie in it.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -8,13 +9,14 @@ namespace axial::refractive {
 
 template <class T>
 struct WidenedImage {
-  T lowest, highest_u, highest_v;  // [px]
+  // The smallest u and v, and the largest u and v [px].
+  T lowest, highest_u, highest_v;
 
   WidenedImage() = default;
   WidenedImage(int width, int height, const T& margin)
       : lowest(-margin), highest_u(T(width - 1) + margin), highest_v(T(height - 1) + margin) {}
 
-  // The margin if it is not negative, else the default: an eighth of the longer side.
+  // `margin` if it is not negative, otherwise the default: an eighth of the longer side.
   static T margin_or_default(int width, int height, int margin) {
     return T(margin >= 0 ? margin : (width > height ? width : height) / 8);
   }

@@ -29,12 +29,13 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return path.parent_path() / name;
 }
 
-// What a name that temporary_beside made says; nothing of any other name.
+// The parts of a name that temporary_beside() made.
 struct TemporaryName {
   std::string target;
   pid_t process = 0;
 };
 
+// Empty if `name` was not made by temporary_beside().
 std::optional<TemporaryName> parse_temporary(std::string_view name) {
   const std::size_t mark = name.rfind(".tmp");
   if (mark == std::string_view::npos || mark == 0) return std::nullopt;
@@ -49,7 +50,8 @@ std::optional<TemporaryName> parse_temporary(std::string_view name) {
   return TemporaryName{std::string(name.substr(0, dot)).append(extension), process};
 }
 
-// The file or folder that a temporary, or a temporary's temporary, of a dead process was to become.
+// The final name of a temporary, or of a temporary of a temporary, whose process has ended. Empty
+// for all other names.
 std::optional<std::string> abandoned_by(const std::string& name) {
   std::optional<TemporaryName> temporary = parse_temporary(name);
   if (!temporary) return std::nullopt;
@@ -59,7 +61,7 @@ std::optional<std::string> abandoned_by(const std::string& name) {
   return temporary->target;
 }
 
-// What killed processes left in a folder, by the names it was to get.
+// The temporaries that killed processes left in a folder, by their final names.
 std::multimap<std::string, std::filesystem::path> abandoned_in(
     const std::filesystem::path& folder) {
   std::multimap<std::string, std::filesystem::path> found;
@@ -82,8 +84,8 @@ void remove_abandoned_of(const std::filesystem::path& path) {
   for (auto i = begin; i != end; ++i) remove_quietly(i->second);
 }
 
-// The same for every file that this process writes. Each folder is looked through once, when the
-// first file is written there: there may be thousands of them.
+// The same for every file that this process writes. Each folder is listed only once, when the first
+// file is written there, because a folder may get thousands of files.
 class AbandonedOnce {
  public:
   void remove_of(const std::filesystem::path& path) {
@@ -106,8 +108,7 @@ AbandonedOnce& abandoned_once() {
   return once;
 }
 
-// Libraries that write files by name do not all report a full disk at close; asking the kernel to
-// finish the file does.
+// Not all libraries that write files report a full disk when they close the file. fsync() does.
 void flush_to_disk(const std::filesystem::path& temporary) {
   const int descriptor = ::open(temporary.c_str(), O_RDONLY);
   if (descriptor < 0) fail("the temporary file vanished");
@@ -124,7 +125,7 @@ AtomicFile::AtomicFile(std::filesystem::path path)
   abandoned_once().remove_of(path_);
 }
 
-// Nothing is left of it after a commit.
+// After a commit() the temporary does not exist any more, and nothing is removed.
 AtomicFile::~AtomicFile() {
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
@@ -147,7 +148,7 @@ void write_atomically(const std::filesystem::path& path,
   try {
     write(file.temporary());
   } catch (const std::bad_alloc&) {
-    throw;  // it is not the file that is wrong
+    throw;  // the file is not the cause
   } catch (const std::filesystem::filesystem_error& error) {
     fail("{}: cannot be written: {}", path.string(), error.code().message());
   } catch (const std::exception& error) {
@@ -158,7 +159,7 @@ void write_atomically(const std::filesystem::path& path,
 
 namespace {
 
-// Calls `write`, whose Errors name `named` where they name `temporary`.
+// Calls `write`. In the text of an Error from `write`, the name `temporary` is replaced by `named`.
 template <class Write>
 void write_under_name(const std::filesystem::path& temporary, const std::filesystem::path& named,
                       const Write& write) {
@@ -196,12 +197,12 @@ void write_together(
 
 namespace {
 
-// "out/" is the folder "out", which temporaries are to lie beside.
+// Turns "out/" into "out", so that temporaries lie beside the folder and not in it.
 std::filesystem::path without_slash(const std::filesystem::path& folder) {
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-// Where the files of a folder lie until it is complete; it goes with this object.
+// The folder in which the files lie until all are written. The destructor removes it.
 class Staging {
  public:
   explicit Staging(const std::filesystem::path& folder)
@@ -244,7 +245,8 @@ class Staging {
     for (const std::filesystem::path& file : found) move(path_ / file, folder_ / file);
   }
 
-  // A folder within `folder_` may be a link to another disk.
+  // Copies the file if it cannot be renamed: a folder within `folder_` may be a link to another
+  // disk.
   static void move(const std::filesystem::path& from, const std::filesystem::path& to) {
     std::error_code error;
     std::filesystem::rename(from, to, error);
@@ -323,7 +325,7 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     fail("{}: is a folder, not a file", path.string());
-  // A pipe would keep the reader waiting, and has no size to check counts against.
+  // A pipe could block the reader, and it has no size against which a reader can check counts.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     fail("{}: is not a regular file", path.string());
   errno = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Output files that exist whole or not at all.
+// Output files that are either complete or absent.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,11 @@
 
 namespace axial {
 
-// A file under way (what killed processes left of the same file goes, see remove_abandoned): what
-// is written to `temporary`, beside `path`, becomes `path` by commit(). Without it the temporary
-// goes with this object, and `path` keeps what it held before. The temporary's name ends in
-// `path`'s own extension, because libraries that open files themselves read it.
+// A file that is being written. The caller writes to temporary(), a file in the same folder as
+// `path`; commit() renames it to `path`. Without commit() the destructor removes the temporary, and
+// `path` keeps its old content. The name of the temporary has the extension of `path`, because some
+// libraries choose the format by the extension. The constructor removes temporaries that killed
+// processes left of the same `path` (see remove_abandoned).
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -24,54 +25,60 @@ class AtomicFile {
   const std::filesystem::path& path() const { return path_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  // Call it once the temporary is closed. Error that names `path` unless everything reached the
-  // disk and the temporary took its name.
+  // Flushes the temporary to the disk and renames it to `path`. Call it after the temporary has
+  // been closed. Throws an Error that names `path` if either step fails.
   void commit();
 
  private:
   std::filesystem::path path_, temporary_;
 };
 
-// Writes `path` through a temporary file beside it, which is renamed over `path` once `write` has
-// returned and everything reached the disk. On any failure (unwritable folder, full disk, an
-// exception out of `write`) the temporary is removed, `path` keeps what it held before, and an
-// Error that names `path` is thrown. `write` gets the temporary's name.
+// Writes `path` through a temporary file in the same folder. `write` gets the temporary's name and
+// must close the file before it returns. Then the temporary is flushed to the disk and renamed to
+// `path`. On any failure (unwritable folder, full disk, exception from `write`) the temporary is
+// removed, `path` keeps its old content, and an Error that names `path` is thrown. Only
+// std::bad_alloc is passed on as it is.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-// The same for several files, which take their names once all are on the disk. `write` gets the
-// temporaries' names, in the order of `paths`.
+// As above for several files. They are renamed after all of them have reached the disk. `write`
+// gets the temporaries' names, in the order of `paths`. An Error from `write` is thrown on with the
+// final names in place of the temporaries' names.
 void write_together(
     const std::vector<std::filesystem::path>& paths,
     const std::function<void(const std::vector<std::filesystem::path>& temporaries)>& write);
 
-// The same for all files, in folders or not, that `write` leaves in the folder `staging`, whose
-// name it gets. A `folder` that is not there yet appears with all of them at once. One that is
-// there keeps its other files; files of the same names are removed before the new ones take their
-// places, so that a kill in between leaves some missing, but never old ones among new. Error that
-// names `folder`.
+// As above for all files that `write` leaves in the folder `staging` and in its subfolders. `write`
+// gets the name of `staging`. If `folder` does not exist, it appears at once with all its files. If
+// it exists, its other files stay. Files that are to be replaced are removed before the first new
+// file is moved to its place: if the process is killed in between, some files are missing, but old
+// and new files are never mixed. On failure throws an Error that names `folder` or the file.
 void write_folder(const std::filesystem::path& folder,
                   const std::function<void(const std::filesystem::path& staging)>& write);
 
-// The same as the first for bytes that are in memory.
+// Writes `bytes` to `path`, with the guarantees of the first write_atomically().
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// Fails as write_atomically would if `path` cannot be written, before hours of work: tries a
-// temporary file beside it and removes it again. What killed processes left of `path` goes.
+// Throws the Error of write_atomically() if `path` cannot be written, so that a program can fail
+// before hours of work. It creates a temporary file in the same folder and removes it again. It
+// also removes temporaries that killed processes left of `path`.
 void require_writable(const std::filesystem::path& path);
 
-// The same for write_folder, which would make missing parents of `folder`, too.
+// The same for write_folder(). `folder` and its parents need not exist, because write_folder()
+// creates them: the test is made in the deepest folder of the path that exists.
 void require_writable_folder(const std::filesystem::path& folder);
 
-// Creates `folder` and its parents. Error that names it.
+// Creates `folder` and its parents where they are missing. Throws an Error that names `folder` if
+// it is not a folder afterwards.
 void make_folder(const std::filesystem::path& folder);
 
-// The whole file. Error that names `path` if it cannot be read or is larger than `max_bytes`.
+// Returns the content of the whole file. Throws an Error that names `path` if it is not a regular
+// file, cannot be read, or is larger than `max_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
-// Removes what killed processes left half-written in `folder`, of files and folders whose names
-// begin with `prefix`. Names of temporaries hold the number of the process; those of living ones
-// stay.
+// Removes temporary files and folders that killed processes left in `folder`, if their final names
+// begin with `prefix`. The name of a temporary contains the number of its process. Temporaries of
+// running processes stay.
 void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix);
 
 }  // namespace axial

@@ -5,9 +5,10 @@
 
 namespace axial {
 
-// What some editors put before the first character of a UTF-8 file.
+// Some editors put these bytes before the first character of a UTF-8 file.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
+// `text` without a byte order mark at its start.
 inline std::string_view without_byte_order_mark(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   return text;

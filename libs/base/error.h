@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Handled errors: what a user can cause. Programs print the message as one line and exit with 1.
+// Errors that a user can cause. Programs print the message as one line and exit with code 1.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Throws an Error with the formatted message.
+// Throws an Error with the formatted message, shortened by as_message() (base/message.h).
 [[noreturn]] void fail_formatted(fmt::string_view format, fmt::format_args arguments);
 
 template <class... Args>

@@ -8,7 +8,7 @@
 
 namespace axial {
 
-// What a file's name says it is, in lower case, with the dot: ".png" of "A.PNG".
+// The extension of a file's name in lower case, with the dot: ".png" for "A.PNG".
 inline std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -16,7 +16,7 @@ inline std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-// Whether the file's name says that it is a JPEG.
+// Whether the extension is that of a JPEG.
 inline bool is_jpeg_name(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
   return extension == ".jpg" || extension == ".jpeg";

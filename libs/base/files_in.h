@@ -6,8 +6,9 @@
 
 namespace axial {
 
-// The files of a folder, not of its subfolders, in any order; of a file itself that file. Nothing
-// of a path that is empty or not there.
+// The regular files in the folder `path`, without those of its subfolders, in any order. If `path`
+// is itself a file, the result is that file. If `path` is empty or does not exist, the result is
+// empty.
 inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which of several errors is told, whatever the threads.
+// Chooses the error that a parallel loop reports, independently of the number of threads.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,9 @@
 
 namespace axial {
 
-// Runs the items of a parallel loop, and tells the error of the first item that has one, in the
-// order of their numbers. Items behind one that failed are left out; those before it are not.
+// Runs the items of a parallel loop and keeps the exception of the failed item with the smallest
+// number. Items with larger numbers than a failed item are skipped; items with smaller numbers are
+// run. Thread-safe.
 class FirstError {
  public:
   template <class Body>
@@ -26,7 +27,7 @@ class FirstError {
     }
   }
 
-  // Call it after the loop.
+  // Rethrows the kept exception, if there is one. Call it after the loop.
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }

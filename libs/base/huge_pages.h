@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory in pages of 2 MiB, where the system grants them: a matching window in a dozen source
-// images touches a hundred rows, each in another page of 4 KiB, more than the processor's first
-// page table cache holds.
+// Memory in pages of 2 MiB, where the system grants them. A matching window in a dozen source
+// images touches a hundred rows. With pages of 4 KiB each row lies in another page, which is more
+// than the processor's first-level page table cache (TLB) holds.
 #pragma once
 
 #include <sys/mman.h>
@@ -12,17 +12,18 @@
 
 namespace axial {
 
+// An allocator for standard containers. allocate() throws std::bad_alloc if there is no memory.
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
   static constexpr std::size_t kPage = std::size_t{1} << 21;
-  static constexpr std::size_t kSmall = kPage / 4;  // below, a page of its own would be a waste
+  static constexpr std::size_t kSmall = kPage / 4;  // smaller blocks would waste most of a page
 
   HugePageAllocator() = default;
   template <class U>
   explicit HugePageAllocator(const HugePageAllocator<U>&) {}
 
-  // Small blocks come from where all others do.
+  // Small blocks come from the heap.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall) return static_cast<T*>(::operator new(bytes));
@@ -45,7 +46,8 @@ struct HugePageAllocator {
  private:
   static std::size_t rounded(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 
-  // From the system and not from the heap, which such blocks would leave full of holes.
+  // Takes the block from the system and not from the heap, because large blocks leave large holes
+  // in the heap when they are freed.
   static void* map(std::size_t bytes) {
     void* room =
         ::mmap(nullptr, bytes + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -55,7 +57,7 @@ struct HugePageAllocator {
     const std::size_t before = past > 0 ? kPage - past : 0;
     if (before > 0) ::munmap(begin, before);
     if (before < kPage) ::munmap(begin + before + bytes, kPage - before);
-    // A refusal costs speed and nothing else.
+    // If the system refuses, the result is the same, only slower.
     ::madvise(begin + before, bytes, MADV_HUGEPAGE);
     return begin + before;
   }

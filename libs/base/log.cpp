@@ -35,8 +35,8 @@ std::shared_ptr<spdlog::sinks::sink>& file_sink() {
   return sink;
 }
 
-// Whether lines of a log may be added to `file`: it begins with a date, is empty, is not there, or
-// is no regular file.
+// Whether lines of a log may be appended to `file`: it begins with a date and time, is empty, does
+// not exist, or is not a regular file.
 bool may_hold_a_log(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return true;

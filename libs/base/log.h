@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's log. No other file includes the logging library, whose headers take seconds to
+// The program's log. Only log.cpp includes the logging library, because its headers take seconds to
 // compile.
 #pragma once
 
@@ -13,23 +13,24 @@ namespace axial {
 
 enum class LogLevel { trace, debug, info, warning };
 
-// From now on lines of `level` and above are written. The default is `info`.
+// Sets the lowest level that is written. The default is `info`.
 void set_log_level(LogLevel level);
 
-// The lowest level that is written, as set_log_level() or the default has it.
+// The lowest level that is written.
 LogLevel log_level();
 
 // Whether lines of `level` are written.
 bool logs(LogLevel level);
 
-// From now on lines go to standard output as "HH:MM:SS [name] text". Each line begins with
+// Starts the log: lines go to standard output as "HH:MM:SS [name] text". Each line is preceded by
 // `line_start`.
 void start_log(const std::string& name, const std::string& line_start);
 
-// Writes one line, unless `level` is below the log's.
+// Writes one line, unless `level` is below the log's level.
 void log_line(LogLevel level, std::string_view line);
 
-// The same for a format and its arguments. They are formatted only if the line is written.
+// The same for a format and its arguments, which are formatted only if the line is written. A
+// warning is shortened by as_message() (base/message.h).
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
 template <class... Args>
@@ -47,7 +48,8 @@ void log_details(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::trace, format, fmt::make_format_args(args...));
 }
 
-// Collects the lines of `info` and above while the object lives; they are not written. For tests.
+// Collects the log's lines of `info` and above while the object exists; they are not written. For
+// tests.
 class LogCapture {
  public:
   LogCapture();
@@ -55,7 +57,7 @@ class LogCapture {
   LogCapture(const LogCapture&) = delete;
   LogCapture& operator=(const LogCapture&) = delete;
 
-  // The lines so far, each with a newline at its end.
+  // The lines collected so far, each with a newline at its end.
   std::string text() const;
 
  private:

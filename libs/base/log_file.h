@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file that the log's lines go to, besides standard output (--log-file).
+// A file for the log, in addition to standard output (--log-file).
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,13 @@
 
 namespace axial {
 
-// From now on the log's lines also go to the end of `file`, which is made if it is not there, with
-// their dates. Error that names it if it cannot be written, or if it is not empty and does not begin
-// with such a line: it is no log then, but a scene or a photograph.
+// From now on the log's lines are also appended to `file`, with date and time. Creates `file` if it
+// does not exist. Throws an Error that names `file` if it cannot be written. Also throws if `file`
+// has content that does not begin with a date and time: it is then not a log, but perhaps a scene
+// or a photograph given by mistake.
 void log_to_file_too(const std::filesystem::path& file);
 
-// A line for that file alone; nothing without one.
+// Writes a line to that file only. Does nothing if there is no such file.
 void log_to_file_only(std::string_view line);
 
 }  // namespace axial

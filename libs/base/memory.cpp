@@ -33,7 +33,8 @@ std::optional<std::uint64_t> mem_available(const fs::path& root) {
   return {};
 }
 
-// The lowest limit of a control group and those around it; `mount` is where its files lie.
+// The lowest limit of a control group and of the groups that contain it. `mount`: the folder of the
+// groups' files.
 std::uint64_t lowest_limit(const fs::path& mount, fs::path group, const char* file) {
   std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
   for (group = group.relative_path();; group = group.parent_path()) {
@@ -42,8 +43,9 @@ std::uint64_t lowest_limit(const fs::path& mount, fs::path group, const char* fi
   }
 }
 
-// Lines are "4:memory:/group" in version 1 and "0::/group" in version 2. Inside a container the
-// group may be named as it is seen from outside; its files then lie at the mount itself.
+// Lines of /proc/self/cgroup are "4:memory:/group" in version 1 and "0::/group" in version 2.
+// Inside a container the line may contain the group's name outside of it; the files of the group
+// then lie in the mount folder itself.
 std::uint64_t container_limit(const fs::path& root) {
   const fs::path mount = root / "sys/fs/cgroup";
   std::uint64_t lowest = std::min(lowest_limit(mount, {}, "memory.max"),
@@ -89,7 +91,8 @@ void share_one_heap() {
 
 void map_large_blocks() {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  // Fixing the one number fixes the other, at so little that heaps grow and shrink all the time.
+  // Setting the first threshold also fixes the second, at a value so small that the heaps would
+  // grow and shrink all the time.
   ::mallopt(M_TRIM_THRESHOLD, 16 << 20);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much memory there is, and how much of it this process holds.
+// The available memory, and the memory that this process uses.
 #pragma once
 
 #include <cstdint>
@@ -7,31 +7,33 @@
 
 namespace axial {
 
-// Bytes that can be taken without swapping: what the system calls available, or the limit of the
-// container (cgroup, version 1 or 2) if that is lower. `root`: where /proc and /sys lie. Error if
-// the system does not say.
+// The bytes that can be allocated without swapping: the smaller of the system's MemAvailable and
+// the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains proc and
+// sys, which tests replace. Throws an Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
-// Bytes of this process that are in memory now, its programs and libraries included. Differs by
-// some pages from run to run.
+// The bytes of this process that are in memory now, including its code and its libraries. Differs
+// by some pages from run to run.
 std::uint64_t resident_memory();
 
-// Bytes that this process has allocated from the C library and not freed (huge_pages.h asks the
-// system itself): the same in every run that did the same.
+// The bytes that this process has allocated from the C library and not freed. Large blocks of
+// HugePageAllocator are not included, because they come directly from the system. Runs that do the
+// same work give the same number.
 std::uint64_t allocated_memory();
 
-// All threads take their blocks from one heap from now on, so that what one has freed serves the
-// next. Else each keeps a heap of its own, and how much they hold together depends on how the
-// threads' work happens to interleave. To be called before there are threads.
+// From now on all threads share one heap, so that a thread can reuse memory that another thread has
+// freed. With a heap per thread, the total size of the heaps would depend on how the work of the
+// threads interleaves. Call it before the first thread starts.
 void share_one_heap();
 
-// From now on every block of a megabyte or more comes straight from the system and goes back there
-// when freed. The C library would keep such blocks in its heaps as soon as one was freed, with
-// holes between them whose size depends on how the threads' work happens to interleave.
+// From now on every block of a megabyte or more comes directly from the system and is returned to
+// it when freed. By default the C library takes such blocks from its heaps once it has freed one,
+// and leaves holes between them whose size depends on how the work of the threads interleaves.
 void map_large_blocks();
 
-// Gives back to the system what this process has freed and the C library keeps for later, in every
-// thread its own. For the end of a stage, whose successor needs blocks of other sizes.
+// Returns memory to the system that this process has freed and that the C library keeps for reuse,
+// in the heaps of all threads. Call it at the end of a stage if the next stage needs blocks of
+// other sizes.
 void return_freed_memory();
 
 }  // namespace axial

@@ -7,7 +7,7 @@ namespace axial {
 namespace {
 
 constexpr std::string_view kGap = "...";
-// Between words: without blanks it would join two words to one that is too long.
+// For the gap in a line. Without blanks the gap would join two words into a word that is too long.
 constexpr std::string_view kGapOfWords = " ... ";
 
 bool continues_character(char byte) {
@@ -18,12 +18,13 @@ bool is_control(char byte) {
   return static_cast<unsigned char>(byte) < 0x20 || byte == 0x7F;
 }
 
-// The first and the last part of `text`, at most `longest` bytes with the gap.
+// Returns the beginning and the end of `text` with `gap` between them, at most `longest` bytes.
 std::string without_middle(std::string_view text, std::size_t longest, std::string_view gap) {
   if (text.size() <= longest) return std::string(text);
   std::size_t head = (longest - gap.size() + 1) / 2;
   std::size_t tail = text.size() - (longest - gap.size()) / 2;
-  // Of bytes that are no UTF-8 there may be any number in a row.
+  // At most 3 steps: a UTF-8 character has at most 3 continuation bytes, but in other text such
+  // bytes may follow each other without end.
   for (int i = 0; i < 3 && continues_character(text[head]); ++i) --head;
   for (int i = 0; i < 3 && tail < text.size() && continues_character(text[tail]); ++i) ++tail;
   return std::string(text.substr(0, head)).append(gap).append(text.substr(tail));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text of any origin as one line of bounded length: what `fail` throws, `log_warning` writes and
-// run_program prints, for they quote files.
+// Turns text of any origin into one line of bounded length. fail(), log_warning() and run_program()
+// use it, because their messages quote file contents.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace axial {
 
-// Longest line, and longest part of it without a blank [bytes].
+// Longest line, and longest word in it [bytes]. Words are separated by blanks.
 inline constexpr std::size_t kLongestMessage = 500;
 inline constexpr std::size_t kLongestWord = 200;
 
-// `text` in one line: control characters become blanks, and "..." takes the place of the middle of
-// a word longer than kLongestWord and of a line longer than kLongestMessage. Characters of UTF-8
-// are not cut into. A text that fits is returned as it is.
+// Returns `text` as one line. Control characters become blanks. In a word longer than kLongestWord
+// and in a line longer than kLongestMessage, "..." replaces the middle. UTF-8 characters are not
+// split. A short text without control characters is returned unchanged.
 std::string as_message(std::string_view text);
 
 }  // namespace axial

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of a program, each bound to a variable of the caller's. base/program.h parses them. The
-// parsing library is not included here, because its headers take a second to compile.
+// Options of a program, each bound to a variable of the caller. base/program.h parses them. This
+// header does not include the parsing library, whose headers take a second to compile.
 #pragma once
 
 #include <cstdint>
@@ -15,35 +15,36 @@ using OptionTarget = std::variant<bool*, int*, unsigned*, std::uint64_t*, double
                                   std::vector<std::string>*>;
 
 struct Option {
-  std::string name;  // "resolution-level", or "input-file,i" with a letter
+  std::string name;  // "resolution-level", or "input-file,i" with a short name
   OptionTarget target;
   std::string help;
-  bool shows_default = false;  // --help names the value that the target has at declaration
-  bool is_switch = false;      // of a bool: the name alone means true
+  bool shows_default = false;  // --help shows the value that the target has at declaration
+  bool is_switch = false;      // bool only: the name without a value means true
 };
 
 // The options in the order of --help. A variable keeps its value unless its option is given on the
-// command line or in the cfg file. The variables must outlive parse_options().
+// command line or in the cfg file. The variables must exist until parse_options() has returned.
 class OptionList {
  public:
   OptionList() = default;
   // `title` is the headline in --help.
   explicit OptionList(std::string title) : title_(std::move(title)) {}
 
-  // An option without a default, or with one that `help` explains. A vector takes the values of all
-  // occurrences of the option.
+  // Adds an option without a default, or with a default that `help` explains. A vector takes the
+  // values of all occurrences of the option.
   OptionList& add(const char* name, OptionTarget target, const char* help) {
     options_.push_back({name, target, help});
     return *this;
   }
 
-  // An option whose default is the value that the target has now. Not for vectors.
+  // Adds an option whose default is the value that the target has now. Not for vectors.
   OptionList& add_with_default(const char* name, OptionTarget target, const char* help) {
     options_.push_back({name, target, help, true});
     return *this;
   }
 
-  // A bool with a default, whose value may be left out: "--quick" means "--quick 1".
+  // Adds a bool option whose default is the value that the target has now, and whose value may be
+  // omitted on the command line: "--quick" means "--quick 1".
   OptionList& add_switch(const char* name, bool* target, const char* help) {
     options_.push_back({name, target, help, true, true});
     return *this;

@@ -12,7 +12,7 @@
 namespace axial {
 namespace {
 
-// One line in memory that is there already.
+// A line of text that needs no further memory.
 class Line {
  public:
   Line& add(std::string_view text) {
@@ -48,7 +48,7 @@ class Line {
     line.add("an exception of unknown type");
   }
   line.write();
-  std::_Exit(1);  // other threads may be at work
+  std::_Exit(1);  // without destructors of static objects, which other threads may still use
 }
 
 }  // namespace

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The end of a program that has no memory left, in whatever thread or library it notices.
+// Ends a program that has run out of memory with a message, whichever thread or library fails.
 #pragma once
 
 #include <exception>
 
 namespace axial {
 
-// Whether `error` says that memory ran out: as std::bad_alloc, or in the words of the system or of
-// OpenCV, also within the message of another error.
+// Whether `error` reports that memory ran out: it is a std::bad_alloc, or its message contains the
+// text with which the standard library, the system or OpenCV reports it.
 bool is_out_of_memory(const std::exception& error);
 
-// From now on an exception that nothing catches, also of another thread or out of a library's
-// initialisation, ends the program with exit code 1 and one line on standard error, "NAME: out of
-// memory" or "NAME: " and what the exception says. NAME is that of the running file. An abort
-// without an exception stays one.
+// From now on an uncaught exception ends the program with exit code 1 and one line on standard
+// error: "NAME: out of memory", or "NAME: " and the exception's message. This includes exceptions
+// of other threads and exceptions while a library is initialised. NAME is the name of the running
+// file. std::terminate() without an exception aborts as before.
 void report_uncaught_exceptions();
 
 }  // namespace axial

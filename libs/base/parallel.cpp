@@ -41,7 +41,8 @@ std::size_t thread_count() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
-// Built where it stays: a copy of a global_control compiles, but limits nothing.
+// Holds the global_control without copying it: a copy of a global_control compiles, but limits
+// nothing.
 struct ThreadLimit::Control {
   explicit Control(std::size_t threads)
       : control(tbb::global_control::max_allowed_parallelism, threads) {}

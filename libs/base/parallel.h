@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one place that knows about threads. Whatever runs here gives the same result for any number
-// of threads: work items are independent, and each writes only what belongs to it.
+// Parallel loops. Only this part of the project starts threads. The result of a loop must not
+// depend on the number of threads: its items are independent, and each item writes only data of its
+// own.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +10,24 @@
 
 namespace axial {
 
-// Calls body(i) for every i in [0, count), in any order, on any thread. The first exception thrown
-// by a body is rethrown here. `grain`: how many consecutive items a thread takes at once. A thread
-// that waits for the others here takes part in this loop only: it does not begin another item of a
-// loop around this one, and so does not need that item's memory on top of its own.
+// Calls body(i) for every i in [0, count), in any order, on any thread, and returns when all have
+// returned. The first exception that a body throws is rethrown here; items that have not begun may
+// then be left out. `grain`: the largest number of consecutive items that a thread takes at once.
+// If loops are nested, a thread that waits for the end of the inner loop does not begin another
+// item of the outer loop. So no thread holds the memory of two items of the outer loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
-// The same, begun in the order of i and with at most `in_flight` items (at least 1) at a time: for
-// items that need much memory each. Their own loops may be parallel too.
+// Calls body(i) for every i in [0, count). Items begin in the order of i, and at most `in_flight`
+// of them (at least 1) run at the same time. For items that need much memory. The items may use
+// parallel loops themselves.
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 
-// How many threads parallel work may use now.
+// The number of threads that parallel loops may use now.
 std::size_t thread_count();
 
-// Limits all parallel work to `threads` (0: all cores) while it lives.
+// Limits all parallel loops to `threads` threads (0: as many as cores) while the object exists.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers from words, independent of the locale.
+// Reads numbers from words, independently of the locale.
 #pragma once
 
 #include <charconv>
@@ -10,7 +10,8 @@
 
 namespace axial {
 
-// The whole token as a number; nothing if it is none or does not fit.
+// Returns the number that the whole token represents; a leading "+" is allowed. Empty if the token
+// is not a number or if the number does not fit into T.
 template <class T>
 std::optional<T> parse_number(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
@@ -21,7 +22,7 @@ std::optional<T> parse_number(std::string_view token) {
   return value;
 }
 
-// The same, and nothing for infinities and NaN.
+// The same, but empty also for infinities and NaN.
 template <class T>
 std::optional<T> parse_finite(std::string_view token) {
   const std::optional<T> value = parse_number<T>(token);

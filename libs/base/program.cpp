@@ -83,7 +83,7 @@ po::options_description described(const OptionList& list) {
   return description;
 }
 
-// boost reads "-1" as an unsigned number, and as a huge one.
+// Without this test boost would convert "-1" to a large unsigned number.
 void refuse_negative(const po::parsed_options& parsed, const po::options_description& known) {
   for (const po::option& option : parsed.options) {
     const po::option_description* description = known.find_nothrow(option.string_key, false);
@@ -96,8 +96,9 @@ void refuse_negative(const po::parsed_options& parsed, const po::options_descrip
   }
 }
 
-// Without an input file boost parses positional arguments and drops them: a forgotten "--preset"
-// would quietly run with the default. With one it names the input file for a stray value elsewhere.
+// Refuses arguments that belong to no option. Without the option input-file, boost parses
+// positional arguments and ignores them: if the user forgets "--preset" before its value, the
+// program would run with the default. With the option, boost would blame the input file.
 void refuse_stray_arguments(const po::parsed_options& parsed) {
   bool has_input = false;
   for (const po::option& option : parsed.options) {
@@ -118,7 +119,7 @@ bool is_boolean(std::string word) {
   return std::ranges::find(kWords, word) != kWords.end();
 }
 
-// Nothing for a name that is unknown or ambiguous: boost reports these.
+// Returns null for an unknown or ambiguous name; boost reports such names later.
 const po::option_description* find_option(const po::options_description& known,
                                           const std::string& name) {
   try {
@@ -137,7 +138,7 @@ const po::option_description* option_named_by(const po::options_description& kno
   return known.find_nothrow(word.substr(0, 2), false);
 }
 
-// An option without its value: boost would take the option that follows for it.
+// Refuses an option without its value: boost would take the next option for the value.
 void refuse_missing_values(const std::vector<std::string>& words,
                            const po::options_description& known,
                            const std::set<std::string>& switches) {
@@ -152,8 +153,8 @@ void refuse_missing_values(const std::vector<std::string>& words,
   }
 }
 
-// The words of the command line. A switch gets a value if the next word is none: boost would take
-// that word for the value, whatever it is.
+// The words of the command line. Appends "=1" to a switch if the next word is not a boolean,
+// because boost would take any next word for the value.
 std::vector<std::string> words_of(int argc, const char* const* argv,
                                   const po::options_description& known, const OptionList& visible) {
   std::set<std::string> switches;
@@ -173,7 +174,7 @@ std::vector<std::string> words_of(int argc, const char* const* argv,
   return words;
 }
 
-// Without a byte order mark.
+// Ignores a byte order mark at the start.
 po::parsed_options parse_config(std::istream& in, const po::options_description& known) {
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::istringstream text{std::string(without_byte_order_mark(bytes))};
@@ -279,8 +280,8 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 
 namespace {
 
-// The loader calls it before it initialises the libraries: one of them might open files, or run out
-// of memory.
+// The loader calls this function before it initialises the libraries, because a library might open
+// files or run out of memory.
 void prepare_process(int, char**, char**) {
   open_standard_streams();
   report_uncaught_exceptions();
@@ -289,7 +290,7 @@ void prepare_process(int, char**, char**) {
 [[gnu::section(".preinit_array"),
   gnu::used]] void (*const prepare_process_first)(int, char**, char**) = prepare_process;
 
-// On a terminal a line of progress may be under way: what is written next takes its place.
+// The start of a line of output. On a terminal it erases a line of progress.
 std::string line_start(int descriptor) {
   return ::isatty(descriptor) != 0 ? "\r\033[K" : "";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all programs share: the options every OpenMVS program has, the cfg file, the log, the exit
-// code.
+// The common part of all programs: the options that every OpenMVS program has, the cfg file, the
+// log, the exit code.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace axial {
 
-// Options common to all programs, filled by `parse_options`.
+// Values of the options that are common to all programs. parse_options() fills them.
 struct CommonOptions {
   std::filesystem::path working_folder;  // absolute; base of every relative path
   std::string config_file;
@@ -30,35 +30,42 @@ struct ProgramOptions {
   // Options of this program, allowed on the command line and in the cfg file.
   OptionList visible{"Options"};
   OptionList hidden{"Hidden options"};
-  std::string when_verbose = "";  // ", ...": what -v 3 and above give besides, for --help
+  // For --help: ", ..." names the additional output of this program with -v 3 and above.
+  std::string when_verbose = "";
 };
 
-// Parses the command line the way OpenMVS's programs do: long names may be abbreviated, booleans
-// take a value (0/1, true/false, yes/no, on/off), which a switch may go without, positional
-// arguments are `--input-file`, and refused by a program that has none. The cfg
-// file (default `<name>.cfg` in the working folder) gives values for options absent from the
-// command line. Prints the help and returns false if there is nothing to run: exit with 0 after
-// `-h`, and with 1 when `--input-file` is declared by the program but absent (OpenMVS exits with 1
-// in both cases when there is no input; scripts see the difference only after asking for help).
-// Throws Error for an unknown option, a malformed value, an unusable working folder.
 struct ParsedOptions {
   CommonOptions common;
   std::set<std::string> given;  // full names of the options on the command line or in the cfg
-  bool run = false;
+  bool run = false;             // false: there is nothing to do, exit with exit_code
   int exit_code = 0;
 };
+
+// Parses the command line and the cfg file, fills the variables of `program` and applies the common
+// options (log file, log level, priority). The rules are those of OpenMVS's programs:
+//   - Long names may be abbreviated.
+//   - A boolean takes a value: 0/1, true/false, yes/no, on/off. A switch may omit its value.
+//   - A positional argument is the value of --input-file. A program without this option refuses
+//     positional arguments.
+//   - The cfg file (default `<name>.cfg` in the working folder) gives values for options that are
+//     absent from the command line.
+// Prints the help and returns with run = false in two cases: after -h with exit code 0, and with
+// exit code 1 if the program declares --input-file but the option is absent. (Without input OpenMVS
+// exits with 1 in both cases.) Throws an Error for an unknown option, a malformed value, a missing
+// value, or an unusable working folder or cfg file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
 // True if the user gave the option of this full name, on the command line or in the cfg.
 bool given(const ParsedOptions& parsed, const std::string& name);
 
-// `path` relative to the working folder unless absolute; empty stays empty.
+// The absolute path of `path`, which may be relative to the working folder. An empty path stays
+// empty.
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
 
-// Sets up the log ("HH:MM:SS [App] text" on standard output), runs `body`, and turns any exception
-// into one line on standard error (base/message.h) and exit code 1. A program that calls it has
-// standard streams from its start (base/standard_streams.h), and an exception that nothing catches
-// is such a line, too (base/out_of_memory.h).
+// Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns its result.
+// An exception becomes one line on standard error (base/message.h) and the result 1. A program that
+// links this function also opens closed standard streams when it starts
+// (base/standard_streams.h), and reports uncaught exceptions (base/out_of_memory.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 
 }  // namespace axial

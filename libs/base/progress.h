@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a stage is. Stages call the sink; programs decide what is shown.
+// The progress of a stage. Stages call a sink; programs choose the sink.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,13 @@
 
 namespace axial {
 
-// Called by a stage with (items done, items in all), from one thread at a time. May be empty.
+// A stage calls it with the number of items done and of all items, from one thread at a time. May
+// be empty.
 using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
 
-// A sink that logs "<title> 3/10 (30%, 12s, 28s left)": rewritten in place on a terminal, plain
-// lines at most every few seconds in a file. What is under way counts as debugging, the end of the
-// stage as information: each is silent where the log is.
+// A sink that writes "<title> 3/10 (30%, 12s, 28s left)". On a terminal it overwrites the same
+// line; otherwise it logs a line every 5 seconds at most. Progress has the log level debug, the end
+// of the stage the level info. The sink writes nothing at a level that the log does not write.
 ProgressSink console_progress(const std::string& title);
 
 }  // namespace axial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outputs that are not the files a program reads.
+// Checks that a program does not overwrite its inputs.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 
 namespace axial {
 
-// Error that names `option`, `output` and the input if `output` exists and is one of `inputs`: the
-// same file by device and inode, whatever its name, so links count too. Inputs that do not exist
-// and empty paths are passed over; of a folder among the inputs only the folder itself counts, not
-// the files in it.
+// Throws an Error that names `option`, `output` and the input if `output` exists and is one of
+// `inputs`. Files are compared by device and inode, so that links are found too. Inputs that do not
+// exist and empty paths are ignored. For an input that is a folder, only the folder itself is
+// compared and not the files in it.
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs, const std::string& option);
 
-// The same for each of many outputs.
+// The same for each of several outputs.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
                        std::span<const std::filesystem::path> inputs, const std::string& option);
 

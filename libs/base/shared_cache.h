@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values that are made when asked for and kept as long as there is room.
+// A cache of values that are made on demand.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace axial {
 
-// Keeps `capacity` values, the most recently asked for. Those that somebody holds are not dropped,
-// because that would free nothing: with more of them in use there are as many as are in use.
-// Thread-safe: a value that several threads want at the same time is made once, and the others wait
-// for it. An exception out of `make` reaches all who wait; the next one to ask tries again.
+// Keeps the `capacity` most recently requested values. A value that is in use outside the cache is
+// not evicted, because that would free no memory; the cache can therefore exceed `capacity`.
+// Thread-safe: if several threads request a value at the same time, one thread makes it and the
+// others wait. An exception from `make` reaches all waiting threads; the next request tries again.
 template <class Value>
 class SharedCache {
  public:
@@ -25,6 +25,7 @@ class SharedCache {
 
   SharedCache(Make make, std::size_t capacity) : make_(std::move(make)), capacity_(capacity) {}
 
+  // The value of `key`. Calls make(key) if the value is not in the cache.
   Pointer get(std::size_t key) {
     std::promise<Pointer> promise;
     if (const auto made = enter(key, promise); made.valid()) return made.get();
@@ -50,7 +51,8 @@ class SharedCache {
                         [&](const Entry& entry) { return entry.key == key; });
   }
 
-  // What is there for `key`, or nothing: then the caller has entered its promise for it.
+  // The future of the value of `key`. It is invalid if there was no entry: then `promise` has been
+  // entered for `key`, and the caller must fulfil it.
   std::shared_future<Pointer> enter(std::size_t key, std::promise<Pointer>& promise) {
     const std::lock_guard lock(mutex_);
     if (const auto found = find(key); found != recent_.end()) {
@@ -80,7 +82,7 @@ class SharedCache {
   Make make_;
   std::size_t capacity_;
   std::mutex mutex_;
-  std::list<Entry> recent_;  // the most recent first
+  std::list<Entry> recent_;  // the most recently requested first
 };
 
 }  // namespace axial

@@ -7,7 +7,7 @@
 
 namespace axial {
 
-// In ascending order: a file that is opened takes the lowest number that is free.
+// In ascending order, because open() returns the lowest free descriptor.
 void open_standard_streams() {
   for (int descriptor = 0; descriptor < 3; ++descriptor)
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDWR);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Standard input, output and error, which a program may be started without (">&-").
+// Standard input, output and error. A program may be started with closed streams (">&-").
 #pragma once
 
 namespace axial {
 
-// Opens /dev/null in the place of each of them that is closed. The next file that is opened would
-// take its number else, and what is meant for the stream would be written into that file. To be
-// called before anything opens one.
+// Opens /dev/null for each closed standard stream. Otherwise the next opened file would get the
+// stream's descriptor, and output to the stream would be written into that file. Call it before
+// any file is opened.
 void open_standard_streams();
 
 }  // namespace axial

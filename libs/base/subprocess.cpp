@@ -40,9 +40,9 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-// In the child: nothing but system calls, for other threads' locks were copied as they stood. A
-// child must not outlive its parent, as it would work on for hours on files that the next run
-// removes.
+// Runs in the child after fork(). Only system calls are safe there, because locks that other
+// threads held at fork() are never released. The child must not outlive its parent: it could work
+// for hours on files that the next run removes.
 [[noreturn]] void become(char* const* arguments, const char* log, pid_t parent, int report) {
   const int in = open("/dev/null", O_RDONLY);
   const int out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -75,7 +75,8 @@ pid_t start(const std::vector<std::string>& command, const std::filesystem::path
   if (child == 0) become(arguments.data(), log.c_str(), parent, report.write_end());
   int error = child < 0 ? errno : 0;
   report.close_write_end();
-  // It ends without a byte once the child has become the program.
+  // The pipe closes without a byte when the child starts to run the program. If that fails, the
+  // child writes the error number into the pipe.
   const bool failed = child < 0 || read(report.read_end(), &error, sizeof error) > 0;
   if (failed && child > 0) wait_for(child);
   if (failed) fail("{}: cannot be started ({})", command[0], std::strerror(error));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the user gave and a program finds no use for, because the data lack what it is of.
+// Input that the user gave and that a program cannot use, because the data it refers to are
+// missing.
 #pragma once
 
 #include <string>
@@ -9,18 +10,20 @@
 
 namespace axial {
 
+// Treats unused input as an error, or with --allow-missing as a warning.
 class UnusedInput {
  public:
-  // Declares --allow-missing, bound to `allowed`, which must outlive the parsing.
+  // Adds the option --allow-missing to `list`, bound to `allowed`. `allowed` must exist until the
+  // options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
   explicit UnusedInput(bool allowed) : allowed_(allowed) {}
 
-  // `line` names the option, what was given and why it is of no use: an Error of this line, or
-  // where it is allowed a warning, and the program goes on without what was given.
+  // Reports one unused input. `line` names the option, the input and the reason. Throws an Error
+  // with this line, or if allowed logs it as a warning and keeps it.
   void report(const std::string& line);
 
-  // What was reported, in its order.
+  // The lines of the warnings, in the order of the reports.
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:

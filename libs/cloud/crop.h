@@ -5,8 +5,8 @@
 
 namespace axial::cloud {
 
-// Removes the points outside `region`; the others keep their order and attributes. Returns how many
-// were removed.
+// Removes the points outside `region`. The other points keep their order and attributes. Returns
+// the number of removed points.
 std::size_t crop(PointCloud& cloud, const OrientedBox& region);
 
 }  // namespace axial::cloud

@@ -12,12 +12,12 @@
 namespace axial::cloud {
 namespace {
 
-// A view with what must outlive its map.
+// The data of a view that are kept when its map is evicted.
 struct Slot {
   std::uint32_t image = 0;
   int photograph_width = 0;
   std::vector<std::size_t> neighbours;  // other slots
-  std::vector<bool> taken;              // pixels that support a point, or were proved wrong
+  std::vector<bool> taken;              // pixels that support a point, or were discarded
 };
 
 class Fusion {
@@ -58,7 +58,7 @@ class Fusion {
   const FuseOptions& options_;
   bool merge_;
   std::size_t min_views_;
-  std::size_t fewest_;  // views of any point
+  std::size_t fewest_;  // the smallest number of views of a point
   std::vector<Slot> slots_;
   std::vector<std::size_t> order_;
 };
@@ -99,7 +99,7 @@ void Fusion::make_order(std::span<const FusionView> views) {
   });
 }
 
-// The slots that are needed to fuse one view: itself, then its neighbours.
+// The slots that are needed to fuse one view: its own slot first, then its neighbours.
 std::vector<std::size_t> Fusion::views_of(std::size_t reference) const {
   std::vector<std::size_t> views{reference};
   const std::vector<std::size_t>& neighbours = slots_[reference].neighbours;

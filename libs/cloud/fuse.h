@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth maps to one point cloud (OPENMVS_FACTS 6.7).
+// Fuses depth maps to one point cloud.
 #pragma once
 
 #include <cstdint>
@@ -19,73 +19,86 @@ namespace axial::cloud {
 
 // One image that has a depth map.
 struct FusionView {
-  std::uint32_t image = 0;                // index into Scene::images
-  std::vector<std::uint32_t> neighbours;  // images to join, best first (filter_neighbours); those
-                                          // without a FusionView of their own are ignored
-  std::size_t rank =
-      0;  // views are fused in decreasing rank (unfiltered neighbours), ties by image
+  std::uint32_t image = 0;  // index into Scene::images
+  // Images whose pixels may support this view's points, best first (filter_neighbours). Images
+  // without a FusionView of their own are ignored.
+  std::vector<std::uint32_t> neighbours;
+  // Views are fused in decreasing rank, views of equal rank in the order of `image`. The rank is
+  // the number of unfiltered neighbours.
+  std::size_t rank = 0;
 };
 
-// Both are called with an index into Scene::images, as late as possible, from up to
-// FuseOptions::max_loads threads; once a view unless max_maps makes it necessary to load one again.
+// Functions that load the inputs. Both are called with an index into Scene::images, as late as
+// possible, from at most FuseOptions::max_loads threads. A view is loaded once, unless max_maps is
+// so small that its map has to be evicted and loaded again.
 struct FusionProviders {
   std::function<DepthMap(std::size_t image)> load_map;
-  // B G R at the depth map's size. Empty function: no colours.
+  // The image in B G R at the depth map's size. Empty function: the cloud has no colours.
   std::function<cv::Mat3b(std::size_t image)> load_color;
 };
 
 struct FuseOptions {
-  // Images that must agree on a point (their own included; capped by the number of views). Below 2:
-  // plain merge, every valid pixel is a point with one view.
+  // The number of images that must agree on a point, including the image of the point's first
+  // pixel; at most the number of views. Below 2 the maps are merged without tests: every valid
+  // pixel becomes a point with one view.
   std::size_t min_views = 3;
-  // With min_views above 2: two images that agree on a point are enough where no other image
-  // disagrees, on stricter evidence (fuse).
+  // With min_views above 2: two images are enough if no other image disagrees and both maps pass
+  // the test for surfaces (see fuse).
   bool two_if_undisputed = true;
   double depth_threshold = 0.005;                             // relative, along the neighbour's ray
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
   bool normals = true;                                        // fill PointCloud::normals
   bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
-  // What memory allows; the cloud does not depend on it. Maps in memory at a time (20 bytes a
-  // pixel, 3 more with colours), but never fewer than a view and its neighbours; calls of the
-  // providers at the same time.
+  // Limits of memory; the cloud does not depend on them. max_maps: maps in memory at the same time
+  // (20 bytes per pixel, 23 with colours), but never fewer than a view and its neighbours.
+  // max_loads: calls of the providers at the same time.
   std::size_t max_maps = std::numeric_limits<std::size_t>::max();
   std::size_t max_loads = 1;
 };
 
-// Adds the points of `portion`, which has the same attributes, to `cloud`, whose view_begin starts
-// as {0}.
+// Adds the points of `portion` to `cloud`. Preconditions: both have the same attributes, and
+// view_begin of an empty `cloud` is {0}.
 void append(PointCloud& cloud, const PointCloud& portion);
 
-// Takes the next points of a cloud.
+// Receives the next points of a cloud.
 using CloudSink = std::function<void(PointCloud portion)>;
 
-// Every pixel that belongs to no point yet asks its view's neighbours: those whose depth at the
-// projection agrees in depth and normal join, and their pixels are used up. With
-// `two_if_undisputed`, one neighbour that joins is enough where no other disagrees. A neighbour
-// disagrees that sees through the point or shows another normal there. It says nothing if the point
-// is outside its image or hidden behind the surface of its map, or if its map has no depth there;
-// and one that agrees, but whose pixel belongs to a point already, does not forbid the point. In
-// the pixel's map and in that of the first neighbour that agrees, the pixel must lie in a piece of
-// surface: of the eight pixels two away, four or more are less than half depth_threshold times the
-// depth away from the pixel's tangent plane, and at most three farther. A point with enough views
-// is the mean of the back-projected pixels (eq. 4), weighted with 1 / (max(1 - confidence, 0.03)
-// depth^2), as are its colour and normal; depths that it proves wrong (a neighbour sees behind it)
-// are deleted. Each pixel of a depth map supports at most one point. Positions, weights and views
-// (sorted by image) are always filled. Maps without normals get them from depth
-// (estimate_map_normals); pixels without a normal skip the normal test. The same bytes for any
-// number of threads. The cloud is handed on in portions: besides the maps only one bit a pixel is
-// kept of the views that are not done yet. Error for a map whose size, image and normals disagree.
+// Fuses the depth maps of `views` and passes the cloud to `sink` in portions. The views are
+// processed one after the other. For every pixel with a depth that is not used yet:
+//
+// * The pixel's point is projected into each neighbour of the view and compared with the depth of
+//   the nearest pixel there. The neighbour agrees if depth and normal agree within the thresholds.
+//   It disagrees if its depth is larger (it sees through the point) or its normal differs. It is
+//   neutral if the point is outside its image or hidden behind its surface, or if its map has no
+//   depth there.
+// * The point is accepted if min_views images agree, counting neighbours only whose pixel is not
+//   used yet. With `two_if_undisputed` one such neighbour is enough if no neighbour disagrees, and
+//   if the pixel lies in a piece of surface in its own map and in the map of the first neighbour
+//   that agrees: of the eight pixels at a distance of two, at least four are nearer to the pixel's
+//   tangent plane than half of depth_threshold times the depth, and at most three are not.
+// * The point is the mean of the back-projected pixels that agree (eq. 4), with the weights
+//   1 / (max(1 - confidence, 0.03) depth^2). Colour and normal are means with the same weights. The
+//   pixels are then used. Pixels of neighbours that see through an accepted point are discarded.
+//
+// So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
+// image) are always filled. Maps without normals get normals from their depths
+// (estimate_map_normals); a pixel without a normal passes every normal test. The cloud is identical
+// for any number of threads. Besides the maps, only one bit per pixel is kept for each view that is
+// still needed. Throws an Error for a view that does not exist or is given twice, and for a map
+// whose camera, normals, confidences or image do not have the size of its depths.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 
-// The same, all portions in one.
+// The same, but returns the whole cloud.
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options = {},
                 const ProgressSink& progress = {});
 
-// Normals from 3x3 neighbourhoods of back-projected points with depths within 3 % of the pixel's
-// (at least 3 of them), camera frame, facing the camera; 0 where that fails or depth is 0.
+// Estimates a map's normals from the back-projected points in the 3x3 neighbourhood of each pixel.
+// Only neighbours count whose depth differs by less than 3 % from the pixel's; at least 3 are
+// needed. The normals have unit length, are in the camera frame and face the camera. 0 where there
+// is no depth or where the estimation fails.
 cv::Mat3f estimate_map_normals(const DepthMap& map);
 
 }  // namespace axial::cloud

@@ -46,14 +46,14 @@ void prepare_row(const DepthMap& map, int y, FusionMap& view) {
   }
 }
 
-// Pixels are addressed as one run.
+// An image without gaps between rows, since pixels are addressed by y * width + x.
 template <class Image>
 Image in_one_run(const Image& image) {
   return image.isContinuous() ? image : Image(image.clone());
 }
 
-// Answers of one neighbour. Float projection: its error of a thousandth of a pixel only matters to
-// points that fall between two pixels anyway.
+// Computes the answers of one neighbour. Projections are in single precision: their error of a
+// thousandth of a pixel matters only for points that are projected midway between two pixels.
 template <class Camera>
 class Neighbour {
  public:
@@ -67,7 +67,7 @@ class Neighbour {
         depth_threshold_(static_cast<float>(options.depth_threshold)),
         least_cosine_(static_cast<float>(std::cos(options.normal_threshold))) {}
 
-  // Pixel `asking` of the reference, and its point.
+  // The answer to the pixel `asking` of the reference, whose point [world] is `point`.
   Answer operator()(std::uint32_t asking, const Eigen::Vector3f& point) const {
     const Eigen::Vector3f X = neighbour_.pose.to_camera(point.cast<double>()).cast<float>();
     const auto projection = camera_.project(X);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): one view's map, and what it answers to another view.
+// Part of fuse(): the map of one view, and its comparison with the pixels of another view.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +13,23 @@
 
 namespace axial::cloud {
 
-// A depth map as fusion needs it: 20 bytes a pixel, and 3 with colours. Points are computed when
-// needed, which is cheaper than to keep them. Pixels are addressed by y * width + x.
+// A depth map in the form that fusion needs: 20 bytes per pixel, 23 with colours. Points are
+// computed when they are needed, because storing them costs more. Pixels are addressed by
+// y * width + x.
 struct FusionMap {
   std::string image_path;
   Pose pose;
   CameraModel camera;
-  cv::Mat1f depth;       // 0: none
+  cv::Mat1f depth;       // lambda (see DepthMap) [m]; 0: none
   cv::Mat3f normal;      // world frame; 0: unknown
-  cv::Mat1f weight;      // 1 / (max(1 - confidence, 0.03) depth^2); meaningless without depth
+  cv::Mat1f weight;      // 1 / (max(1 - confidence, 0.03) depth^2); 0 without depth
   cv::Mat3b color;       // may be empty
   bool matched = false;  // the map has confidences
 
   std::size_t pixels() const { return depth.total(); }
   float depth_at(std::size_t pixel) const { return depth.ptr<float>()[pixel]; }
   float weight_at(std::size_t pixel) const { return weight.ptr<float>()[pixel]; }
-  // Of matching, 1 - confidence, from 0.03 to 0.99: what the weight was made of. 1: not known.
+  // The matching cost 1 - confidence, from 0.03 to 0.99, recovered from the weight. 1: unknown.
   double cost_at(std::size_t pixel) const {
     if (!matched) return 1;
     const auto depth_here = static_cast<double>(depth_at(pixel));
@@ -40,22 +41,27 @@ struct FusionMap {
   cv::Vec3b color_at(std::size_t pixel) const { return color.ptr<cv::Vec3b>()[pixel]; }
 };
 
-// Checks the map (Error that names its image) and turns its normals into the world. Shares depths
-// and colours with what it is given.
+// Checks the map, rotates its normals into the world frame and computes the weights. A map without
+// normals gets normals from its depths. Depths and colours share memory with the arguments if their
+// rows are contiguous. Throws an Error that names the map's image if the map is empty or if the
+// size of the camera, the normals, the confidences or `color` differs from that of the depths.
 FusionMap make_fusion_map(DepthMap map, const cv::Mat3b& color);
 
-// Some pixels of a view and their points in the world.
+// Some pixels of a view and their points in the world frame.
 struct PixelPoints {
   std::vector<std::uint32_t> pixels;
-  std::vector<Eigen::Vector3f> points;  // as many, once back_project has filled them
+  std::vector<Eigen::Vector3f> points;  // one per pixel, filled by back_project()
 };
 
-// Fills the points; every pixel must have a depth.
+// Fills where.points. Precondition: every pixel has a depth.
 void back_project(const FusionMap& view, PixelPoints& where);
 
-// What a neighbour says to a pixel: "I cannot see you" (the point is outside the image, hidden, or
-// the map has no depth there), "my pixel has your depth, but another normal", "my pixel sees the
-// same", or "my pixel sees through you".
+// The result of comparing the point of a pixel with a neighbour's map:
+//   - cannot see: the point is outside the image or hidden, or the map has no depth there,
+//   - differs: the neighbour's pixel has the same depth, but another normal,
+//   - joins: the neighbour's pixel has the same depth and normal,
+//   - contradicts: the neighbour's pixel is farther away, so that it sees through the point.
+// The last two name the neighbour's pixel. An answer takes 4 bytes.
 class Answer {
  public:
   Answer() = default;  // cannot see
@@ -65,7 +71,7 @@ class Answer {
 
   bool cannot_see() const { return code_ == kCannotSee; }
   bool names_pixel() const { return code_ < kDiffers; }
-  // Of an answer that names a pixel.
+  // Precondition of both: the answer names a pixel. agrees() is true for joins().
   bool agrees() const { return (code_ & 1u) == 0; }
   std::uint32_t pixel() const { return code_ >> 1; }
 
@@ -75,8 +81,9 @@ class Answer {
   std::uint32_t code_ = kCannotSee;
 };
 
-// The answers of `neighbour` to the pixels `asking` of `reference`, in that order; `answers` has
-// that length too. They do not depend on which pixels are used already.
+// Compares the points of the pixels `asking` of `reference` with the map of `neighbour`. Fills
+// `answers` in the order of `asking`. Precondition: both have the same length. Whether a pixel is
+// already used has no influence.
 void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
                    const PixelPoints& asking, const FuseOptions& options,
                    std::span<Answer> answers);

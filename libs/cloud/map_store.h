@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): which maps are in memory. What is needed when is known beforehand, so the map
-// that leaves is the one that is needed again last.
+// Part of fuse(): keeps maps in memory. The order in which maps are needed is known in advance, so
+// that the store evicts the map whose next use is farthest away.
 #pragma once
 
 #include <functional>
@@ -14,22 +14,24 @@ namespace axial::cloud {
 class MapStore {
  public:
   struct Limits {
-    std::size_t maps;   // in memory at a time, but never fewer than a step needs
-    std::size_t loads;  // at the same time
+    std::size_t maps;   // maps in memory at the same time, but never fewer than a step needs
+    std::size_t loads;  // calls of `load` at the same time
   };
   using Load = std::function<FusionMap(std::size_t slot)>;
 
-  // Step i needs the maps of needed[i], each of which is below `slots` and occurs once.
+  // Step i needs the maps of the slots needed[i]. Precondition: the slots of a step are below
+  // `slots` and differ from each other.
   MapStore(std::vector<std::vector<std::size_t>> needed, std::size_t slots, Limits limits,
            Load load);
 
-  // Sees to it that the maps of this step are there. Steps come in order, each with an end_step.
+  // Loads the missing maps of this step, and evicts others if there are too many. Call begin_step()
+  // and end_step() in turn, for the steps in ascending order.
   void begin_step(std::size_t step);
 
-  // Drops what no later step needs.
+  // Removes the maps that no later step needs.
   void end_step(std::size_t step);
 
-  // Precondition: needed by the present step.
+  // Precondition: the current step needs the map.
   const FusionMap& map(std::size_t slot) const { return *maps_[slot]; }
 
   // Whether a step that has not ended needs the map.
@@ -40,11 +42,11 @@ class MapStore {
   void drop(std::size_t slot);
 
   std::vector<std::vector<std::size_t>> needed_;
-  std::vector<std::vector<std::size_t>> uses_;  // of each slot: the steps to come, the last first
+  std::vector<std::vector<std::size_t>> uses_;  // per slot: steps that need it, the last one first
   Limits limits_;
   Load load_;
   std::vector<std::optional<FusionMap>> maps_;
-  std::vector<std::size_t> loaded_;  // slots
+  std::vector<std::size_t> loaded_;  // slots whose maps are in memory
 };
 
 }  // namespace axial::cloud

@@ -11,7 +11,7 @@
 namespace axial::cloud {
 namespace {
 
-// What nanoflann asks of a point set.
+// The interface that nanoflann requires of a point set.
 struct Positions {
   const std::vector<Eigen::Vector3f>& points;
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNowhere = -10;
 
-// Half as many pixels a side, each the mean of the four that have a value.
+// Halves each side. A pixel becomes the mean of those of its four pixels that have a value.
 cv::Mat1f halved(const cv::Mat1f& values) {
   cv::Mat1f half((values.rows + 1) / 2, (values.cols + 1) / 2, 0.0f);
   for (int y = 0; y < half.rows; ++y)
@@ -28,7 +28,7 @@ cv::Mat1f halved(const cv::Mat1f& values) {
   return half;
 }
 
-// Bilinear; outside as at the edge.
+// Bilinear interpolation. Outside the image the value is that of the edge.
 float value_at(const cv::Mat1f& values, double x, double y) {
   x = std::clamp(x, 0.0, values.cols - 1.0);
   y = std::clamp(y, 0.0, values.rows - 1.0);
@@ -40,12 +40,12 @@ float value_at(const cv::Mat1f& values, double x, double y) {
          b * ((1 - a) * values(below, u) + a * values(below, right));
 }
 
-// Coordinate of a pixel's centre in an image of `to` pixels in place of `from`.
+// The coordinate of a pixel's centre after resizing the image from `from` to `to` pixels.
 double rescaled(int pixel, int from, int to) {
   return (pixel + 0.5) * to / from - 0.5;
 }
 
-// Rows of `surface`, with `guess` where it has none.
+// The rows of `surface`, with values of `guess` where there is no surface.
 cv::Mat1f without_holes(const cv::Mat1f& surface, const cv::Mat1f& guess, cv::Range rows) {
   cv::Mat1f values = surface.rowRange(rows).clone();
   for (int i = 0; i < values.rows; ++i)
@@ -56,7 +56,7 @@ cv::Mat1f without_holes(const cv::Mat1f& surface, const cv::Mat1f& guess, cv::Ra
   return values;
 }
 
-// The photograph's pixel, or (-1, -1).
+// The photograph's pixel nearest to `place`, or (-1, -1) outside the photograph.
 cv::Point pixel_at(const cv::Vec2f& place, cv::Size photograph) {
   const cv::Point pixel(cvRound(place[0]), cvRound(place[1]));
   return cv::Rect({}, photograph).contains(pixel) ? pixel : cv::Point(-1, -1);

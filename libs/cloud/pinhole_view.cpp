@@ -15,15 +15,16 @@ namespace {
 using Ray = refractive::AxialRay<double>;
 
 constexpr double kSteepest = 0.342;  // cos of 70 degrees
-constexpr double kLargest = 1.4;     // the image's side for the model's
+constexpr double kLargest = 1.4;     // largest side of the image relative to the model's image
 
 struct Rays {
-  std::vector<Ray> all;           // over the whole image, up to its edges
-  bool whole = true;              // no pixel is without
+  std::vector<Ray> all;           // on a grid over the whole image, up to its edges
+  bool whole = true;              // every pixel of the grid has a ray
   Ray right, left, below, above;  // half a pixel from the image's centre
 };
 
-// Some pixels have no ray that comes back to them: beyond total reflection, or outside the lens.
+// Whether a point on the pixel's ray is projected back to the pixel. This fails beyond total
+// reflection, outside the lens's field, and more than 70 degrees from the axis.
 template <class Camera>
 bool is_seen(const Camera& camera, const Eigen::Vector2d& pixel, const Ray& ray, double distance) {
   const auto seen = camera.project(ray.at(distance));
@@ -62,7 +63,8 @@ Eigen::Vector2d tangents(const Ray& ray, double distance, const Eigen::Vector3d&
   return seen.head<2>() / seen.z();
 }
 
-// The lens whose pixels are as large as the model's in the image's centre; without principal point.
+// The lens whose pixels have the angular size of the model's pixels in the image's centre. The
+// principal point is left at 0.
 refractive::PinholeLens<double> focal_lengths(const CameraModel& model, const Rays& rays,
                                               double distance, const Eigen::Vector3d& centre) {
   const auto at = [&](const Ray& ray) { return tangents(ray, distance, centre); };
@@ -73,20 +75,21 @@ refractive::PinholeLens<double> focal_lengths(const CameraModel& model, const Ra
   return {ratio * fy, fy, 0, 0};
 }
 
-// One axis of the image: pixels and principal point for tangents from `low` to `high`, `middle`
-// being what the model's centre sees.
+// The size and principal point of the image along one axis [px].
 struct Side {
   int pixels = 0;
   double principal_point = 0;
-  bool whole = true;
+  bool whole = true;  // the image contains all tangents
 };
 
+// For tangents from `low` to `high`. `middle`: the tangent that the centre of the model's image
+// sees. `of_model`: the side of the model's image [px].
 Side side_for(double low, double high, double middle, double focal, int of_model) {
   const double reach = kLargest / 2 * of_model / focal;
   const double first = std::max(low, middle - reach), last = std::min(high, middle + reach);
   const double length = focal * (last - first);
   const int pixels = std::max(1, static_cast<int>(std::ceil(length - 1e-6)));
-  // What rounding adds goes to both ends.
+  // The fraction of a pixel that rounding adds is divided between both ends.
   const double principal_point = -0.5 + (pixels - length) / 2 - focal * first;
   return {pixels, principal_point, first == low && last == high};
 }

@@ -13,25 +13,27 @@
 namespace axial::cloud {
 namespace {
 
-// Rounded fits to distances from the truth, by the likelihood of normal errors, on clouds of
-// SimulateUnderwater (seed 21, true poses): closeup and reef in water and in air, thicket in water,
-// at two resolutions each. kNoise is from sand in water and reef-hazy in air: the others have
-// texture enough. The powers of cost and relief are those, of the likeliest few, that treat these
-// scenes and transect most alike. kSmoothing and kTriangulated were then raised by a fifteenth, for
-// whole clouds, with other seeds known. kOdds is rounded by hand.
-constexpr double kSmoothing = 3.2;      // of relief, cost 1, seen along the normal [pixels]
-constexpr double kTriangulated = 0.53;  // the same, of the triangulated error for one view
+// The constants are rounded maximum-likelihood fits, with normally distributed errors, to the
+// distances of points from the true surface. The clouds are of SimulateUnderwater scenes (seed 21,
+// true poses): closeup and reef in water and in air, thicket in water, each at two resolutions.
+// kNoise is from sand in water and reef-hazy in air, because the other scenes have enough texture.
+// Several powers of cost and relief were almost equally likely; the chosen ones give the most
+// similar results for these scenes and transect. Afterwards kSmoothing and kTriangulated were
+// raised by a fifteenth to fit whole clouds, with the results of other seeds known. kOdds was
+// rounded by hand.
+constexpr double kSmoothing = 3.2;      // error for relief 1 and cost 1, along the normal [pixels]
+constexpr double kTriangulated = 0.53;  // the same, relative to the triangulated error of one view
 constexpr double kLeastRelief = 1e-3;   // normals 2.6 degrees apart
-constexpr double kScatter = 0.9;        // of the supports' standard deviation
+constexpr double kScatter = 0.9;        // factor of the supports' standard deviation
 constexpr double kNoise = 0.26;  // of a photograph, mean over the matching window [grey levels]
-constexpr double kLeastTexture = 0.5;   // [grey levels per px]: they are rounded
-constexpr double kOdds = 70;            // of staying within 3 errors where scatter is one pixel
-constexpr double kLeastScatter = 0.05;  // [errors]
+constexpr double kLeastTexture = 0.5;   // [grey levels per px]; grey levels are rounded
+constexpr double kOdds = 70;            // odds of staying within 3 errors, for a scatter of 1 pixel
+constexpr double kLeastScatter = 0.05;  // relative to the error
 constexpr double kLeastCosine = 0.1;
-constexpr double kNoCost = 0.999;  // 1 but for rounding
+constexpr double kNoCost = 0.999;  // a known cost is lower; 1 up to rounding
 
-constexpr int kReach = 3;                 // of surroundings [px]
-constexpr std::uint32_t kMostCells = 32;  // along an image's side
+constexpr int kReach = 3;                 // radius of the surroundings [px]
+constexpr std::uint32_t kMostCells = 32;  // along a side of the image
 
 double squared(double x) {
   return x * x;
@@ -41,9 +43,9 @@ double fourth_root(double x) {
 }
 
 struct Summary {
-  double cost = 1;          // the least of the supports'
+  double cost = 1;          // smallest cost of the supports
   double pixel = 0;         // width of a pixel at the point [m]
-  double cosine = 0;        // mean of rays and normal
+  double cosine = 0;        // mean cosine of the angles between rays and normal
   double variance = 0;      // of the supports' points along the normal [m^2]
   double triangulated = 0;  // triangulated_error()
 };
@@ -72,8 +74,9 @@ Summary summarise(std::span<const PointSupport> supports, const Eigen::Vector3d&
   return sum;
 }
 
-// Points move with the pixel and along the ray by M = [dX/du, dX/dv, ray]; the first two rows of
-// its inverse say how the pixel moves with the point. Of a point at unit distance.
+// The angular size of a pixel [rad]. M = [dX/du, dX/dv, ray] is the derivative of the point X at
+// unit distance by the pixel and by the distance. The first two rows of its inverse are the
+// derivative of the pixel by X.
 double angle_of_pixel(const AnyCamera<double>& camera, const Eigen::Vector2d& pixel) {
   refractive::AxialRayJacobian<double> by_pixel;
   const Eigen::Vector3d ray = camera.ray(pixel, by_pixel).direction;
@@ -83,12 +86,12 @@ double angle_of_pixel(const AnyCamera<double>& camera, const Eigen::Vector2d& pi
   return std::sqrt(2 / (across.squaredNorm() + ray.cross(by_u).squaredNorm())) / std::abs(scale);
 }
 
-int grey(const FusionMap& map, int x, int y) {  // times 4
+int grey(const FusionMap& map, int x, int y) {  // 4 times the grey level
   const cv::Vec3b bgr = map.color(y, x);
   return bgr[0] + 2 * bgr[1] + bgr[2];
 }
 
-// RMS of the gradient of intensity [grey levels per px].
+// Root mean square of the gradient of the grey level around a pixel [grey levels per px].
 double texture_at(const FusionMap& map, int x, int y) {
   int sum = 0, count = 0;
   for (int v = std::max(y - kReach, 1); v <= std::min(y + kReach, map.color.rows - 1); v += kReach)
@@ -106,7 +109,7 @@ bool unknown(const cv::Vec3f& normal) {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 
-// Mean of 1 - cosine; 0 where no normals are known.
+// Surroundings::relief.
 double relief_at(const FusionMap& map, int x, int y) {
   constexpr std::array<std::pair<int, int>, 8> kAround{
       {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
@@ -146,7 +149,8 @@ PointSupport SupportCamera::support(std::uint32_t pixel, double depth, double co
   return {point, (point - centre_).normalized(), depth * angle, depth, cost};
 }
 
-// The noise of a reduced photograph is a mean of several pixels' noise.
+// The noise is divided by `reduction`, because a pixel of a reduced photograph is the mean of
+// several pixels.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction) {
   const int width = map.depth.cols, at = static_cast<int>(pixel), y = at / width, x = at % width;
   const double relief = relief_at(map, x, y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): what a point is worth that several depth maps agree on.
+// Part of fuse(): the expected error of a point on which several depth maps agree.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,43 +13,49 @@
 
 namespace axial::cloud {
 
-// What one depth map says of a point, in the world's axes.
+// The measurement of a point by one depth map. World frame.
 struct PointSupport {
-  Eigen::Vector3d point;  // of the map's pixel [m]
-  Eigen::Vector3d ray;    // from the camera to it, unit
-  double pixel;           // width of the map's pixel at the point, through the port [m]
+  Eigen::Vector3d point;  // back-projected point of the map's pixel [m]
+  Eigen::Vector3d ray;    // unit vector from the camera to the point
+  double pixel;           // width of the map's pixel at the point, with refraction [m]
   double depth;           // along the pixel's ray [m]
-  double cost;            // of matching: 1 - the map's confidence; 1: not known
+  double cost;            // of matching: 1 - the map's confidence; 1: unknown
 };
 
-// Makes the supports of one view. A pixel's angle is read off a table (to 2 %), and rays begin in
-// the camera's centre (behind a port they are off by less than a degree): a tenth of the time that
-// exact rays with derivatives take.
+// Makes the supports of one view in a tenth of the time that exact rays with derivatives need. It
+// makes two approximations: the angular size of a pixel comes from a table (error 2 %), and rays
+// start at the camera centre (error below a degree behind a port).
 class SupportCamera {
  public:
   SupportCamera(const CameraModel& model, const Pose& pose);
 
-  // Of pixel y * width + x, whose depth is above 0, and whose point is this one of the world.
+  // The support of the map's pixel y * width + x. `depth` [m] must be above 0; `point` is the
+  // pixel's back-projected point [world].
   PointSupport support(std::uint32_t pixel, double depth, double cost,
                        const Eigen::Vector3d& point) const;
 
  private:
   Eigen::Vector3d centre_;
   std::uint32_t width_, shift_ = 0, columns_;  // cells of 2^shift_ pixels
-  std::vector<float> angles_;                  // of a pixel in each cell [rad]
+  std::vector<float> angles_;                  // angular size of a pixel in each cell [rad]
 };
 
-// What a map and its photograph show around one pixel.
+// Properties of a map and its photograph around one pixel.
 struct Surroundings {
-  double relief = 0;  // mean of 1 - cosine between its normal and those three pixels away; 0: none
-  double noise = 0;   // standard deviation of a match's place for want of texture [px]; 0: unknown
+  // Mean of 1 - cosine of the angle between the pixel's normal and the normals of the pixels at a
+  // distance of three. 0: flat, or the pixel's normal is unknown.
+  double relief = 0;
+  // Standard deviation of the position of a match due to noise in the photograph [px of the map].
+  // It is large where there is little texture. 0: unknown.
+  double noise = 0;
 };
-// `reduction`: width of the photograph / of the map. The noise is unknown without colours.
+// Measures them around `pixel`. `reduction`: the width of the photograph divided by the width of
+// the map. The noise is unknown for a map without colours.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
-// Standard deviation, along the unit vector `normal`, of the point that the supports' pixels
-// triangulate if both coordinates of each have independent errors of 1 px [m per px]. Parallel rays
-// give at most their depth.
+// Standard deviation [m per px] along the unit vector `normal` of the point triangulated from the
+// supports' pixels, if both coordinates of each pixel have independent errors of 1 px. For parallel
+// rays the result is bounded by the mean depth.
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
 struct PointError {
@@ -57,17 +63,19 @@ struct PointError {
   float confidence = 0;  // probability that the distance is at most 3 errors
 };
 
-// Of the mean of the supports' points, on a surface with this unit normal, seen by the first
-// support's map as `around` tells. The variance is a sum of three parts:
+// The expected error of the mean of the supports' points, on a surface with the unit normal
+// `normal`. `around`: the surroundings of the point in the map of the first support. The variance
+// is the sum of three parts:
 //
-// * relief: matching fits planes to windows of some pixels. Relief that they cannot follow raises
-//   the cost of even the best match, and the normals of neighbouring pixels differ. All maps are
-//   smoothed alike, so that their number does not help, but wider angles between the rays do;
+// * relief: matching fits planes to windows of several pixels. Relief that planes cannot follow
+//   raises the cost of even the best match and makes the normals of neighbouring pixels differ. All
+//   maps are smoothed in the same way, so that more maps do not reduce this part, but wider angles
+//   between the rays do;
 // * the variance of the supports' points along the normal;
-// * the photograph's noise, where there is little texture.
+// * the photograph's noise, which matters where there is little texture.
 //
-// Confidence grows as the supports' points lie nearer to each other. Unknown with less than two
-// supports, and where no cost is known.
+// The confidence is higher if the supports' points are closer to each other. Both are 0 (unknown)
+// for fewer than two supports and if no support has a known cost.
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal,
                           const Surroundings& around);
 

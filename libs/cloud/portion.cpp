@@ -9,11 +9,11 @@
 namespace axial::cloud {
 namespace {
 
-// Few enough that the answers stay in the processor's cache.
+// Pixels of a portion: few enough for the answers to stay in the processor's cache.
 constexpr std::size_t kPixels = std::size_t{1} << 16;
 constexpr std::size_t kGrain = 1024;
 
-// Sums up the pixels that support one point.
+// The weighted mean of the pixels that support one point.
 class Mean {
  public:
   void add(const FusionMap& map, std::uint32_t pixel, const Eigen::Vector3f& point) {
@@ -28,7 +28,7 @@ class Mean {
 
   Eigen::Vector3f position() const { return (position_ / total_).cast<float>(); }
 
-  // Towards `camera` if no pixel knows it.
+  // The direction to `camera` if no pixel has a normal.
   Eigen::Vector3f normal(const Eigen::Vector3d& camera) const {
     if (normal_.norm() > 1e-6 * total_) return normal_.stableNormalized().cast<float>();
     return (camera - position_ / total_).stableNormalized().cast<float>();
@@ -49,7 +49,7 @@ class Mean {
   double total_ = 0;
 };
 
-// Insertion keeps the few views of a point, at [begin, end) so far, sorted by image.
+// Inserts a view into the sorted views [begin, end) of a point. A point has only few views.
 void insert_view(PointCloud& cloud, std::size_t begin, std::size_t end, std::uint32_t image,
                  float weight) {
   std::size_t k = end;
@@ -105,7 +105,7 @@ void Portion::find_proved_by_two(const FuseOptions& options) {
       kGrain);
 }
 
-// The one serial pass: who comes first gets the pixel.
+// The only serial pass: if two points need the same pixel, the first one gets it.
 void Portion::accept(std::size_t min_views) {
   std::vector<std::size_t> joining;
   std::vector<std::pair<std::size_t, std::uint32_t>> disproved;
@@ -172,7 +172,7 @@ void Portion::estimate_errors(PointCloud& cloud) const {
   parallel_for(
       size(),
       [&](std::size_t i) {
-        thread_local std::vector<PointSupport> memory;  // serves the next point, too
+        thread_local std::vector<PointSupport> memory;  // is reused for the next point
         std::vector<PointSupport>& supports = memory;
         supports.clear();
         for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) {

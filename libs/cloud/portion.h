@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): the next pixels of one view, and the points that come of them.
+// Part of fuse(): the next pixels of one view, and the points made from them.
 #pragma once
 
 #include <span>
@@ -11,34 +11,36 @@
 
 namespace axial::cloud {
 
-// A view at work: its map, and which of its pixels support a point already or were proved wrong.
+// A view that is being fused.
 struct WorkingView {
   std::uint32_t image;
   const FusionMap* map;
-  std::vector<bool>* taken;
-  double reduction = 1;  // width of the photograph / of the map
+  std::vector<bool>* taken;  // per pixel: it supports a point already, or was discarded
+  double reduction = 1;      // width of the photograph divided by the width of the map
 };
 
-// Call collect, ask, accept and points in this order, again and again.
+// Makes points from some pixels of a view at a time. Call collect(), ask(), accept() and points()
+// in this order, and repeat.
 class Portion {
  public:
-  // The reference view first, then its neighbours, best first.
+  // `views`: the reference view first, then its neighbours, best first.
   explicit Portion(std::span<const WorkingView> views);
 
-  // Takes the reference's next pixels that are free and have a depth, from `pixel` on. Returns
-  // where to go on.
+  // Collects the next pixels of the reference view, from `pixel` on, that have a depth and are not
+  // taken. Returns the pixel with which the next call has to continue.
   std::size_t collect(std::size_t pixel);
 
-  // Asks the neighbours what they say to these pixels, and finds those that two views prove.
+  // Compares these pixels with the maps of all neighbours, and finds the pixels for which two views
+  // are enough.
   void ask(const FuseOptions& options);
 
-  // Decides which pixels become points and takes their supports: with `min_views`, or with two or
-  // more where two prove it.
+  // Decides which pixels become points, and takes the pixels that support them. A point needs
+  // `min_views` supports, or two if two views are enough.
   void accept(std::size_t min_views);
 
   std::size_t size() const { return begin_.size() - 1; }  // accepted points
 
-  // The accepted points, averaged; colours if the maps have them.
+  // The accepted points as means of their supports, with colours if the maps have colours.
   PointCloud points(const FuseOptions& options) const;
 
  private:
@@ -53,12 +55,12 @@ class Portion {
   void estimate_errors(PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
-  std::vector<PixelPoints> where_;  // the reference's pixels that ask; the others' supports
-  std::vector<std::vector<Answer>> answers_;  // of each neighbour to each asking pixel
-  std::vector<std::uint8_t> proved_by_two_;   // of each asking pixel, or empty
+  std::vector<PixelPoints> where_;  // the collected pixels; of the neighbours, the supports
+  std::vector<std::vector<Answer>> answers_;  // of each neighbour to each collected pixel
+  std::vector<std::uint8_t> proved_by_two_;   // per collected pixel: two views are enough; or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])
   std::vector<std::size_t> begin_;
-  std::vector<SupportCamera> cameras_;  // of the views, or empty while nobody wants errors
+  std::vector<SupportCamera> cameras_;  // one per view, or empty without FuseOptions::errors
 };
 
 }  // namespace axial::cloud

@@ -11,24 +11,24 @@ namespace axial::cloud {
 namespace {
 
 struct Vertex {
-  Eigen::Vector3d point;  // from the pinhole
-  double x = 0, y = 0;    // [px]
-  double inverse = 0;     // 1 / z; 0: no vertex
-  float distance = 0;     // the map's
+  Eigen::Vector3d point;  // relative to the pinhole's centre [m]
+  double x = 0, y = 0;    // pixel of the pinhole
+  double inverse = 0;     // 1 / z [1/m]; 0: no vertex
+  float distance = 0;     // depth of the map [m]
 };
 
-// No triangle hides a step of the surface: it may be steep, or as rough as depths are, but not
-// both.
+// Whether the triangle is a surface and not a bridge over a step in depth. It is a bridge if its
+// depths differ by more than 1 % and its plane is also nearly parallel to the ray.
 bool is_surface(const Vertex& a, const Vertex& b, const Vertex& c) {
   constexpr float kRough = 1.01f;
-  constexpr double kSteep = 0.1;  // cos of the angle between normal and ray
+  constexpr double kSteep = 0.1;  // cosine of the angle between normal and ray
   const auto [least, most] = std::minmax({a.distance, b.distance, c.distance});
   if (most <= kRough * least) return true;
   const Eigen::Vector3d normal = (b.point - a.point).cross(c.point - a.point);
   return std::abs(normal.dot(a.point)) > kSteep * normal.norm() * a.point.norm();
 }
 
-// First and last pixel centre of three coordinates, within [0, size).
+// The first and the last pixel centre between three coordinates, within [0, size).
 std::pair<int, int> pixels_between(double a, double b, double c, int size) {
   constexpr double kRounding = 1e-7;
   const auto [low, high] = std::minmax({a, b, c});
@@ -36,8 +36,8 @@ std::pair<int, int> pixels_between(double a, double b, double c, int size) {
           static_cast<int>(std::clamp(std::floor(high + kRounding), -1.0, size - 1.0))};
 }
 
-// The nearest surface wins. Pixels on an edge belong to both triangles: no seams. Triangles seen
-// from behind are left out.
+// Draws a triangle and keeps the nearest surface at each pixel. A pixel on an edge belongs to both
+// triangles, so that there are no gaps. Triangles that are seen from behind are left out.
 void draw(const Vertex& a, const Vertex& b, const Vertex& c, cv::Mat1f& inverse) {
   if (a.inverse == 0 || b.inverse == 0 || c.inverse == 0 || !is_surface(a, b, c)) return;
   const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -56,7 +56,7 @@ void draw(const Vertex& a, const Vertex& b, const Vertex& c, cv::Mat1f& inverse)
     }
 }
 
-// Four neighbouring pixels: two triangles, or one if only three have a depth.
+// Draws four neighbouring pixels as two triangles, or as one if only three have a depth.
 void draw_quad(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d,
                cv::Mat1f& inverse) {
   const bool whole = a.inverse != 0 && b.inverse != 0 && c.inverse != 0 && d.inverse != 0;
@@ -81,7 +81,7 @@ void fill_row(const Camera& camera, const DepthMap& map, const PinholeView& view
     vertex.distance = map.depth(v, u);
     if (vertex.distance == 0) continue;
     vertex.point = camera.ray({u, v}).at(static_cast<double>(vertex.distance)) - view.centre;
-    // Behind the pinhole, or so near that it means nothing.
+    // The point is behind the pinhole, or too near for a valid depth.
     if (!(vertex.point.z() > 1e-6)) continue;
     const Eigen::Vector2d pixel = view.camera.lens.pixel(vertex.point);
     vertex.x = pixel.x(), vertex.y = pixel.y();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside of fuse(): where two maps are enough for a point.
+// Part of fuse(): decides whether two maps are enough for a point.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,25 @@
 
 namespace axial::cloud {
 
-// The first neighbour that shows the point of asking pixel `i`, if no neighbour sees through the
-// point or shows another normal there.
-// `answers[n][i]`: what neighbour n says to the pixel.
+// The index of the first neighbour that agrees with the point of pixel `i`. Empty if no neighbour
+// agrees, or if a neighbour sees through the point or shows another normal there. `answers[n][i]`:
+// the answer of neighbour n to pixel `i`.
 std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
                                               std::size_t i);
 
-// Tells where a map, which it refers to, shows a piece of surface. Wrong depths that two views
-// agree on by chance mostly have other depths around them.
+// Tests whether a pixel of a map lies in a piece of surface. Two views may agree by chance on a
+// wrong depth; around such a pixel the depths usually differ. The map must exist as long as the
+// object.
 class SurfacePieces {
  public:
-  // `max_distance`: how far from a pixel's tangent plane the points around it may lie, relative to
-  // the pixel's depth.
+  // `max_distance`: the largest distance of the surrounding points from the pixel's tangent plane,
+  // relative to the pixel's depth.
   SurfacePieces(const FusionMap& map, float max_distance);
 
-  // Of the eight pixels two away from `pixel`, which has a depth, four or more lie on its tangent
-  // plane, and at most three with a depth lie off it. False for a pixel without a normal. (At an
-  // image's border a pixel has five around it, in a corner three.)
+  // True if, of the eight pixels at a distance of two from `pixel`, at least four lie on its
+  // tangent plane and at most three do not; pixels without a depth do not count. False if `pixel`
+  // has no normal. At the border of the image only five pixels surround it, in a corner only three.
+  // Precondition: `pixel` has a depth.
   bool around(std::uint32_t pixel) const;
 
  private:

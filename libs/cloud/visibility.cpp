@@ -15,10 +15,11 @@ struct Seen {
   std::uint32_t point = 0;
   double u = 0, v = 0;  // [px]
   double depth = 0;     // along its ray
-  bool asks = false;    // one of the image's own points
+  bool asks = false;    // the image is one of the point's views
 };
 
-// All points inside the image, by pixel: cells[first[c]..first[c + 1]) are those of cell c.
+// All points inside the image, sorted by pixel. The points of cell c are seen[i] for i in
+// [first[c], first[c + 1]).
 struct Cells {
   int width = 0, height = 0;
   std::vector<Seen> seen;
@@ -34,7 +35,7 @@ int nearest(double x) {
   return static_cast<int>(std::lround(x));
 }
 
-// Points are in the order of their index within a cell.
+// Sorts the points into cells of one pixel. Within a cell they keep their order.
 Cells sorted_into_cells(std::vector<Seen> seen, int width, int height) {
   Cells cells{width, height, {}, {}};
   const auto cell_of = [&](const Seen& s) { return cells.cell(nearest(s.u), nearest(s.v)); };
@@ -85,7 +86,8 @@ Cells project_all(const Scene& scene, const SceneImage& image,
   return sorted_into_cells(std::move(seen), width, height);
 }
 
-// Calls visit(p, q) for every point p of the image's own and every other point q in its cone.
+// Calls visit(p, q) for every point p that has a view in this image, and every other point q in the
+// cone of p.
 template <class Visit>
 void for_each_in_cone(const Cells& cells, const Visit& visit) {
   constexpr double kHalfPixel = 0.5;
@@ -124,8 +126,8 @@ std::vector<long> visibility_of_points(const Scene& scene) {
 
 namespace {
 
-// Of a pixel at X, which is in the camera's frame: 1 / the smaller singular value of the
-// projection's derivative, which for a pinhole is z / f.
+// The width of a pixel at X [camera frame]: 1 / the smaller singular value of the projection's
+// derivative, which for a pinhole is z / f. 0 if X is not visible.
 template <class Camera>
 double pixel_width(const Camera& camera, const Eigen::Vector3d& X) {
   refractive::Matrix23<double> jacobian;

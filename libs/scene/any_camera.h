@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera of any kind as one type, for lists that mix kinds. The kind is looked up at every call:
-// work on many pixels or points visits kind() once instead.
+// A camera of any kind as one type, for lists that mix kinds. Every call dispatches on the kind.
+// Code that handles many pixels or points of one camera should visit kind() once instead.
 #pragma once
 
 #include <utility>
@@ -19,7 +19,7 @@ class AnyCamera {
 
   const CameraVariant<T>& kind() const { return camera_; }
 
-  // As those of the camera itself.
+  // The functions of the camera of this kind (refractive/axial_ray.h).
   refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const {
     return std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
   }

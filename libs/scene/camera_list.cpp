@@ -9,7 +9,7 @@ namespace axial {
 
 namespace {
 
-// `none`: for dry cameras.
+// `none`: the port for cameras without a port.
 template <class Camera, class Port>
 std::vector<Camera> behind_ports(std::span<const CameraModel> models, const Port& none) {
   using T = typename Camera::Scalar;
@@ -70,7 +70,8 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
         "one");
   if (flat && dome) return each_of_its_kind<T>(models);
   const refractive::FlatPort<double> no_port;
-  // Points inside a dome are not seen: it has to be smaller than any distance.
+  // A dome without effect. Points inside a dome are not visible, so that its radius must be smaller
+  // than the distance of any point.
   const refractive::DomePort<double> no_dome{{0, 0, 0}, 1e-4};
   if (dome && distorted) return behind_ports<refractive::LensDomePortCamera<T>>(models, no_dome);
   if (dome) return behind_ports<refractive::DomePortCamera<T>>(models, no_dome);

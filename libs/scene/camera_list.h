@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cameras that work on one task together (a reference view and its source views), as one type.
+// The cameras of one task (a reference view and its source views) as a list of one camera type.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace axial {
 
-// How points are projected behind a port.
+// The method of projecting points into a camera behind a port.
 enum class ProjectionMethod {
   exact,
   line_search  // the paper's Algorithm 1, for comparison
@@ -25,11 +25,16 @@ using CameraList = std::variant<
     std::vector<refractive::LensPinholeCamera<T>>, std::vector<refractive::LensFlatPortCamera<T>>,
     std::vector<refractive::LensDomePortCamera<T>>, std::vector<AnyCamera<T>>>;
 
-// All dry: pinholes, which pay nothing for refraction's existence. Otherwise a dry camera among wet
-// ones is a port of index 1, which is the pinhole exactly. In the same way straight lenses pay
-// nothing for distortion, and one among distorted ones is a distortion of nothing. Where some are
-// behind flat ports and others behind domes, each is of its own kind. Same order as `models`.
-// Error: the line search with a dome or a distorted lens.
+// Makes the cameras of `models`, in the same order, with the simplest camera type that fits all of
+// them:
+//   - Without any port the cameras are pinholes, and no time is spent on refraction. If some
+//     cameras have a port, a camera without one gets a port whose indices are all 1, which is
+//     exactly the pinhole.
+//   - Without any distortion the lenses have none, and no time is spent on it. If some lenses are
+//     distorted, a lens without distortion gets coefficients that change nothing.
+//   - If there are flat ports as well as domes, the list is of AnyCamera, and each camera keeps its
+//     own kind.
+// Throws an Error if `method` is the line search and there is a dome or a distorted lens.
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models,
                                ProjectionMethod method = ProjectionMethod::exact);

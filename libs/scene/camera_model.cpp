@@ -21,7 +21,7 @@ refractive::DistortedLens<T> distorted_lens(const CameraModel& model) {
 
 namespace {
 
-// The camera behind a port of either kind.
+// Makes the camera of `model` behind a port of either kind.
 template <class T>
 struct BehindPort {
   const CameraModel& model;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one image as data, and the switch from data to a camera type: the only place above
-// refractive/ that knows which kinds of camera there are.
+// The camera of one image as data, and the construction of a camera object from these data. Besides
+// camera_list.h, only this part lists the kinds of cameras.
 #pragma once
 
 #include <optional>
@@ -14,21 +14,21 @@
 
 namespace axial {
 
-// The in-air lens, the port and the lens's distortion, if any. Pixel centres at integers; lens in
-// pixels of width x height.
+// The lens in air, its distortion and the port. The lens is given in pixels of an image of width x
+// height pixels, with pixel centres at integers.
 struct CameraModel {
   int width = 0;
   int height = 0;
   refractive::PinholeLens<double> lens{0, 0, 0, 0};
-  std::optional<refractive::Port<double>> port;                       // none: dry
-  std::optional<refractive::LensDistortion<double>> distortion = {};  // none: straight
+  std::optional<refractive::Port<double>> port;                       // empty: no port
+  std::optional<refractive::LensDistortion<double>> distortion = {};  // empty: no distortion
 
-  // The same camera for the image resized to new_width x new_height (independent factors per axis;
-  // the corner of the image, at (-0.5, -0.5), stays fixed).
+  // The same camera for the image resized to new_width x new_height pixels. Each axis has its own
+  // factor. The corner of the image at (-0.5, -0.5) stays fixed.
   CameraModel resized(int new_width, int new_height) const;
 };
 
-// The lens of `model`, straight or not, as LensCamera takes it.
+// The lens of `model`, with or without distortion, as the constructor of LensCamera takes it.
 template <class T>
 refractive::DistortedLens<T> distorted_lens(const CameraModel& model);
 
@@ -38,7 +38,8 @@ using CameraVariant =
                  refractive::DomePortCamera<T>, refractive::LensPinholeCamera<T>,
                  refractive::LensFlatPortCamera<T>, refractive::LensDomePortCamera<T>>;
 
-// T is float (matching) or double (geometry). Visit once per image or image pair, never per pixel.
+// Makes the camera of `model`. T is float (matching) or double (geometry). Visit the variant once
+// per image or image pair, not per pixel, because the dispatch costs time.
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 

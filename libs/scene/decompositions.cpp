@@ -22,7 +22,8 @@ double relative_width(const Eigen::Matrix3Xd& points) {
   const double largest = centred.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return 0;
   centred /= largest;
-  // Squared extents keep half of a double's digits: 1e-8, far below kLineWidth.
+  // Squaring halves the number of significant digits. The relative error of 1e-8 that is left is
+  // far below kLineWidth.
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const auto& point : centred.colwise()) moments += point * point.transpose();
   const SymmetricEigen3 squares(moments, Eigen::EigenvaluesOnly);

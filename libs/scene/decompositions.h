@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matrix decompositions that several libraries need. Each of them takes seconds to compile: they
-// are compiled here, once, and nowhere else.
+// Matrix decompositions that several libraries need. They are compiled only here, because each
+// takes seconds to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,27 +18,31 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;
 };
 
-// The eigenvalues of a symmetric matrix of any size. Only its lower triangle is read. NaN in gives
-// NaN out.
+// The eigenvalues and eigenvectors of a symmetric matrix of any size. Only the lower triangle is
+// read. A matrix with NaN gives NaN.
 EigenPairs symmetric_eigen(const Eigen::MatrixXd& matrix);
 
-// The second largest extent of points (columns, finite) about their mean, divided by the largest
-// extent. 0 for points on a line, for fewer than two points and for points that coincide.
+// The ratio of the second largest to the largest principal extent of `points` about their mean. An
+// extent is the root of an eigenvalue of the points' second moments. `points`: one per column,
+// finite. The result is 0 for points on a line, for fewer than two points and for points that
+// coincide.
 double relative_width(const Eigen::Matrix3Xd& points);
 
-// Points of a smaller relative width count as a line: a fit to them may turn about that line.
+// Points with a smaller relative width are treated as a line. A fit to them does not determine the
+// rotation about this line.
 inline constexpr double kLineWidth = 1e-3;
 
-// x -> scale * rotation * x + translation. `rotation` is no reflection.
+// The map x -> scale * rotation * x + translation. `rotation` has determinant 1.
 struct SimilarityFit {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-// The similarity that brings `from` onto `to` with the least sum of squared distances (S. Umeyama,
-// 1991). Both hold the same number of points, at least one, as columns. Points on a line leave the
-// rotation about that line open (see relative_width). Without `with_scale` the scale is 1.
+// The similarity that maps `from` to `to` with the smallest sum of squared distances (S. Umeyama,
+// 1991). Precondition: both have the same number of points, at least one, as columns. Points on a
+// line do not determine the rotation about this line (see relative_width). Without `with_scale` the
+// scale is 1.
 SimilarityFit best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                               bool with_scale = true);
 

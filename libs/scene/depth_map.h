@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A depth map: for every pixel of one image a plane hypothesis and how far it is trusted.
+// A depth map: for every pixel of one image a depth, a normal and a confidence.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace axial {
 
-// Depth is lambda of the paper's eq. (4): metres along the pixel's ray in the scene medium from the
-// ray's origin on the axis (for a dry camera: the range from the centre). z-depth exists only in
-// files.
+// Depth is lambda of the paper's eq. (4): the distance [m] along the pixel's ray in the scene
+// medium from the ray's origin on the axis. For a camera without a port it is the range from the
+// camera centre. Only files contain z-depth.
 struct DepthMap {
   std::string image_path;
   std::vector<std::uint32_t> ids;  // global ids: the reference view, then its source views
-  CameraModel camera;              // at the depth map's own resolution
+  CameraModel camera;              // at the resolution of the depth map
   Pose pose;
-  float min_depth = 0;
+  float min_depth = 0;  // range of depths [m]
   float max_depth = 0;
-  cv::Mat1f depth;       // 0: invalid
+  cv::Mat1f depth;       // [m]; 0: invalid
   cv::Mat3f normal;      // unit, camera frame, facing the camera (n . direction < 0); 0: invalid
-  cv::Mat1f confidence;  // empty, or per pixel: higher is better
+  cv::Mat1f confidence;  // empty, or one value per pixel: higher is better
 
   int width() const { return depth.cols; }
   int height() const { return depth.rows; }

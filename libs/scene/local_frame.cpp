@@ -8,10 +8,10 @@
 namespace axial {
 namespace {
 
-constexpr double kNear = 1000;    // float still tells 0.06 mm apart there
-constexpr double kRounding = 10;  // of origins: next to it, float tells 0.5 um apart
+constexpr double kNear = 1000;    // [units]; at this distance float resolves 6e-5 units
+constexpr double kRounding = 10;  // of origins [units]
 
-// The upper one of two middles.
+// The median of each coordinate. For an even number of values, the larger of the two in the middle.
 Eigen::Vector3d median(std::span<const Eigen::Vector3d> places) {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   std::vector<double> values(places.size());
@@ -29,7 +29,7 @@ bool is_near(const Eigen::Vector3d& place) {
 }
 
 LocalFrame rounded(const Eigen::Vector3d& place) {
-  // No negative zeros.
+  // Adding 0 turns negative zeros into positive ones.
   return {place.unaryExpr([](double x) { return std::round(x / kRounding) * kRounding + 0.0; })};
 }
 

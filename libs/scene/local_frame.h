@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A frame near a scene that lies far from its world's origin, as in UTM coordinates: there, float
-// has no digits left for what the scene is about.
+// A frame with its origin near the scene, for scenes far from the origin of their world, as in UTM
+// coordinates. So far from the origin, float coordinates are too coarse for the scene's details.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,8 @@
 
 namespace axial {
 
-// Axes as those of the world: world = local + origin. Without an origin the frame is the world.
+// A frame whose axes are parallel to those of the world: world = local + origin. With a zero origin
+// the frame is the world.
 struct LocalFrame {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // [world]
 
@@ -19,22 +20,24 @@ struct LocalFrame {
   Eigen::Vector3d to_world(const Eigen::Vector3d& local) const { return local + origin; }
 };
 
-// The world if `place` lies within 1,000 units of its origin; else the frame at `place`, rounded to
-// 10 units. Going to the local frame and back moves no coordinate by more than rounding a double of
-// the local coordinate's size.
+// Returns the world if `place` lies within 1,000 units of its origin. Otherwise the origin of the
+// result is `place`, rounded to 10 units. Because of this rounding, conversion to the local frame
+// and back changes a coordinate by no more than the rounding of a double of the local coordinate's
+// size.
 LocalFrame frame_near(const Eigen::Vector3d& place);
 
-// The world if all camera `centres` and the median of `points` (which may be none) lie within 1,000
-// units of its origin; else the frame at the median of the centres, coordinate by coordinate,
-// rounded to 10 units. The same for any order of centres and points. The world for no centres.
+// Returns the world if there are no `centres`, or if all camera centres and the median of `points`
+// lie within 1,000 units of the world's origin. `points` may be empty. Otherwise the origin of the
+// result is the median of the centres, coordinate by coordinate, rounded to 10 units. The order of
+// centres and points does not matter.
 LocalFrame frame_of(std::span<const Eigen::Vector3d> centres,
                     std::span<const Eigen::Vector3d> points);
 
-// Of the calibrated cameras and the sparse points.
+// The same with the centres of the calibrated cameras and the sparse points of `scene`.
 LocalFrame frame_of(const Scene& scene);
 
-// Takes a scene in world coordinates into `frame`: poses, sparse points, region. Sparse points are
-// float, and stay as coarse as they were.
+// Transforms `scene` from world coordinates to `frame`: poses, sparse points and region. Sparse
+// points are float, and do not become more precise in the local frame.
 void enter(const LocalFrame& frame, Scene& scene);
 
 }  // namespace axial

@@ -10,10 +10,10 @@
 
 namespace axial {
 
-// A triangle mesh; outward normals see the corners counter-clockwise.
+// A triangle mesh. Seen from outside, the corners of a face are in counter-clockwise order.
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Rgb> colors;  // empty or one a vertex
+  std::vector<Rgb> colors;  // empty or one per vertex
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
 

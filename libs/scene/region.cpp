@@ -15,10 +15,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Where the cameras look, and how far the farthest of them is from there.
+// The point at which the cameras look.
 struct Attention {
   Eigen::Vector3d centre;
-  double radius = 0;
+  double radius = 0;     // distance of the farthest camera from the centre
   double agreement = 0;  // length of the mean viewing direction: 1 if all are parallel
 };
 
@@ -78,7 +78,8 @@ std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode) 
   constexpr double kEnlarged = 1.1;
   OrientedBox region;
   region.centre = box.center();
-  // Sparse points in one plane would give a box without volume.
+  // The least side relative to the longest: sparse points in a plane would give a box without
+  // volume.
   constexpr double kThinnest = 0.1;
   region.half_extent = kEnlarged / 2 * box.sizes().cwiseMax(kThinnest * box.sizes().maxCoeff());
   return region;

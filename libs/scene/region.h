@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The region of interest: what the cameras look at (OPENMVS_FACTS 6.8).
+// The region of interest: the part of the scene at which the cameras look.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,19 @@ namespace axial {
 enum class RegionMode {
   off = 0,
   on = 1,       // whenever it can be computed
-  adaptive = 2  // only when the cameras surround something: otherwise unbounded
+  adaptive = 2  // only if the cameras surround an object; otherwise the scene is unbounded
 };
 
-// An axis-aligned box around the sparse points near the centre of attention, in world units. None
-// if there are fewer than 3 calibrated cameras or no points, or the mode says so.
+// Estimates the region as an axis-aligned box [world units]. The centre of attention is estimated
+// from the poses of the calibrated cameras. The box encloses the sparse points whose z-depth in one
+// of their images is below twice the largest distance of a camera from the centre of attention. It
+// is then enlarged by 10 %, and no side is shorter than a tenth of the longest. Empty if the mode
+// is `off`, if fewer than 3 cameras are calibrated, if no point qualifies, or if the mode is
+// `adaptive` and the cameras do not surround the centre of attention.
 std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode);
 
-// --roi-border: `border` > 0 multiplies the half extents, < 0 adds -border to each of them [world
-// units], 0 changes nothing.
+// Enlarges `region` by the value of --roi-border: a positive `border` multiplies the half extents,
+// a negative one adds -border [world units] to each of them, and 0 changes nothing.
 OrientedBox with_border(const OrientedBox& region, double border);
 
 }  // namespace axial

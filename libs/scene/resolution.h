@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The resolution that images are worked on at.
+// The resolution at which images are processed.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,24 +9,26 @@
 namespace axial {
 
 struct ResolutionOptions {
-  unsigned level = 1;  // halvings of the image
+  unsigned level = 1;  // number of halvings of the image
   int min = 640;       // the longest side is not halved below this [px]
-  int max = 2560;      // cap on the longest side [px]
+  int max = 2560;      // upper bound of the longest side [px]
 };
 
-// Size at which an image of width x height is worked on (OPENMVS_FACTS 6.0): aspect kept, sides
-// rounded, at least 1. Error if a side or `max` is not positive.
+// The size [px] at which an image of width x height pixels is processed. The longest side is halved
+// `level` times, but not below `min`, and then limited to `max`. The aspect ratio is kept; sides
+// are rounded and at least 1. Throws an Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
-// True if one is the other resized, aspect kept and sides rounded: one pixel of rounding on the
-// shorter side, at the smaller of the two resolutions.
+// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels: the
+// ratios may differ by 1.5 pixels of the shortest side.
 bool same_shape(cv::Size a, cv::Size b);
 
-// `image` at `size`: area filter for shrinking, cubic for enlarging; a shared copy if it has that
-// size already. CameraModel::resized is the matching camera. Error for empty images or sizes.
+// Resizes `image` to `size`, with an area filter if no side grows and a cubic filter otherwise. If
+// the image already has this size, the result shares its pixels. CameraModel::resized() gives the
+// camera of the result. Throws an Error for an empty image or size.
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);
 
-// Label images must not be filtered: nearest neighbour.
+// As resized_image(), but takes the nearest pixel, because labels must not be averaged.
 cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size);
 
 }  // namespace axial

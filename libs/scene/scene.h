@@ -16,26 +16,27 @@ namespace axial {
 
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
-// How well another image of the scene suits as source view (OPENMVS format's ViewScore).
+// The suitability of another image as source view. The fields are those of ViewScore in the OpenMVS
+// scene format.
 struct ViewScore {
   std::uint32_t image = 0;   // index into Scene::images
   std::uint32_t points = 0;  // sparse points seen by both
-  float scale = 1;           // mean ratio of pixel footprints
+  float scale = 1;           // mean ratio of the footprints [px/m] of this and the other image
   float angle = 0;           // mean triangulation angle [rad]
   float area = 0;            // fraction of the image covered by shared points
-  float score = 0;
+  float score = 0;           // higher is better
 };
 
 struct SceneImage {
   std::string path;          // absolute or relative to the working folder
   std::string mask_path;     // empty: none
   std::uint32_t id = kNoId;  // global id: names the depth map file
-  bool calibrated = true;    // false: camera and pose mean nothing, skip the image
-  CameraModel camera;        // at the resolution the scene file records
-  std::string port_name;     // name of camera.port in the housing file; empty: dry
+  bool calibrated = true;    // false: camera and pose are invalid, skip the image
+  CameraModel camera;        // at the resolution that the scene file records
+  std::string port_name;     // name of camera.port in the housing file; empty: no port
   Pose pose;
-  float min_depth = 0, average_depth = 0, max_depth = 0;
-  std::vector<ViewScore> neighbours;  // decreasing score
+  float min_depth = 0, average_depth = 0, max_depth = 0;  // z-depth
+  std::vector<ViewScore> neighbours;                      // decreasing score
 };
 
 struct SparseView {
@@ -48,7 +49,7 @@ struct SparsePoint {
   std::vector<SparseView> views;  // sorted by image; repeated images are tolerated
 };
 
-// Region of interest: |rotation * (X - centre)| <= half_extent, componentwise.
+// A box: the points X with |rotation * (X - centre)| <= half_extent in each component.
 struct OrientedBox {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rows: the box axes in the world
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -64,9 +65,9 @@ using Rgb = std::array<std::uint8_t, 3>;
 struct Scene {
   std::vector<SceneImage> images;
   std::vector<SparsePoint> points;
-  std::vector<Eigen::Vector3f> point_normals;  // empty or one a point
-  std::vector<Rgb> point_colors;               // empty or one a point
-  std::optional<OrientedBox> region;
+  std::vector<Eigen::Vector3f> point_normals;  // empty or one per point
+  std::vector<Rgb> point_colors;               // empty or one per point
+  std::optional<OrientedBox> region;           // region of interest
 };
 
 }  // namespace axial

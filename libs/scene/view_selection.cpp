@@ -19,21 +19,21 @@
 namespace axial {
 namespace {
 
-constexpr int kGrid = 16;  // cells a side over the image, for the area shared by two views
+constexpr int kGrid = 16;  // cells per side of the image, for the area that two views share
 
-// One sparse point as one image sees it. `depth` is 0 where the camera cannot have seen it.
+// One sparse point in one image. `depth` is 0 if the camera cannot have seen the point.
 struct Observation {
   std::uint32_t image = 0;
   std::uint32_t point = 0;
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  // of the ray in the medium, world frame
-  float footprint = 0;                                  // pixels a metre
+  float footprint = 0;                                  // [px/m]
   float depth = 0;                                      // z in the camera frame
   float lambda = 0;
   std::int16_t cell = -1;  // of the kGrid x kGrid cells; -1: outside the image
-  bool behind = false;     // the camera
+  bool behind = false;     // the point is behind the camera
 };
 
-// Observations point by point, and for each image which ones are its own (points ascending).
+// All observations, sorted by point; by_image holds their indices, sorted by image, then by point.
 struct Observations {
   std::vector<Observation> all;
   std::vector<std::size_t> point_begin;
@@ -61,7 +61,7 @@ void each_image(const Scene& scene, std::size_t p, const Visit& visit) {
   }
 }
 
-// Where each image's part of a list begins that is sorted by image, and where the last one ends.
+// Where each image's part begins in a list of observations sorted by image, and the list's length.
 std::vector<std::size_t> image_begins(const Scene& scene) {
   std::vector<std::size_t> begin(scene.images.size() + 1);
   for (std::size_t p = 0; p < scene.points.size(); ++p)
@@ -70,7 +70,7 @@ std::vector<std::size_t> image_begins(const Scene& scene) {
   return begin;
 }
 
-// Nothing here grows step by step: a list that does lies in memory twice.
+// All lists get their final size at once: a list that grows needs its memory twice for a moment.
 Observations collect(const Scene& scene) {
   Observations result;
   result.image_begin = image_begins(scene);
@@ -92,8 +92,8 @@ Observations collect(const Scene& scene) {
   return result;
 }
 
-// The smaller singular value of d(pixel)/dX, rows scaled to fx: for a pinhole exactly fx / z, as
-// J J^T = (fx/z)^2 (I + b b^T) with b = (x/z, y/z).
+// The smaller singular value of d(pixel)/dX, with the second row scaled to fx. For a pinhole it is
+// exactly fx / z, because J J^T = (fx/z)^2 (I + b b^T) with b = (x/z, y/z).
 double footprint_of(refractive::Matrix23<double> jacobian, const CameraModel& camera) {
   jacobian.row(1) *= camera.lens.fx / camera.lens.fy;
   const refractive::Matrix2<double> square = jacobian * jacobian.transpose();
@@ -103,7 +103,7 @@ double footprint_of(refractive::Matrix23<double> jacobian, const CameraModel& ca
   return std::sqrt(std::max(0.0, square.determinant() / larger));
 }
 
-// Without the half pixel to the image's corner: so have it the scores stored in OPENMVS scenes.
+// Ignores the half pixel at the image's corner, as the scores stored in OpenMVS scenes do.
 std::int16_t cell_of(const Eigen::Vector2d& pixel, const CameraModel& camera) {
   const double x = pixel.x() / camera.width;
   const double y = pixel.y() / camera.height;
@@ -153,7 +153,7 @@ double scale_weight(double ratio) {
   return ratio < 1 ? ratio * ratio : 1;
 }
 
-// What one image and one candidate share.
+// Sums over the points that one image and one candidate share.
 struct Pair {
   std::uint32_t points = 0;
   double weight = 0, scale = 0, angle = 0;
@@ -212,7 +212,7 @@ std::vector<ViewScore> neighbours_of(const Scene& scene, std::size_t image,
   return neighbours;
 }
 
-// Depths of the image and its init points.
+// Fills the depths of the image, and returns its init points and their range of depths.
 ViewPreparation depths_and_points(SceneImage& image, std::size_t index,
                                   const Observations& observations,
                                   const ViewSelectionOptions& options) {
@@ -245,7 +245,7 @@ ViewPreparation depths_and_points(SceneImage& image, std::size_t index,
   return result;
 }
 
-// Why observations of an image do not count, for a message; empty if it has none.
+// For a message: why all but `trusted` observations of an image do not count. Empty if all count.
 std::string of_others(std::size_t image, std::size_t trusted, const Observations& observations) {
   const std::span<const std::size_t> own = observations.of_image(image);
   std::size_t behind = 0, outside = 0;
@@ -359,7 +359,7 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionO
 
 namespace {
 
-// Why an image does not suit as a source view; none if it does.
+// The reason why an image is unsuitable as a source view; null if it is suitable.
 const char* unsuitable_for(const ViewScore& view, const ViewSelectionOptions& options) {
   const double scale = static_cast<double>(view.scale), angle = static_cast<double>(view.angle);
   if (angle < options.min_angle) return "seen under too small an angle";

@@ -15,7 +15,7 @@ refractive::FlatPort<double> port_seen_from(const Pose& pose, const WaterSurface
   port.normal = pose.rotation * surface.normal;
   port.distance = surface.height_of(pose.centre);
   port.n_air = surface.n_air;
-  port.n_glass = port.n_water = surface.n_water;  // of glass that is not there
+  port.n_glass = port.n_water = surface.n_water;  // without effect, since the thickness is 0
   if (!(port.distance > 0 && std::isfinite(port.distance)))
     fail("{}: the camera's height over the water surface is {} m, it must be positive", where,
          port.distance);

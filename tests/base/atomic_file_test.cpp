@@ -58,8 +58,8 @@ TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
   }
 }
 
-// While it lives, no file of this process can grow beyond `bytes`: writing more fails as it does on
-// a full disk, and the limit works on any file system.
+// While the object exists, no file of this process can grow beyond `bytes`. Writing more fails as
+// on a full disk. The limit works on every file system.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -83,7 +83,7 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
   const fs::path folder = test::empty_folder();
   const fs::path file = folder / "a.txt";
   write_atomically(file, "old");
-  // The limit falls within the first buffer, between buffers, and on the very last byte.
+  // The limits are within the first buffer, after the first buffers, and before the last byte.
   for (const rlim_t limit : {1, 5000, 99999}) {
     std::string message;
     {
@@ -95,7 +95,7 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
       }
     }
     EXPECT_THAT(message, testing::HasSubstr(file.string()));
-    EXPECT_THAT(message, testing::HasSubstr("too large"));  // what the limit is called
+    EXPECT_THAT(message, testing::HasSubstr("too large"));  // the system's text for this limit
     EXPECT_EQ(read_file(file), "old");
     EXPECT_EQ(files_in(folder), 1u);
   }
@@ -104,7 +104,7 @@ TEST(AtomicFile, ReportsAFullDiskAndLeavesNothingBehind) {
   fs::remove_all(folder);
 }
 
-// The number of a process that is no more.
+// The number of a process that has ended.
 pid_t dead_process() {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
@@ -164,7 +164,7 @@ TEST(AtomicFile, FailsWhereTheWriterWroteNothing) {
   const fs::path folder = test::empty_folder();
   EXPECT_THROW(write_atomically(folder / "a.txt", [](const fs::path&) {}), Error);
   fs::create_directories(folder / "b.txt" / "c");
-  EXPECT_THROW(write_atomically(folder / "b.txt", "x"), Error);  // a folder is in the way
+  EXPECT_THROW(write_atomically(folder / "b.txt", "x"), Error);  // a folder has this name
   EXPECT_EQ(files_in(folder), 1u);
   fs::remove_all(folder);
 }
@@ -207,7 +207,8 @@ TEST(AtomicFile, LosesWhatKilledProcessesLeftOfIt) {
       fmt::format("other.{}.tmp.ply", dead), fmt::format("cloud.{}.tmp.mvs", dead),
       fmt::format("cloud2.{}.tmp.ply", dead), fmt::format("cloud.{}.tmp.ply", ::getppid())};
   for (const std::string& name : kept) std::ofstream(folder / name) << "x";
-  // Before the work, and when it is written. A folder is looked through once for the latter.
+  // Temporaries are removed by require_writable() and when the file is written. Writing lists a
+  // folder only once, so that this case comes first.
   for (const bool before : {false, true}) {
     for (const std::string& name : {mine, twice}) std::ofstream(folder / name) << "x";
     if (before)
@@ -250,7 +251,7 @@ void write_model(const fs::path& folder, const std::string& text) {
   write_atomically(folder / "sparse" / "points.txt", text + text + text);
 }
 
-// The disk is full after any number of bytes, in a folder that is there already or not.
+// Tests a full disk after different numbers of bytes, for a folder that exists and for a new one.
 TEST(WriteFolder, GivesAllFilesOrNoneOnAFullDisk) {
   const fs::path folder = test::empty_folder();
   const std::string text(4000, 'n');
@@ -262,7 +263,7 @@ TEST(WriteFolder, GivesAllFilesOrNoneOnAFullDisk) {
       write_atomically(out / "sparse" / "other.txt", "mine");
       before = contents_of(out);
     }
-    // Within the first file, the second, the third.
+    // The limits are within the first, the second and the third file.
     for (const rlim_t limit : {1000, 5000, 11000}) {
       {
         const FileSizeLimit full(limit);
@@ -287,8 +288,8 @@ TEST(WriteFolder, GivesAllFilesOrNoneOnAFullDisk) {
   fs::remove_all(folder);
 }
 
-// A child that writes the folder is killed at any moment: the next reader finds no folder, or one
-// without old files among the new.
+// A child process that writes the folder is killed at different moments. The folder must then not
+// contain old files together with new ones.
 TEST(WriteFolder, IsNeverHalfOldAndHalfNew) {
   const fs::path folder = test::empty_folder(), out = folder / "out";
   for (int moment = 0; moment < 40; ++moment) {
@@ -308,7 +309,7 @@ TEST(WriteFolder, IsNeverHalfOldAndHalfNew) {
       fresh += text.starts_with("new") ? 1 : 0;
     }
     EXPECT_TRUE(old == 0 || fresh == 0) << moment;
-    // What was left goes when the folder is written again.
+    // The temporaries of the killed process are removed before the folder is written again.
     require_writable_folder(out);
     for (const auto& entry : fs::directory_iterator(out))
       EXPECT_THAT(entry.path().string(), testing::Not(testing::HasSubstr(".tmp")));
@@ -329,7 +330,7 @@ TEST(WriteFolder, TellsBeforeTheWorkThatAFolderCannotBeWritten) {
         << out;
   }
   EXPECT_EQ(files_in(folder), 1u);
-  // With a slash at the end, and where parents are missing.
+  // A name with a slash at the end, and missing parents.
   write_folder(folder / "a" / "b" / "", [](const fs::path& staging) { write_model(staging, "x"); });
   EXPECT_EQ(contents_of(folder / "a" / "b").size(), 3u);
   EXPECT_EQ(files_in(folder / "a"), 1u);

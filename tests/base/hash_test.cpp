@@ -9,7 +9,7 @@
 namespace axial {
 namespace {
 
-// Expected digests from xxhsum -H2 of the bytes the header describes.
+// The expected digests are those of xxhsum -H2 for the same bytes.
 TEST(Fingerprint, IsTheXxh3OfItsParts) {
   EXPECT_EQ(Fingerprint().hex(), "99aa06d3014798d86001c324468d497f");
   EXPECT_EQ(Fingerprint().add("abc").add(std::uint64_t{7}).add(0.5).hex(),
@@ -36,7 +36,8 @@ TEST(Fingerprint, CanBeReadWhileItGrows) {
 }
 
 TEST(Scramble, IsSplitmix64) {
-  // First outputs of the published generator seeded with 0: its state steps by the golden ratio.
+  // The first outputs of the published generator with the seed 0. Its state grows by 2^64 divided
+  // by the golden ratio.
   EXPECT_EQ(scramble(0), 0xE220A8397B1DCDAFu);
   EXPECT_EQ(scramble(0x9e3779b97f4a7c15u), 0x6E789E6AA1B965F4u);
 }
@@ -53,10 +54,10 @@ TEST(UnitFloat, IsUniformInTheHalfOpenInterval) {
     squares += value * value;
     values.insert(static_cast<float>(value));
   }
-  // Six standard deviations of the mean of uniform numbers, and of their squares.
+  // Six standard deviations of the mean of uniform numbers, and of the mean of their squares.
   EXPECT_NEAR(sum / kCount, 1.0 / 2, 6 * std::sqrt(1.0 / 12 / kCount));
   EXPECT_NEAR(squares / kCount, 1.0 / 3, 6 * std::sqrt(4.0 / 45 / kCount));
-  EXPECT_GT(values.size(), kCount * 0.99);  // of 2^24 possible ones, 0.3 % coincide by chance
+  EXPECT_GT(values.size(), kCount * 0.99);  // of 2^24 possible values, 0.3 % coincide by chance
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A system that says what we put into its files.
+// A fake root folder with files of /proc and /sys.
 class FakeSystem {
  public:
   FakeSystem() = default;
@@ -99,7 +99,7 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
 #endif
-  constexpr std::size_t kSmall = 16 << 10;  // such blocks are kept for later and still count
+  constexpr std::size_t kSmall = 16 << 10;  // small freed blocks may be kept, and then still count
   for (const std::size_t bytes : {std::size_t{100} << 10, std::size_t{64} << 20}) {
     const std::uint64_t before = allocated_memory();
     {
@@ -111,14 +111,15 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
   }
 }
 
-// Other blocks lie between the large ones: a heap could not shrink.
+// Other blocks lie between the large ones, so that a heap could not shrink.
 TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
 #endif
   map_large_blocks();
   constexpr std::size_t kBlocks = 32, kBytes = 2 << 20, kBetween = 64 << 10;
-  // A freed block of this size is what makes the C library keep the next ones.
+  // By default, freeing a block of this size makes the C library take the next blocks from the
+  // heap.
   { const std::vector<char> block(16 << 20, 1); }
   std::vector<std::unique_ptr<char[]>> large, between;
   for (std::size_t i = 0; i < kBlocks; ++i) {
@@ -131,7 +132,8 @@ TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
   EXPECT_LT(resident_memory(), before - (kBlocks - 2) * kBytes);
 }
 
-// What the other thread keeps at its end is at the top of its heap, which can therefore not shrink.
+// The other thread keeps its last block, which lies at the top of the heap. If that thread had a
+// heap of its own, this heap could not shrink.
 TEST(ShareOneHeap, ServesOneThreadFromWhatAnotherHasFreed) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
@@ -153,7 +155,7 @@ TEST(ShareOneHeap, ServesOneThreadFromWhatAnotherHasFreed) {
   EXPECT_LT(resident_memory(), before + kBlocks / 4 * kBytes);
 }
 
-// Many small blocks, every other one of which stays: the C library would keep the rest.
+// Every second one of many small blocks is freed. The C library would keep the freed blocks.
 TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";

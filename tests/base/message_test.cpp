@@ -31,7 +31,7 @@ TEST(Message, ShowsBothEndsOfALongWord) {
   EXPECT_LE(line.size(), kLongestWord + 40);
 }
 
-// Bytes of any kind, in words of any length.
+// Text of arbitrary bytes, with words of any length.
 rc::Gen<std::string> any_text() {
   return rc::gen::map(rc::gen::container<std::vector<std::pair<std::uint8_t, std::uint16_t>>>(
                           rc::gen::arbitrary<std::pair<std::uint8_t, std::uint16_t>>()),
@@ -52,7 +52,8 @@ RC_GTEST_PROP(Message, IsOneLineOfBoundedLength, ()) {
   RC_ASSERT(as_message(line) == line);
 }
 
-// The words on both sides of the cut stay two.
+// The words on both sides of the gap stay separate words. Otherwise they could form a word that is
+// too long.
 TEST(Message, StaysAsItIsOnceItIsCut) {
   for (std::size_t length = 1; length <= 2 * kLongestWord; ++length) {
     std::string text;

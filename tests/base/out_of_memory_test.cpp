@@ -32,7 +32,7 @@ TEST(OutOfMemory, IsToldFromOtherErrors) {
   EXPECT_FALSE(is_out_of_memory(std::logic_error("")));
 }
 
-// Where nothing catches it.
+// Throws an exception that nothing catches.
 template <class Exception>
 [[noreturn]] void throw_in_a_thread(const Exception& exception) {
   report_uncaught_exceptions();
@@ -75,7 +75,7 @@ TEST(OutOfMemory, IsWhatTheProgramSaysWhereverItHappens) {
               });
             }),
             line);
-  // It is not the file's fault.
+  // The message does not name the file, because the file is not the cause.
   const std::filesystem::path folder = test::empty_folder();
   EXPECT_EQ(said([&] {
               write_atomically(folder / "a",

@@ -37,7 +37,7 @@ TEST(ParallelFor, RethrowsWhatABodyThrows) {
     } catch (const Error& error) {
       EXPECT_STREQ(error.what(), "item 437 is bad");
     }
-    // And works on afterwards.
+    // Loops work after an exception, too.
     std::atomic<int> visits = 0;
     parallel_for(100, [&](std::size_t) { ++visits; });
     EXPECT_EQ(visits, 100);
@@ -59,7 +59,7 @@ TEST(ForEachInFlight, RunsNoMoreThanItMay) {
       const std::size_t now = ++running;
       for (std::size_t seen = worst; now > seen && !worst.compare_exchange_weak(seen, now);) {
       }
-      // A loop inside, which idle threads help with: they must not begin further items.
+      // Idle threads take part in the inner loop. They must not begin further items.
       parallel_for(10, [](std::size_t) { std::this_thread::yield(); });
       --running;
       ++done;
@@ -82,8 +82,8 @@ TEST(ForEachInFlight, BeginsInOrderAndRethrows) {
   for_each_in_flight(0, 3, [](std::size_t) { FAIL(); });
 }
 
-// Whoever waits for the others in an inner loop would else take up another item of the outer one,
-// and hold the memory of both.
+// A thread that waits in an inner loop must not begin another item of the outer loop: it would hold
+// the memory of both items.
 TEST(ParallelFor, DoesNotBeginAnotherItemWhileItWaits) {
   const ThreadLimit limit(4);
   thread_local int depth = 0;

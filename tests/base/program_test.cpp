@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-// A program with options of every kind, run in a folder of its own.
+// A program with options of every kind. Every test runs it in a folder of its own.
 class ProgramTest : public testing::Test {
  protected:
   void SetUp() override { folder_ = test::empty_folder(); }
@@ -152,7 +152,7 @@ TEST_F(ProgramTest, TakesNoOptionForTheValueOfAnother) {
   for (const std::vector<std::string>& arguments : missing)
     EXPECT_THAT(error(arguments), HasSubstr("has no value")) << testing::PrintToString(arguments);
   EXPECT_EQ(error({"-i", "--quick"}), "command line: -i has no value: --quick is an option");
-  // Values that begin with a dash, and options that need none.
+  // Values that begin with a dash are allowed if they are not names of options.
   parse({"a.mvs", "--secret", "-3"});
   EXPECT_EQ(secret_, -3);
   parse({"--input-file=--quick"});

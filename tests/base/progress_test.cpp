@@ -22,9 +22,10 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-// What a program whose standard output is `file` writes there while it does four things, with a
-// warning after two, logging at `level`. Closes `file`, and reads to the end from `reader`, which
-// is open on the same file or terminal: a terminal may hand on what was written piece by piece.
+// Returns the output of a program that processes four items with a warning after the second, at the
+// log level `level`. Its standard output is `file`, which is closed afterwards. `reader` is open on
+// the same file or terminal. It is read to its end, because a terminal may deliver the output in
+// pieces.
 std::string written(int file, int reader, LogLevel level) {
   std::fflush(stdout);
   const int kept = ::dup(STDOUT_FILENO);

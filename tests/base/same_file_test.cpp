@@ -28,7 +28,7 @@ struct TwoFiles : testing::Test {
   fs::path folder, input, other;
 };
 
-// Every name a file can go by is the file.
+// An input is found under every name that it has.
 TEST_F(TwoFiles, AnInputByAnyNameIsRefused) {
   fs::create_symlink(input, folder / "symbolic");
   fs::create_hard_link(input, folder / "hard");
@@ -37,7 +37,7 @@ TEST_F(TwoFiles, AnInputByAnyNameIsRefused) {
                                    HasSubstr(name == input ? "an input" : input.string())));
 }
 
-// The same content is not the same file, and a file that is not there yet is nobody's.
+// A file with the same content is another file, and a file that does not exist is no input.
 TEST_F(TwoFiles, OtherFilesPass) {
   const std::array inputs{input};
   EXPECT_NO_THROW(require_not_an_input(other, inputs, "-o"));

@@ -13,7 +13,7 @@
 namespace axial {
 namespace {
 
-// A cache of squares that counts how often each is made.
+// A cache of squares that counts how often each square is made.
 struct Squares {
   explicit Squares(std::size_t capacity)
       : cache(
@@ -33,7 +33,7 @@ TEST(SharedCache, KeepsWhatWasUsedLast) {
     EXPECT_EQ(*squares.cache.get(key), key * key);
   EXPECT_EQ(squares.made[3], 1);
   EXPECT_EQ(squares.made[5], 1);
-  EXPECT_EQ(squares.made[4], 2);  // 5 took its place
+  EXPECT_EQ(squares.made[4], 2);  // was evicted for 5
 }
 
 TEST(SharedCache, KeepsWhatIsInUse) {

@@ -17,8 +17,9 @@ bool is_dev_null(int descriptor) {
          actual.st_rdev == expected.st_rdev;
 }
 
-// In a child that has closed the streams whose bit is set: 0 if each of them is /dev/null
-// afterwards, the others are what they were, and a file that is opened gets another number.
+// Closes the streams whose bit in `closed` is set in a child process, and calls
+// open_standard_streams(). Returns 0 if these streams are then /dev/null, if the other streams have
+// not changed, and if the next opened file gets a descriptor above 2.
 int opened_again(int closed) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -69,7 +69,7 @@ TEST_F(Subprocess, OnlyAPlainFailureThatSaysSoIsExcused) {
     EXPECT_NE(test::error_of([&] { run(script); }), "") << script;
 }
 
-// The pipe's end closes with the last process that holds it.
+// The write end of the pipe is closed when the last process that holds it ends.
 TEST_F(Subprocess, DoesNotOutliveItsParent) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
@@ -83,7 +83,7 @@ TEST_F(Subprocess, DoesNotOutliveItsParent) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(parent, SIGKILL);
   waitpid(parent, nullptr, 0);
-  constexpr int kPatience = 20000;  // milliseconds
+  constexpr int kPatience = 20000;  // [ms]
   pollfd end{ends[0], POLLIN, 0};
   EXPECT_EQ(poll(&end, 1, kPatience), 1);
   close(ends[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Crop, colours and normals of clouds.
+// Tests crop(), estimate_colors() and estimate_normals().
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -70,7 +70,8 @@ TEST(EstimateColors, SamplesTheNearestView) {
     const Scene scene = three_cameras(model);
     PointCloud cloud = plane_cloud(15);
     cloud.positions[3] = {0, 50, 1};  // in no image
-    // Red rises by 1 a pixel, green by 2: bilinear samples are exact. Blue names the image.
+    // Red grows by 1 per pixel and green by 2, so that bilinear interpolation is exact. Blue
+    // encodes the image.
     estimate_colors(cloud, scene, [](std::size_t i) {
       cv::Mat3b image(72, 96);
       for (int y = 0; y < 72; ++y) {
@@ -116,7 +117,7 @@ TEST(EstimateNormals, FacesTheFirstView) {
   const test::AnalyticScene world;
   ASSERT_EQ(cloud.normals.size(), cloud.size());
   for (const Eigen::Vector3f& n : cloud.normals) {
-    // Positions are rounded to 6e-8 over neighbourhoods of some centimetres.
+    // Positions have rounding errors of 6e-8 in neighbourhoods of some centimetres.
     ASSERT_LT((n.cast<double>() - world.plane.normal()).norm(), 1e-4);
   }
 }

@@ -91,9 +91,11 @@ TEST_P(FuseWithCamera, PutsPointsOnThePlane) {
   const AnalyticScene world;
   Fixture fixture = make_fixture(world, model());
   const PointCloud cloud = run(fixture);
-  // Nearly all pixels lie in three views or more; joined by five they make a fifth as many points.
+  // Nearly all pixels are seen in three views or more. With five pixels per point there are a fifth
+  // as many points.
   EXPECT_GT(cloud.size(), valid_pixels(fixture.maps) / 8);
-  // Depths are floats near 1: rounding is 6e-8, and the mean of points on a plane lies on it.
+  // Depths are floats near 1 with rounding errors of 6e-8. The mean of points of a plane lies on
+  // it.
   EXPECT_LT(worst_distance(cloud, world), 1e-6);
   ASSERT_EQ(cloud.normals.size(), cloud.size());
   for (const Eigen::Vector3f& n : cloud.normals) {
@@ -112,7 +114,7 @@ TEST_P(FuseWithCamera, UsesEachPixelOnce) {
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const auto views = cloud.views_of(i);
       EXPECT_GE(views.size(), min_views);
-      // Strictly ascending: no view twice.
+      // Views are strictly ascending, so that no view occurs twice.
       EXPECT_TRUE(std::adjacent_find(views.begin(), views.end(), std::greater_equal<>()) ==
                   views.end());
       for (const std::uint32_t image : views) ++used[image];
@@ -123,7 +125,7 @@ TEST_P(FuseWithCamera, UsesEachPixelOnce) {
   }
 }
 
-// A pixel's supports are found again by its weight: give every pixel of all maps its own one.
+// Every pixel of all maps gets its own weight, so that the weights of the cloud identify pixels.
 TEST_P(FuseWithCamera, UsesEachPixelOnceByItsWeight) {
   Fixture fixture = make_fixture({}, model());
   float next = 0;
@@ -137,7 +139,7 @@ TEST_P(FuseWithCamera, UsesEachPixelOnceByItsWeight) {
   for (std::size_t k = 0; k < cloud.view_images.size(); ++k) {
     ++seen[{cloud.view_images[k], cloud.view_weights[k]}];
   }
-  // Weights of different pixels may coincide by rounding, but only now and then.
+  // Few weights of different pixels are equal after rounding.
   EXPECT_GT(static_cast<double>(seen.size()), 0.99 * static_cast<double>(cloud.view_images.size()));
 }
 
@@ -158,8 +160,9 @@ TEST_P(FuseWithCamera, KeepsASphereApartFromThePlaneBehind) {
   world.sphere_radius = 0.12;
   Fixture fixture = make_fixture(world, model());
   const PointCloud cloud = run(fixture);
-  // Joined pixels lie within a pixel (13 mm) of each other, so their mean lies at most
-  // 13^2 / (2 * 120) = 0.7 mm inside the sphere, at silhouettes a few times as much.
+  // The points of the pixels that form a point are at most a pixel (13 mm) apart. So their mean
+  // lies at most 13^2 / (2 * 120) = 0.7 mm inside the sphere, and a few times as much at
+  // silhouettes.
   EXPECT_LT(worst_distance(cloud, world), 3e-3);
   std::size_t on_sphere = 0;
   for (const Eigen::Vector3f& p : cloud.positions) {
@@ -181,8 +184,8 @@ TEST_P(FuseWithCamera, DropsDepthsThatNobodyConfirms) {
   }
 }
 
-// Two maps agree on a plane behind the true one: enough for min_views 2, unless views that see the
-// true one have proved before that those pixels look through it.
+// Two maps agree on a plane behind the true plane, which is enough for min_views = 2. But if views
+// of the true plane are fused first, the pixels that see through it are discarded.
 TEST_P(FuseWithCamera, DeletesWhatLooksThroughASurface) {
   const AnalyticScene world;
   AnalyticScene wrong;
@@ -204,8 +207,8 @@ TEST_P(FuseWithCamera, DeletesWhatLooksThroughASurface) {
   for (std::size_t i : {3u, 4u}) fixture.views[i].rank = 9;
   const double without_witnesses = wrong_points();
   EXPECT_GT(without_witnesses, 1000);
-  // What is left lies beyond the fields of the three true views, and in the gaps between their
-  // points: the wrong maps are sparser per area on the true plane.
+  // The remaining wrong points lie outside the fields of the three true views and in the gaps
+  // between their points.
   EXPECT_LT(with_witnesses, 0.35 * without_witnesses);
 }
 
@@ -227,7 +230,7 @@ TEST_P(FuseWithCamera, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(same_bytes(one, two));
 }
 
-// They are estimated beside the rest, which keeps its bytes, with or without normals.
+// Estimating errors changes no other attribute, with or without normals.
 TEST_P(FuseWithCamera, EstimatesErrors) {
   Fixture fixture = make_fixture({}, model());
   FuseOptions options;
@@ -275,7 +278,7 @@ TEST_P(FuseWithCamera, EstimatesMissingNormals) {
   const PointCloud cloud = run(fixture);
   ASSERT_GT(cloud.size(), 1000u);
   for (const Eigen::Vector3f& n : cloud.normals) {
-    // Neighbouring points are 13 mm apart and rounded to 1e-7 m.
+    // Neighbouring points are 13 mm apart and have rounding errors of 1e-7 m.
     ASSERT_LT((n.cast<double>() - world.plane.normal()).norm(), 1e-4);
   }
 }
@@ -286,7 +289,7 @@ TEST(Fuse, TreatsAPortOfAirAsNone) {
   Fixture dry = make_fixture(world, test::dry_camera());
   Fixture air = make_fixture(world, test::behind_port(test::dry_camera(), 1, 1));
   const PointCloud a = run(dry), b = run(air);
-  // Projections differ by rounding; a point between two pixels may then fall to the other one.
+  // Projections differ by rounding, which can change the nearest pixel of a point.
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()),
               0.005 * static_cast<double>(a.size()));
   EXPECT_LT(worst_distance(b, world), 5e-3);
@@ -322,13 +325,14 @@ TEST(Fuse, AveragesColoursByWeight) {
 
 TEST(Fuse, LoadsEachMapOnce) {
   Fixture fixture = make_fixture({}, test::dry_camera());
-  fixture.views.pop_back();  // named as a neighbour by the others, but without a map
+  fixture.views.pop_back();  // is a neighbour of the other views, but has no map
   run(fixture);
   EXPECT_EQ(fixture.loads.size(), 4u);
   for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
 }
 
-// Two neighbours each, in a ring: three maps are enough at a time, and most come back later.
+// Views in a ring with two neighbours each. Three maps are needed at the same time, and most maps
+// are needed again later.
 Fixture make_ring(const CameraModel& model) {
   AnalyticScene world;
   world.sphere_centre = {0, 0, 0.75};
@@ -349,12 +353,12 @@ TEST_P(FuseWithCamera, GivesTheSameCloudWhenMapsMustLeaveAndReturn) {
   for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
   EXPECT_GT(all.size(), 1000u);
   fixture.loads.clear();
-  options.max_maps = 1;  // below what one view needs: as few as possible
+  options.max_maps = 1;  // fewer than one view needs: the store keeps as few as possible
   const PointCloud few = run(fixture, options);
   int loads = 0;
   for (const auto& [image, count] : fixture.loads) loads += count;
-  EXPECT_GT(loads, 8);      // maps were dropped
-  EXPECT_LE(loads, 8 * 3);  // and each step loads no more than it needs
+  EXPECT_GT(loads, 8);      // some maps were evicted
+  EXPECT_LE(loads, 8 * 3);  // each step loads no more maps than it needs
   EXPECT_TRUE(same_bytes(all, few));
 }
 

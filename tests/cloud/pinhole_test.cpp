@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs and maps resampled into a pinhole, against surfaces that are known in closed form.
+// Compares photographs and depth maps resampled to a pinhole with surfaces known in closed form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ Pose tilted_pose() {
   return test::circle_of_poses(5)[1];
 }
 
-// What a pinhole of this camera and pose sees at `pixel`.
+// The point [world] of the surface that a pinhole with this camera and pose sees at `pixel`.
 std::optional<Eigen::Vector3d> surface_at(const AnalyticScene& scene, const CameraModel& pinhole,
                                           const Pose& pose, const Eigen::Vector2d& pixel) {
   const Eigen::Vector3d direction =
@@ -113,8 +113,8 @@ struct Errors {
   double share() const { return static_cast<double>(pixels) / static_cast<double>(of_field); }
 };
 
-// Where the photograph is looked up for each pinhole pixel with a surface, against the exact image
-// of what it sees: all of them, at silhouettes, too.
+// For each pixel of the pinhole with a surface, compares the pixel at which the photograph is
+// sampled with the exact image of the surface point. Includes pixels at silhouettes.
 Errors lookup_errors(const AnalyticScene& scene, const CameraModel& photograph, const DepthMap& map,
                      const PinholeView& view, const cv::Mat1f& inverse) {
   const Pose pinhole = view.pose(map.pose);
@@ -165,12 +165,14 @@ TEST_P(Resampling, LooksUpTheImageOfTheSurface) {
       RecordProperty(fmt::format("scale{}_sphere{}", scale, scene.sphere_radius > 0), what);
       EXPECT_LT(errors.largest, 0.3) << what;
       EXPECT_LT(errors.mean, 0.01) << what;
-      // What is missing: steps, what only the pinhole sees, half a pixel of the map at its edge.
+      // Pixels without a surface are at steps in depth, at surfaces that only the pinhole sees, and
+      // at the map's edge (half a pixel of the map).
       EXPECT_GT(errors.share(), scale == 5 ? 0.9 : 0.94) << what;
     }
 }
 
-// The observation of a point, taken along with the pixels around the pinhole's image of it.
+// The pixels around the pinhole's image of a point are sampled around the camera's observation of
+// the point.
 TEST_P(Resampling, TakesObservationsAlong) {
   const AnalyticScene scene = sphere_before_plane();
   const DepthMap map = exact_map(scene, model().resized(120, 90), tilted_pose());
@@ -207,8 +209,8 @@ TEST_P(Resampling, TakesObservationsAlong) {
   EXPECT_GT(checked, 1000u);
 }
 
-// The pixels, by the colours of a scene that both cameras photograph: nearer to the pinhole's own
-// photograph than one that is 0.3 pixels off.
+// Compares the resampled photograph with a photograph that the pinhole takes of the same scene. The
+// difference must be smaller than that of a photograph shifted by 0.3 pixels.
 TEST_P(Resampling, GivesThePhotographThatThePinholeWouldTake) {
   const CameraModel small = model().resized(120, 90);
   test::TexturedScene scene;
@@ -266,7 +268,8 @@ TEST_P(Resampling, PutsTheMapOntoTheSurface) {
       ++pixels;
     }
   EXPECT_GT(pixels, result.depth.total() * 7 / 10);
-  // A chord over one pixel of the sphere, 4 mm, where it is seen at right angles; steps of 1 %.
+  // The errors are those of a chord over one pixel of the sphere (4 mm where it is seen
+  // perpendicularly), and depth differences of up to 1 % that are not treated as steps.
   EXPECT_LT(worst, 0.01);
   EXPECT_LT(wrong_normals, pixels / 100);
 }
@@ -319,7 +322,7 @@ TEST_P(View, ShowsAllAtTheResolutionOfTheCentre) {
                                           at.y() * model().height - 0.5);
               const Eigen::Vector2d seen =
                   view.camera.lens.pixel(camera.ray(pixel).at(depth) - view.centre);
-              // Between the rays that were asked a curved edge may reach farther by a trifle.
+              // Between the sampled rays a curved edge may reach a little farther.
               EXPECT_GT(seen.minCoeff(), -0.6);
               EXPECT_LT(seen.x(), view.camera.width - 0.4);
               EXPECT_LT(seen.y(), view.camera.height - 0.4);
@@ -342,7 +345,7 @@ TEST(PinholeView, IsItselfOfAPinhole) {
   EXPECT_EQ(view.centre, Eigen::Vector3d::Zero());
   EXPECT_EQ(view.camera.width, model.width);
   EXPECT_EQ(view.camera.lens.cx, model.lens.cx);
-  // And its photograph stays as it is, byte for byte.
+  // The photograph does not change by a single byte.
   DepthMap map = exact_map(sphere_before_plane(), model, tilted_pose());
   cv::Mat3b photograph(model.height, model.width);
   cv::randu(photograph, 0, 255);
@@ -363,7 +366,7 @@ TEST(PinholeView, OfAFisheyeIsCutAndSaysSo) {
   EXPECT_LE(view.camera.height, 1.4 * model.height + 1);
 }
 
-// A near square before a far plane, both facing the camera.
+// A near square in front of a far plane. Both are perpendicular to the camera's axis.
 DepthMap step_map(const CameraModel& model) {
   AnalyticScene far;
   far.plane = {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, 0, 1.2)};
@@ -392,7 +395,8 @@ TEST_P(Resampling, JoinsNoSteps) {
   EXPECT_GT(far, 25000u);
 }
 
-// Seen from the side, the near square covers what lies behind it, whatever is drawn first.
+// Seen from the side, the near square hides the plane behind it, independently of the drawing
+// order.
 TEST(RenderSurface, TheNearestWins) {
   const CameraModel model = lens_in_air();
   const DepthMap map = step_map(model);

@@ -26,7 +26,8 @@ INSTANTIATE_TEST_SUITE_P(Cameras, PointErrorWithCamera, testing::Values(false, t
 
 constexpr Surroundings kPlain{0.01, 0};
 
-// A point's nearest pixel in every view, and the depth that the pixel's ray has next to the point.
+// The supports of a point: in every view the pixel nearest to the point's image, with the depth at
+// which the pixel's ray is nearest to the point.
 std::vector<PointSupport> supports_of(const CameraModel& model, const std::vector<Pose>& poses,
                                       const Eigen::Vector3d& point, double cost = 0.1) {
   std::vector<PointSupport> supports;
@@ -45,8 +46,8 @@ std::vector<PointSupport> supports_of(const CameraModel& model, const std::vecto
   return supports;
 }
 
-// The oracle: exact rays through noisy pixels, and the point nearest to all of them by reprojection
-// (Gauss-Newton on the cameras' own projections). Standard deviation along `normal`.
+// The oracle: adds noise to the pixels of the point and triangulates them by minimising the
+// reprojection error (Gauss-Newton). Returns the standard deviation of the points along `normal`.
 double oracle_error(const CameraModel& model, const std::vector<Pose>& poses,
                     const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double noise) {
   const AnyCamera<double> camera(make_camera<double>(model));
@@ -84,9 +85,10 @@ TEST_P(PointErrorWithCamera, IsThatOfTriangulation) {
       for (const Eigen::Vector3d& normal : {upright, slanted}) {
         const std::vector<Pose> poses = test::circle_of_poses(count, radius);
         const double found = triangulated_error(supports_of(model(), poses, point), normal);
-        // So little noise that the oracle is linear. Its 1000 trials know a deviation to 2.2 % (one
-        // sigma); half a pixel to the nearest one moves the Jacobian by 1 %, and the bound for
-        // parallel rays takes up to 4 % where the rays are 6 degrees apart.
+        // The noise is so small that the oracle is linear. Three errors remain: the sampling error
+        // of 1000 trials is 2.2 % (one sigma), rounding to the nearest pixel changes the Jacobian
+        // by 1 %, and the bound for parallel rays lowers the result by up to 4 % if the angle
+        // between the rays is 6 degrees.
         const double oracle = oracle_error(model(), poses, point, normal, 0.01) / 0.01;
         EXPECT_NEAR(found / oracle, 1, 0.09) << count << " views, radius " << radius;
       }
@@ -95,7 +97,7 @@ TEST_P(PointErrorWithCamera, IsThatOfTriangulation) {
 TEST_P(PointErrorWithCamera, GrowsWithTheSquareOfTheDistanceWhereAnglesAreSmall) {
   const Eigen::Vector3d normal(0, 0, -1);
   const auto error = [&](double distance) {
-    // In the middle of two cameras that look the same way, without the rounding to whole pixels.
+    // The point lies midway between two cameras; pixels are not rounded.
     const Eigen::Vector3d point(0, 0, distance);
     std::vector<PointSupport> supports = supports_of(model(), test::circle_of_poses(2), point);
     for (const double side : {-1.0, 1.0}) {
@@ -110,7 +112,7 @@ TEST_P(PointErrorWithCamera, GrowsWithTheSquareOfTheDistanceWhereAnglesAreSmall)
     EXPECT_NEAR(error(2 * distance) / error(distance), 4, 0.2) << distance;
 }
 
-// The camera's own projection is the oracle: all over the image, the corners included.
+// Compares with the camera's projection as the oracle, over the whole image including the corners.
 TEST_P(PointErrorWithCamera, SupportsHaveTheCamerasRaysAndPixels) {
   const CameraModel dry_or_wet = model();
   const AnyCamera<double> camera(make_camera<double>(dry_or_wet));
@@ -131,7 +133,7 @@ TEST_P(PointErrorWithCamera, SupportsHaveTheCamerasRaysAndPixels) {
       }
 }
 
-// The supports with their points in one place: the maps agree.
+// The supports with all points moved to `point`, as if the maps agreed exactly.
 std::vector<PointSupport> agreeing(std::vector<PointSupport> supports,
                                    const Eigen::Vector3d& point) {
   for (PointSupport& support : supports) support.point = point;
@@ -171,7 +173,7 @@ TEST_P(PointErrorWithCamera, CopiesOfTheSameMapsAddNothing) {
   }
 }
 
-// Of anything that two maps to twelve may say.
+// Random supports of two to twelve maps.
 std::vector<PointSupport> random_supports(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<PointSupport> supports(2 + random() % 11);
@@ -253,8 +255,8 @@ TEST_P(PointErrorWithCamera, IsUnknownForOneMapOrWithoutCosts) {
   }
 }
 
-// A map of one depth whose normals turn about the y axis by `turn` a pixel, and a photograph whose
-// intensity grows by `across` and `down`.
+// A map of constant depth whose normals rotate about the y axis by `turn` [rad] per pixel, and a
+// photograph whose intensity grows by `across` and `down` per pixel.
 FusionMap turning_map(double turn, int across, int down, bool photograph = true) {
   DepthMap map;
   map.image_path = "turning";
@@ -279,7 +281,7 @@ std::uint32_t pixel_at(const FusionMap& map, int x, int y) {
 TEST(Surroundings, TellHowNormalsTurnAndIntensityGrows) {
   const FusionMap map = turning_map(0.02, 3, 4);
   const Surroundings around = surroundings(map, pixel_at(map, 10, 12), 1);
-  // Six of the eight pixels lie three columns away.
+  // Six of the eight surrounding pixels are three columns away; the other two have the same normal.
   EXPECT_NEAR(around.relief, 0.75 * (1 - std::cos(0.06)), 1e-5);
   const Surroundings reduced = surroundings(map, pixel_at(map, 10, 12), 2);
   EXPECT_EQ(reduced.relief, around.relief);

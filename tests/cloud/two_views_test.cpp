@@ -33,8 +33,8 @@ TEST(UndisputedWitness, IsTheFirstNeighbourThatShowsThePoint) {
   }
 }
 
-// A slanted plane, in a camera whose pixels are large: of the depth d, a step of two pixels changes
-// the depth along the ray by up to 2 / 75 * tan(60 degrees) = 4.6 %.
+// A slanted plane, seen by a camera with large pixels: between pixels at a distance of two, the
+// depth along the ray changes by up to 2 / 75 * tan(60 degrees) = 4.6 %.
 class SurfaceAroundPixel : public testing::TestWithParam<bool> {
  protected:
   static CameraModel model() {
@@ -64,7 +64,7 @@ TEST_P(SurfaceAroundPixel, IsSeenHoweverThePlaneSlants) {
   for (const double slant : {0.0, 0.5, 1.0}) {
     const DepthMap map = plane(slant);
     const FusionMap fusion_map = make_fusion_map(map, {});
-    const SurfacePieces pieces(fusion_map, 1e-5f);  // floats
+    const SurfacePieces pieces(fusion_map, 1e-5f);  // allows for the rounding of floats
     for (int y = 2; y < map.height() - 2; ++y)
       for (int x = 2; x < map.width() - 2; ++x)
         ASSERT_TRUE(pieces.around(static_cast<std::uint32_t>(y * map.width() + x)))
@@ -92,7 +92,7 @@ TEST_P(SurfaceAroundPixel, MayHaveHoles) {
   map.depth(20, 37) = 0;
   EXPECT_TRUE(around(map, 39, 22));  // four of eight lack a depth
   map.depth(24, 37) = 0;
-  EXPECT_FALSE(around(map, 39, 22));  // five do
+  EXPECT_FALSE(around(map, 39, 22));  // five of eight lack a depth
 }
 
 TEST_P(SurfaceAroundPixel, IsUnknownWithoutTheNormal) {
@@ -102,7 +102,7 @@ TEST_P(SurfaceAroundPixel, IsUnknownWithoutTheNormal) {
   EXPECT_TRUE(around(map, 32, 32));
 }
 
-// Beside a straight depth edge five of eight pixels are left.
+// Beside a straight depth edge, five of eight pixels are on the surface.
 TEST_P(SurfaceAroundPixel, EndsAtCornersOfDepthEdges) {
   DepthMap map = plane(0.5);
   map.depth(cv::Rect(40, 20, map.width() - 40, map.height() - 20)) *= 1.05f;
@@ -119,7 +119,7 @@ TEST_P(SurfaceAroundPixel, IsNotSeenOnStripsOfTwoPixels) {
   EXPECT_TRUE(around(map, 39, 30));
 }
 
-// A strip of cameras that look the same way, each seeing a part of its neighbours' ground.
+// A row of cameras with parallel axes whose images overlap those of their neighbours.
 struct Strip {
   Scene scene;
   std::vector<FusionView> views;
@@ -129,7 +129,7 @@ struct Strip {
     return fuse(scene, views, {[this](std::size_t i) { return maps[i]; }, {}}, options);
   }
 
-  // In how many images, `margin` pixels within their borders, the point lies.
+  // The number of images that contain the point at least `margin` pixels from their borders.
   int cameras_that_see(const Eigen::Vector3d& point, double margin) const {
     int count = 0;
     for (const DepthMap& map : maps)
@@ -147,7 +147,8 @@ struct Strip {
 
 class FuseStrip : public testing::TestWithParam<bool> {
  protected:
-  // A narrow lens: a depth changes by far less than the threshold from pixel to pixel.
+  // The lens is narrow, so that depths of neighbouring pixels differ by far less than the
+  // threshold.
   static CameraModel model() {
     CameraModel camera = test::dry_camera();
     camera.lens.fx = camera.lens.fy = 150;
@@ -203,8 +204,8 @@ TEST_P(FuseStrip, TakesTwoViewsWhereTwoCamerasSee) {
   for (std::size_t i = 0; i < without.size(); ++i) ASSERT_GE(views_of(without, i), 3u);
 }
 
-// Where all maps agree, a pixel is left without a point only if all that agree with it belong to
-// points: nearly as many points as with two views everywhere, and more than with three.
+// If all maps agree, a pixel stays without a point only if all pixels that agree with it belong to
+// points already. So there are nearly as many points as with min_views = 2, and more than with 3.
 TEST_P(FuseStrip, CountsMapsThatAgreeButAreUsed) {
   Strip strip = FuseStrip::strip();
   const std::size_t found = strip.fused().size();
@@ -223,7 +224,7 @@ TEST_P(FuseStrip, CoversTheGroundThatTwoCamerasSee) {
   for (double x = -0.25; x < 1.15; x += 0.01)
     for (double y = -0.2; y < 0.2; y += 0.01) {
       const Eigen::Vector3d point = world().plane.projection({x, y, 1});
-      // Within three pixels of a border maps hold too little around a pixel.
+      // A pixel within three pixels of a border has too few surrounding pixels.
       if (strip.cameras_that_see(point, 3) != 2 || strip.cameras_that_see(point, 0) != 2) continue;
       ++seen;
       constexpr double kTwoPixels = 0.015;
@@ -257,7 +258,7 @@ TEST_P(FuseStrip, HearsNothingFromAMapWithoutDepths) {
   EXPECT_TRUE(same_bytes(cloud, without));
 }
 
-// A third map that sees through the ground or shows it with other normals.
+// A third map either sees through the ground or has other normals there.
 TEST_P(FuseStrip, WantsThreeWhereAThirdMapDisagrees) {
   for (const bool farther : {false, true}) {
     Strip strip = FuseStrip::strip();
@@ -276,7 +277,7 @@ TEST_P(FuseStrip, WantsThreeWhereAThirdMapDisagrees) {
   }
 }
 
-// Pixels of two maps that agree on a wrong depth, each alone.
+// Isolated pixels of two maps agree on a wrong depth.
 TEST_P(FuseStrip, DoesNotBelieveTwoLonePixels) {
   Strip strip = FuseStrip::strip();
   const auto last = make_camera<double>(strip.maps[4].camera);

@@ -10,8 +10,8 @@
 namespace axial::refractive::testing {
 namespace {
 
-// The paper's two stereo setups, in the frame of the reference camera: a plane 4 m away, turned
-// about y, and a source camera with parallel axes.
+// The paper's stereo setups, in the frame of the reference camera: a plane at a distance of 4 m,
+// rotated about y, and a source camera whose axes are parallel to the reference camera's.
 struct Setup {
   Vector3<double> source_centre;
   double plane_angle = 0;
@@ -24,10 +24,10 @@ struct Errors {
 };
 
 constexpr int kSize = 2048;
-constexpr int kStep = 61;  // between tested centres; every pixel would take minutes
+constexpr int kStep = 61;  // between tested centres [px]; testing every pixel would take minutes
 
-// Mean distance [px] of warped patch texels from their exact image (9x9, step 2), over centres
-// whose patch lies in both images: the paper's e_BH.
+// The paper's e_BH: mean distance [px] of the warped pixels of a patch (9x9, step 2) from their
+// exact images, over all centres whose patch lies in both images.
 template <class Camera>
 Errors patch_errors(const Camera& camera, const Setup& setup) {
   const Vector3<double> X0(0, 0, 4);
@@ -83,7 +83,7 @@ Errors patch_errors(const Camera& camera, const Setup& setup) {
 struct Row {
   double fov, distance, tilt;
   Setup setup;
-  double papers, exact_lookup, affine;  // DESIGN section 3
+  double papers, exact_lookup, affine;  // expected errors [px], measured over all pixels
 };
 
 class WarpTable : public ::testing::TestWithParam<Row> {};
@@ -96,7 +96,8 @@ TEST_P(WarpTable, IsReproduced) {
   report("patch error of the paper's warp [px]", errors.papers);
   report("patch error of the first-order exact warp [px]", errors.affine);
   EXPECT_LE(errors.affine, 0.005);
-  // The table's last digit, and a thousand centres in place of four million.
+  // Tolerances: half of the last digit of the expected values, and the sampling of a thousand
+  // centres instead of four million.
   EXPECT_NEAR(errors.affine, row.affine, 0.03 * row.affine + 5e-5);
   EXPECT_NEAR(errors.papers, row.papers, 0.02 * row.papers);
   EXPECT_NEAR(errors.exact_lookup, row.exact_lookup, 0.02 * row.exact_lookup);
@@ -112,8 +113,9 @@ INSTANTIATE_TEST_SUITE_P(Design, WarpTable,
 
 class WarpBehindADome : public ::testing::TestWithParam<Setup> {};
 
-// Behind a thick shell with the lens 40 % of its radius off the centre. No table of domes exists:
-// the limit is a tenth of the flat ports', whose rays bend more, and twice what is measured.
+// A thick dome whose centre is 40 % of its inner radius away from the lens. There are no reference
+// values for domes. The limit is a tenth of the limit for flat ports, which refract more strongly,
+// and twice the measured error.
 TEST_P(WarpBehindADome, IsBetterStill) {
   const DomePort<double> port{{0.012, -0.008, 0.014}, 0.05, 0.02, 1, 1.52, 1.333};
   const DomePortCamera<double> camera(lens_with_fov(80, kSize, kSize), port, kSize, kSize);
@@ -126,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Setups, WarpBehindADome,
                          ::testing::Values(Setup{kBaseline, 0}, Setup{kBaseline, -40},
                                            Setup{kFurther, 0}));
 
-// A as the slope of the exact warp itself, from one view to another of its kind.
+// Compares A with finite differences of the exact warp between two views of the same kind.
 template <class View>
 bool check_slope_of_warp(const View& one, const View& other, Random& random) {
   const auto reference = one.template camera<double>(), source = other.template camera<double>();
@@ -145,7 +147,7 @@ bool check_slope_of_warp(const View& one, const View& other, Random& random) {
           reference.ray(Vector2<double>(p + step * Vector2<double>::Unit(i)));
       return source.project(R * (r.at(plane_intersection(r, ray.at(lambda), n)) - C)).pixel;
     };
-    // Pixels are good to 1e-12 of the image's width, a step is a hundredth of a pixel.
+    // Pixels have an error of 1e-12 of the image's width; the step is a hundredth of a pixel.
     EXPECT_LT((warp.linear.col(i) - (image(h) - image(-h)) / (2 * h)).norm(),
               1e-6 * warp.linear.norm());
   }
@@ -176,7 +178,7 @@ class PlanePointDerivative : public ::testing::Test {};
 using Views = ::testing::Types<View, DomeView>;
 TYPED_TEST_SUITE(PlanePointDerivative, Views);
 
-// dX/dp against differences of the points that neighbouring pixels see.
+// Compares dX/dp with differences between the points that neighbouring pixels see.
 TYPED_TEST(PlanePointDerivative, IsTheDerivative) {
   Random random(101);
   for (int k = 0; k < 1000; ++k) {

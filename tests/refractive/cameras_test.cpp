@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every axial camera promises, whichever it is.
+// Properties that every kind of axial camera must have.
 #include <gtest/gtest.h>
 
 #include "refractive/affine_warp.h"
@@ -45,7 +45,7 @@ struct SearchFloat {
     return Camera(view.lens.cast<float>(), view.port.cast<float>(), view.width, view.height);
   }
 };
-// The port's, with a mild barrel and some of everything else in front.
+// The lens of `view` with a small amount of every kind of distortion.
 template <class T>
 DistortedLens<T> distorted(const View& view) {
   LensDistortion<double> distortion;
@@ -67,7 +67,8 @@ struct LensFloat {
     return {distorted<float>(view), view.port.cast<float>()};
   }
 };
-// A thick dome in the place of the flat port, up to 0.8 of its radius away from the lens.
+// A thick dome that replaces the flat port. Its centre is up to 0.8 of its inner radius away from
+// the lens.
 DomePort<double> thick_dome(Random& random) {
   DomePort<double> port = random_dome_view(random, 0.8).port;
   port.thickness = random.uniform(0.01, 0.02);
@@ -101,7 +102,8 @@ using Kinds = ::testing::Types<Dry, DryFloat, Port, PortFloat, Search, SearchFlo
                                Dome, DomeFloat, LensDome>;
 TYPED_TEST_SUITE(Cameras, Kinds);
 
-// Calls check(camera, pixel, X): points 0.7 to 10 m away, well inside the water and the image.
+// Calls check(camera, pixel, distance) with random pixels inside the image and distances of 0.7 to
+// 10 m, at which all points lie in the water.
 template <class Kind, class Check>
 void for_random_points(unsigned seed, Check check) {
   using T = typename Kind::Camera::Scalar;
@@ -143,20 +145,20 @@ TYPED_TEST(Cameras, CopiesAreTheSameCamera) {
   });
 }
 
-// Jproj dX/dp = I on any plane: ties the derivatives of both directions together.
+// On any plane Jproj dX/dp = I. This checks the derivatives of both directions against each other.
 TYPED_TEST(Cameras, WarpedOntoThemselvesAreTheIdentity) {
   using T = typename TypeParam::Camera::Scalar;
   Random random(94);
   for_random_points<TypeParam>(94, [&](const auto& camera, const auto& pixel, auto distance) {
     const Vector3<T> n =
         (-Vector3<double>::UnitZ() + 0.7 * random.unit_vector()).normalized().template cast<T>();
-    // A plane that the ray nearly lies in has no warp.
+    // A plane that is nearly parallel to the ray has no warp.
     if (std::abs(camera.ray(pixel).direction.dot(n)) < T(0.2)) return;
     const auto warp = affine_warp(camera, camera, Matrix3<T>(Matrix3<T>::Identity()),
                                   Vector3<T>(Vector3<T>::Zero()), pixel, distance, n);
     EXPECT_TRUE(warp.visible);
     EXPECT_LT((warp.to - pixel).norm(), TypeParam::kPixels);
-    // Products of a few numbers of the order of f: 1e-16 or 1e-7 times about a hundred.
+    // Rounding of products of numbers of the order of f: 1e-16 or 1e-7 times about a hundred.
     EXPECT_LT((warp.linear - Matrix2<T>::Identity()).norm(),
               (std::is_same_v<T, float> ? 1e-4 : 1e-11));
   });

@@ -18,7 +18,7 @@ TEST(DepthConversion, GoesThereAndBack) {
     const Vector3<double> X = ray.origin + distance * ray.direction;
     EXPECT_NEAR(range_from_distance(ray, distance), X.norm(), 1e-14);
     EXPECT_NEAR(z_depth_from_distance(ray, distance), X.z(), 1e-14);
-    // A few roundings of numbers up to 10, once divided by a cosine of at least 0.3.
+    // A few roundings of numbers up to 10, divided by a cosine of at least 0.3.
     EXPECT_NEAR(distance_from_range(ray, X.norm()), distance, 1e-13);
     EXPECT_NEAR(distance_from_z_depth(ray, X.z()), distance, 1e-13);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Closed-form derivatives against ceres::Jet and against finite differences, to 1e-6 of the
-// Jacobian's Frobenius norm.
+// Compares closed-form derivatives with ceres::Jet and with finite differences. The tolerance is
+// 1e-6 of the Jacobian's Frobenius norm.
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -44,13 +44,14 @@ void check_ray(const View& view, const Vector2<double>& pixel) {
   EXPECT_LT((ray.origin - plain.origin).norm() + (ray.direction - plain.direction).norm(), 1e-15);
 
   const auto jets = jet_camera<Jet2>(view).ray(variables<Jet2, 2>(pixel));
-  // The centre's derivative vanishes on the axis; its error is measured in what matters, the ray:
-  // metres per pixel of a point at 1 m, which is the norm of the direction's derivative.
+  // The derivative of the origin vanishes on the axis, so that its error cannot be relative to
+  // itself. It is relative to the motion [m/px] of a point of the ray at 1 m, which is the norm of
+  // the direction's derivative.
   const double scale = jacobian.direction.norm();
   expect_close(jacobian.direction, derivatives<Jet2, 3>(jets.direction), scale);
   expect_close(jacobian.origin, derivatives<Jet2, 3>(jets.origin),
                std::max(jacobian.origin.norm(), 1e-6 * scale));
-  const double h = 1e-3;  // px: rounding and bending both below 1e-9 of the derivative
+  const double h = 1e-3;  // [px]; errors of rounding and of curvature are below 1e-9 of the result
   expect_close(jacobian.direction,
                differences<3, 2>(pixel, h,
                                  [&](const Vector2<double>& p) { return camera.ray(p).direction; }),
@@ -79,7 +80,8 @@ TEST(Derivatives, OfTheRayOnAndNearTheAxis) {
   }
 }
 
-// Bundle adjustment will move the port: the solver's own iteration must not eat the derivatives.
+// Bundle adjustment needs derivatives by the parameters of the port. The iterations of the solver
+// must not lose them.
 TEST(Derivatives, ByThePortsParameters) {
   Random random(65);
   using Jet4 = ceres::Jet<double, 4>;

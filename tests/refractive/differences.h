@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Automatic and numeric derivatives, to hold closed forms against.
+// Automatic and numeric derivatives, for comparison with closed forms.
 #pragma once
 
 #include <ceres/jet.h>
@@ -44,7 +44,7 @@ void expect_close(const A& a, const B& b, double scale) {
   EXPECT_LE((a - b).norm(), kRelative * scale) << a << "\n\n" << b;
 }
 
-// The Jacobian of a view's projection.
+// Compares the Jacobian of a view's projection at X with automatic and numeric derivatives.
 template <class View>
 void check_projection(const View& view, const Vector3<double>& X) {
   using Jet = ceres::Jet<double, 3>;
@@ -53,7 +53,8 @@ void check_projection(const View& view, const Vector3<double>& X) {
   ASSERT_TRUE(camera.project(X, &jacobian).visible);
   const auto jets = view.template camera<Jet>().project(variables<Jet, 3>(X));
   expect_close(jacobian, derivatives<Jet, 2>(jets.pixel), jacobian.norm());
-  // Pixels are good to 1e-12 and bend over centimetres: both errors are near 1e-8 at this step.
+  // Pixels have an error of 1e-12, and the curvature of the projection shows over centimetres. With
+  // this step both contribute errors near 1e-8.
   const auto numeric =
       differences<2, 3>(X, 1e-6, [&](const Vector3<double>& x) { return camera.project(x).pixel; });
   expect_close(jacobian, numeric, jacobian.norm());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dome ports against a step-by-step ray tracer, against themselves both ways, against derivatives
-// of other making, and in the limits where they are something simpler.
+// Tests dome ports: against a ray tracer that refracts at one surface after the other, in the round
+// trip from pixel to point to pixel, against automatic and numeric derivatives, and in limits where
+// a dome equals a simpler camera.
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -12,14 +13,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Where a ray from inside a sphere around `centre` leaves it.
+// The point at which a ray from inside a sphere around `centre` leaves the sphere.
 Vector3d leave(const Vector3d& from, const Vector3d& along, const Vector3d& centre, double radius) {
   const Vector3d offset = from - centre;
   const double back = offset.dot(along);
   return from + (std::sqrt(back * back + radius * radius - offset.squaredNorm()) - back) * along;
 }
 
-// Snell's law with vectors: the part across the normal is scaled, the rest follows from the length.
+// Snell's law with vectors: the component across the normal is scaled by `ratio`; the component
+// along the normal follows from the unit length.
 Vector3d refract(const Vector3d& along, const Vector3d& normal, double ratio) {
   const Vector3d across = ratio * (along - along.dot(normal) * normal);
   return across + std::sqrt(1 - across.squaredNorm()) * normal;
@@ -48,7 +50,7 @@ TEST(DomePort, AgreesWithATracedRay) {
     const auto camera = view.camera<double>();
     const Traced traced = trace(view, pixel);
     const AxialRay<double> ray = camera.ray(pixel);
-    // Both the direction and the place of the line, in metres at the glass.
+    // Compares the direction of the line, and its position [m] at the glass.
     const double off = std::max((ray.direction - traced.direction).norm(),
                                 (traced.exit - ray.origin).cross(ray.direction).norm());
     largest = std::max({largest, off, (camera.exit_point(pixel) - traced.exit).norm()});
@@ -66,7 +68,7 @@ double largest_round_trip_error(unsigned seed, double decentring) {
     const DomeView view = random_dome_view(random, decentring);
     const auto camera = view.camera<T>();
     for (int i = 0; i < 10; ++i) {
-      // Some at a corner, where the incidence is largest.
+      // Some pixels are corners, where the incidence is largest.
       const Vector2<double> corner((i & 1) * (view.width - 1), (i & 2) / 2 * (view.height - 1));
       const Vector2<T> pixel = (i < 4 ? corner : random_pixel(random, view)).template cast<T>();
       const Vector3<T> X = random_point(random, camera, pixel);
@@ -125,7 +127,8 @@ TEST(DomePort, HasTheDerivativesOfJetsAndDifferences) {
   }
 }
 
-// On the axis, wherever it points, and for a dome that is nearly or wholly centred.
+// Tests pixels on and near the axis, for axes of any direction, and domes that are exactly or
+// almost centred.
 TEST(DomePort, IsSmoothOnTheAxisAndAtTheCentre) {
   Random random(5);
   for (int k = 0; k < 100; ++k) {
@@ -143,7 +146,7 @@ TEST(DomePort, IsSmoothOnTheAxisAndAtTheCentre) {
   }
 }
 
-// Bundle adjustment will move the port, from the very centre on.
+// Bundle adjustment needs derivatives by the parameters of the port, also for a centred dome.
 TEST(DomePort, HasDerivativesByItsParameters) {
   using Jet = ceres::Jet<double, 7>;
   using Parameters = Eigen::Matrix<double, 7, 1>;
@@ -187,7 +190,8 @@ TEST(DomePort, BendsNothingWhereItIsCentred) {
   }
 }
 
-// Wherever the spheres are, nothing is left of them. 1e-12 as in the limits of flat ports.
+// With equal indices the spheres have no effect. The tolerance 1e-12 is that of the limits of flat
+// ports.
 TEST(DomePort, IsThePinholeCameraWhereAllIndicesAreEqual) {
   Random random(10);
   for (int k = 0; k < 1000; ++k) {
@@ -208,7 +212,8 @@ TEST(DomePort, IsThePinholeCameraWhereAllIndicesAreEqual) {
   }
 }
 
-// A sphere of a kilometre is a plane: what is left is the sag of the glass within the port.
+// A sphere with a radius of a kilometre is almost a plane. The remaining difference is the
+// curvature of the glass within the port.
 TEST(DomePort, BecomesAFlatPortWhenItGrows) {
   Random random(8);
   for (int k = 0; k < 200; ++k) {
@@ -224,7 +229,7 @@ TEST(DomePort, BecomesAFlatPortWhenItGrows) {
     const Vector2<double> pixel = random_pixel(random, dome);
     const AxialRay<double> ray = flat.camera<double>().ray(pixel);
     const AxialRay<double> found = dome.camera<double>().ray(pixel);
-    // Where they pass the axis differs by up to a radian's fraction 1e-3 of the port's size.
+    // The normals of the glass differ by up to 1e-3 rad within the port.
     EXPECT_LT((found.direction - ray.direction).norm(), 1e-3);
     EXPECT_LT(
         (dome.camera<double>().exit_point(pixel) - flat.camera<double>().exit_point(pixel)).norm(),
@@ -237,7 +242,7 @@ class DomeVisibility : public ::testing::Test {};
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(DomeVisibility, Scalars);
 
-// Inside the dome, behind the lens, outside the image, and no number at all.
+// Tests points inside the dome, behind the lens, outside the image, and NaN.
 TYPED_TEST(DomeVisibility, IsNeverClaimedWrongly) {
   using T = TypeParam;
   Random random(9);
@@ -258,7 +263,7 @@ TYPED_TEST(DomeVisibility, IsNeverClaimedWrongly) {
     EXPECT_GT((X - view.port.centre).norm(), view.outer_radius() * (1 - 1e-6));
     EXPECT_GE(image.pixel.x(), T(-128));
     EXPECT_LE(image.pixel.x(), T(view.width + 127));
-    // Its ray leads back to it.
+    // The ray of the pixel passes through the point.
     const AxialRay<T> ray = camera.ray(image.pixel);
     const Vector3<T> to = X.cast<T>() - ray.origin;
     EXPECT_GT(to.dot(ray.direction), T(0));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random views through dome ports: the range of housings the project promises accuracy for.
+// Random views through dome ports. They cover the range of housings for which the project promises
+// accuracy.
 #pragma once
 
 #include "refractive/dome_port_camera.h"
@@ -19,8 +20,8 @@ struct DomeView {
   double outer_radius() const { return port.inner_radius + port.thickness; }
 };
 
-// FOV 50 to 120 degrees, radius 30 to 120 mm, glass of 0 to 20 mm, centre up to `decentring` of
-// the inner radius away from the lens, in any direction.
+// Field of view 50 to 120 degrees, inner radius 30 to 120 mm, glass of 0 to 20 mm. The dome's
+// centre is up to `decentring` times the inner radius away from the lens, in any direction.
 inline DomeView random_dome_view(Random& random, double decentring = 0.4) {
   DomeView view{1024, 768, lens_with_fov(random.uniform(50, 120), 1024, 768), {}};
   view.lens.cx += random.uniform(-0.02, 0.02) * view.width;
@@ -38,7 +39,7 @@ inline Vector2<double> random_pixel(Random& random, const DomeView& view) {
   return {random.uniform(0, view.width - 1), random.uniform(0, view.height - 1)};
 }
 
-// The point that the pixel sees 0.2 to 10 m behind the glass.
+// A point on the pixel's ray, 0.2 to 10 m from the glass.
 template <class T>
 Vector3<T> random_point(Random& random, const DomePortCamera<T>& camera, const Vector2<T>& pixel) {
   const AxialRay<T> ray = camera.ray(pixel);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An oracle that knows neither Snell's law nor any formula of refractive/: light takes the path of
-// the smallest optical length. The path from the lens to X bends at a point of the inner plane and
-// one of the outer plane; both are searched by brute force.
+// Compares the flat port with an oracle that uses neither Snell's law nor any formula of
+// refractive/. By Fermat's principle light takes the path of the smallest optical length. The path
+// from the lens to X bends at a point of the inner plane and at a point of the outer plane. The
+// oracle searches both points by brute force.
 #include <gtest/gtest.h>
 
 #include "refractive/views.h"
@@ -9,11 +10,11 @@
 namespace axial::refractive::testing {
 namespace {
 
-// The least of an optical path is as flat as any minimum, so the points come out to the square root
-// of the precision: 64 bits give about 1e-9 m, hence about 1e-6 px.
+// The optical length is flat at its minimum, so that the position of the minimum has only half of
+// the digits. The 64 bits of the mantissa give about 1e-9 m, and hence about 1e-6 px.
 using Real = long double;
 
-// Argument of the minimum of a convex function on [low, high], by golden sections.
+// Argument of the minimum of a convex function on [low, high], by golden-section search.
 template <class Function>
 Real golden_section(Real low, Real high, Function f) {
   const Real k = (std::sqrt(Real(5)) - 1) / 2;
@@ -43,14 +44,15 @@ struct Path {
   double inner, outer;  // distances of the two bends from the axis
 };
 
-// sqrt(h^2 + r^2) - h, which has the same minimum and loses fewer digits.
+// sqrt(h^2 + r^2) - h. Subtracting h does not move the minimum, and fewer digits are lost.
 Real excess(Real h, Real r) {
   const Real length = std::sqrt(h * h + r * r);
   return length > 0 ? r * r / (length + h) : 0;
 }
 
-// In the plane through the axis and X; `rho` and `z` are X's distance from the axis and height
-// above the outer plane. All bends lie between the axis and X, in order.
+// The shortest path in the plane through the axis and X. `rho`: distance of X from the axis. `z`:
+// its height above the outer plane. The inner bend lies between the axis and the outer bend, and
+// the outer bend between the inner bend and X.
 Path shortest_path(const FlatPort<double>& port, double rho, double z) {
   const auto length = [&](Real inner, Real outer) {
     return port.n_air * excess(port.distance, inner) +
@@ -94,7 +96,7 @@ TEST(Fermat, AgreesWithForwardProjection) {
   for (int k = 0; k < 200; ++k) {
     const View view = random_fermat_view(random);
     const auto camera = view.camera<double>();
-    // A point by pinhole geometry alone, so that no ray of refractive/ is involved.
+    // The point is made by pinhole geometry, so that the test uses no ray of refractive/.
     const Vector3<double> X =
         view.lens.bearing(random_pixel(random, view)) * random.uniform(0.3, 3);
     const Projection<double> image = camera.project(X);
@@ -104,7 +106,7 @@ TEST(Fermat, AgreesWithForwardProjection) {
   }
   report("Fermat against forward projection, largest [px]", largest);
   EXPECT_LT(largest, 1e-5);
-  EXPECT_GT(tested, 100);  // refraction moves the others out of the image
+  EXPECT_GT(tested, 100);  // refraction moves some points out of the image
 }
 
 TEST(Fermat, AgreesWithBackProjection) {
@@ -125,7 +127,7 @@ TEST(Fermat, AgreesWithBackProjection) {
   EXPECT_LT(largest, 1e-5);
 }
 
-// The oracle itself: moving a bend out of the plane of refraction, or along it, lengthens the path.
+// Tests the oracle: moving a bend in any direction on its plane makes the path longer.
 TEST(Fermat, ThePathIsAMinimumInSpace) {
   Random random(33);
   for (int k = 0; k < 20; ++k) {

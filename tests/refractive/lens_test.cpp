@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lenses with distortion, alone and behind ports.
+// Tests lenses with distortion, without a port and behind ports.
 #include <gtest/gtest.h>
 
 #include "refractive/differences.h"
@@ -8,7 +8,7 @@
 namespace axial::refractive::testing {
 namespace {
 
-// 1 to 5 m behind whatever is in front of the lens.
+// A point on the pixel's ray, 1 to 5 m from the lens or from the port.
 template <class Camera, class T = typename Camera::Scalar>
 Vector3<T> point_seen(Random& random, const Camera& camera, const Vector2<T>& pixel) {
   const AxialRay<T> ray = camera.ray(pixel);
@@ -55,11 +55,12 @@ TYPED_TEST(Lenses, ProjectWhatTheyBackProject) {
   EXPECT_LT(in_double, 1e-9);
   const double in_float = largest_round_trip_error<TypeParam, float>();
   report("round trip with distortion in float, largest [px]", in_float);
-  // 75 degrees and a tilt: that near to grazing a flat port magnifies angles in water five times.
+  // A fisheye of 75 degrees and a tilt of the port give nearly grazing rays. For such rays a flat
+  // port magnifies angles in water five times.
   EXPECT_LT(in_float, 5e-3);
 }
 
-// Not only consistent with itself.
+// A round trip in float alone would not detect an error that both directions share.
 TYPED_TEST(Lenses, InFloatAgreeWithDouble) {
   Random random(102);
   for (int k = 0; k < 300; ++k) {
@@ -95,7 +96,7 @@ TYPED_TEST(Lenses, KnowTheDerivativeOfTheRay) {
     const AxialRay<double> ray = camera.ray(pixel, jacobian);
     const AxialRay<double> plain = camera.ray(pixel);
     EXPECT_LT((ray.origin - plain.origin).norm() + (ray.direction - plain.direction).norm(), 1e-15);
-    // The ray of a point at 1 m: an origin's error matters as a direction's does.
+    // For a point of the ray at 1 m, an error of the origin counts as much as one of the direction.
     const double scale = jacobian.direction.norm();
     const auto jets = view.template camera<Jet>().ray(variables<Jet, 2>(pixel));
     expect_close(jacobian.direction, derivatives<Jet, 3>(jets.direction), scale);
@@ -106,7 +107,7 @@ TYPED_TEST(Lenses, KnowTheDerivativeOfTheRay) {
   }
 }
 
-// Newton's steps must not eat the derivatives of what they solve for.
+// Newton's method must not lose the derivatives by the parameters of the lens.
 TEST(LensDistortion, CarriesTheDerivativesByItsParameters) {
   using Jet = ceres::Jet<double, 4>;
   Random random(105);
@@ -196,12 +197,13 @@ TEST(Equidistant, RatiosHoldInBothPrecisions) {
     EXPECT_NEAR(tangent_over_arc(angle * angle), ratio, 1e-14 * ratio * ratio);
     const auto f = static_cast<float>(angle), t = static_cast<float>(tangent);
     EXPECT_NEAR(arc_over_tangent(t * t), 1 / ratio, 3e-7);
-    // An angle's rounding grows as the tangent does.
+    // The effect of the angle's rounding grows with the derivative of the tangent.
     EXPECT_NEAR(tangent_over_arc(f * f), ratio, 3e-7 * (1 + tangent * tangent));
   }
 }
 
-// A barrel that folds back at 1/sqrt(0.9) and shows directions out there inside the image again.
+// A barrel distortion whose polynomial turns back at the tangent 1/sqrt(0.9). Beyond, it maps
+// directions into the image a second time.
 TEST(LensField, EndsWhereTheLensFoldsBack) {
   LensView view;
   view.lens = {400, 400, 511.5, 383.5};
@@ -221,13 +223,13 @@ TEST(LensField, EndsWhereTheLensFoldsBack) {
       EXPECT_EQ(image.visible, r < fold) << r;
     }
   }
-  // Pixels out there have no direction; what they get is finite and no other pixel's.
+  // A pixel beyond the field has no direction. Its ray is finite, and projects to another pixel.
   const auto ray = rounded.ray({0, 0});
   EXPECT_TRUE(ray.direction.allFinite());
   EXPECT_GT(rounded.project(ray.at(2)).pixel.norm(), 100);
 }
 
-// The margin is an eighth of 1024 px.
+// The margin is an eighth of the width of 1024 px.
 TEST(LensField, ReachesTheWidenedImage) {
   LensView view;
   view.lens = {600, 600, 511.5, 383.5};

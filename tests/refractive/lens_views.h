@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random lenses with distortion, alone and behind the ports of views.h and dome_views.h.
+// Random lenses with distortion, without a port and behind the ports of views.h and dome_views.h.
 #pragma once
 
 #include "refractive/dome_views.h"
@@ -35,12 +35,14 @@ struct LensPortView : LensView {
 using LensFlatView = LensPortView<LensFlatPortCamera, FlatPort<double>>;
 using LensDomeView = LensPortView<LensDomePortCamera, DomePort<double>>;
 
-// All of the image has a direction: otherwise a calibration is not one of this image.
+// Whether every pixel of the image has a direction. A calibration from such images would give a
+// lens that satisfies this.
 inline bool whole_image_defined(const LensView& view) {
   return view.distorted<double>().shows_all(view.width, view.height);
 }
 
-// 50 to 110 degrees across the image with a rational radial part, barrels and pincushions.
+// Perspective lenses of 50 to 110 degrees field of view with rational radial distortion, both
+// barrel and pincushion.
 inline LensView perspective_lens(Random& random) {
   LensView view;
   view.lens = lens_with_fov(random.uniform(50, 110), view.width, view.height);
@@ -50,7 +52,7 @@ inline LensView perspective_lens(Random& random) {
   return view;
 }
 
-// Corners at 40 to 75 degrees.
+// Fisheye lenses whose image corners are 40 to 75 degrees from the axis.
 inline LensView fisheye_lens(Random& random) {
   LensView view;
   view.lens = lens_with_fov(90, view.width, view.height);
@@ -62,7 +64,7 @@ inline LensView fisheye_lens(Random& random) {
   return view;
 }
 
-// COLMAP's FOV model.
+// Lenses of COLMAP's FOV model.
 inline LensView field_of_view_lens(Random& random) {
   LensView view;
   view.lens = lens_with_fov(random.uniform(60, 110), view.width, view.height);
@@ -73,7 +75,7 @@ inline LensView field_of_view_lens(Random& random) {
   return view;
 }
 
-// Of all kinds, decentred; every pixel has a direction.
+// Lenses of all kinds, with an arbitrary principal point. Every pixel has a direction.
 inline LensView random_lens(Random& random) {
   for (;;) {
     const double kind = random.uniform(0, 3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The four limits in which a flat port becomes something simpler, to 1e-12 relative.
+// Tests four limits in which a flat port equals a simpler camera, with a relative tolerance of
+// 1e-12.
 #include <gtest/gtest.h>
 
 #include "refractive/pinhole_camera.h"
@@ -10,8 +11,8 @@ namespace {
 
 constexpr double kRelative = 1e-12;
 
-// Same rays, and same images of the points on them. `tolerance` is relative to 1 for directions, to
-// 1 m for centres and to the image's width for pixels.
+// Expects equal rays, and equal images of points on these rays. The tolerance kRelative is relative
+// to 1 for directions, to 1 m for origins and to the image's width for pixels.
 template <class A, class B>
 void expect_same_camera(const View& view, const A& a, const B& b, Random& random) {
   for (int k = 0; k < 20; ++k) {
@@ -63,7 +64,7 @@ TEST(Limits, NoDistancesAreACentralCamera) {
       const double q_w = std::sqrt(mu * mu + (mu * mu - 1) * (x * x + y * y));
       const Vector3<double> expected = Vector3<double>(x / q_w, y / q_w, 1).normalized();
       EXPECT_LT((B * ray.direction - expected).norm(), kRelative);
-      // Forward, the whole in-air half space lies inside rho/z < 1/sqrt(mu_w^2 - 1).
+      // The whole half space in air is mapped to the points with rho/z < 1/sqrt(mu_w^2 - 1).
       const Projection<double> image = camera.project(ray.at(1));
       EXPECT_TRUE(image.visible);
       EXPECT_LT((image.pixel - pixel).norm(), kRelative * view.width);
@@ -79,7 +80,7 @@ TEST(Limits, GlassLikeAirIsAWiderGap) {
     View bare = view;
     bare.port.distance += bare.port.thickness;
     bare.port.thickness = 0;
-    bare.port.n_glass = 1.5;  // of glass that is not there
+    bare.port.n_glass = 1.5;  // without effect, since the thickness is 0
     expect_same_camera(view, view.camera<double>(), bare.camera<double>(), random);
   });
 }

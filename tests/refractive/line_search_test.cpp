@@ -13,7 +13,8 @@ struct RoundTrip {
   int inside = 0, missed = 0;
 };
 
-// Pixels anywhere in the image's area, not only at centres, as in the paper's figure 2.
+// Measures the round trip from random positions in the image's area, as in the paper's figure 2.
+// The positions are not rounded to pixel centres.
 RoundTrip measure(const LineSearchCamera<double>& camera, int width, int height, Random& random) {
   RoundTrip result;
   for (int k = 0; k < 5000; ++k) {
@@ -42,12 +43,13 @@ void expect_papers_error(double fov, double distance, double tilt) {
                                         size, size);
   const RoundTrip result = measure(camera, size, size, random);
   report("Algorithm 1, mean round trip [px]", result.mean);
-  // "About a quarter of a pixel"; 0.267 where FIELD section 4 repeated it.
+  // "About a quarter of a pixel" in the paper, 0.267 to 0.271 px in docs/evaluation.md.
   EXPECT_GT(result.mean, 0.24) << fov << ' ' << distance << ' ' << tilt;
   EXPECT_LT(result.mean, 0.29) << fov << ' ' << distance << ' ' << tilt;
   EXPECT_LT(result.largest, 1.1);
-  // Half of the points within the error of the border, 0.27/1000 on each of four sides, twice
-  // over for chance. The printed border rule would lose about 0.15 % more.
+  // Points can be missed within 0.27 px of the border of the 1000 px wide image, on each of four
+  // sides; about half of these points are. The limit is about twice this number, for chance. The
+  // printed border rule would miss about 0.15 % more.
   EXPECT_LT(result.missed, 0.0015 * result.inside);
 }
 
@@ -84,7 +86,7 @@ TEST(LineSearch, SeesNothingBehindThePortOrBad) {
   }
 }
 
-// Points that appear a pixel or more outside the image are never called visible.
+// A point whose image is more than about a pixel outside the image must not be visible.
 TEST(LineSearch, SeesNothingOutsideTheImage) {
   Random random(72);
   for (int k = 0; k < 20; ++k) {
@@ -114,7 +116,7 @@ TEST(LineSearch, WorksInTheSmallestImages) {
   }
 }
 
-// A port seen from the side: x_n does not exist.
+// The port's normal is perpendicular to the optical axis, so that x_n does not exist.
 TEST(LineSearch, NeedsNoFootOfTheAxisInTheImage) {
   const FlatPort<double> port{tilted_normal(90 * kDegree, 0), 0.02, 0.014, 1, 1.52, 1.333};
   const LineSearchCamera<double> camera(lens_with_fov(100, 400, 300), port, 400, 300);

@@ -11,7 +11,8 @@
 namespace axial::refractive::testing {
 namespace {
 
-// No polishing on either side: the reference and the projection share no iteration.
+// The polynomial's root is not refined by iterations, so that reference and projection share no
+// code of the solver.
 TEST(PolynomialProjection, AgreesWithTheExactProjection) {
   Random random(51);
   std::vector<double> errors;

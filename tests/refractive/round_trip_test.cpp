@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// pixel -> ray -> point -> pixel through a flat port, over the promised range of housings.
+// The round trip pixel -> ray -> point -> pixel through a flat port, over the range of housings for
+// which the project promises accuracy.
 #include <gtest/gtest.h>
 
 #include "refractive/views.h"
@@ -16,7 +17,7 @@ double largest_round_trip_error(unsigned seed, int width, int height) {
     const View view = random_view(random, width, height);
     const auto camera = view.camera<T>();
     for (int i = 0; i < 10; ++i) {
-      // Every fourth at a corner, where the incidence is largest.
+      // The first four of ten pixels are corners, where the incidence is largest.
       const Vector2<double> somewhere = random_pixel(random, view);
       const Vector2<double> corner((i & 1) * (width - 1), (i & 2) / 2 * (height - 1));
       const Vector2<T> pixel = (i < 4 ? corner : somewhere).template cast<T>();
@@ -26,7 +27,8 @@ double largest_round_trip_error(unsigned seed, int width, int height) {
       Vector3<T> origin;
       const Projection<T> image = camera.project(*X, nullptr, &origin);
       EXPECT_TRUE(image.visible) << pixel.transpose();
-      // Relative to how far away the point is: that is what the error of a direction is made of.
+      // The error of the origin is relative to the point's distance, because this ratio is its
+      // effect on the direction.
       const Vector3<T> begin = camera.ray(pixel).origin;
       const double off = static_cast<double>((origin - begin).norm() / (*X - begin).norm());
       const double tolerance = std::is_same_v<T, float> ? 2e-4 : 1e-11;
@@ -34,7 +36,7 @@ double largest_round_trip_error(unsigned seed, int width, int height) {
       largest = std::max(largest, static_cast<double>((image.pixel - pixel).norm()));
     }
   }
-  EXPECT_GT(tested, 18000);  // few points fall into the port
+  EXPECT_GT(tested, 18000);  // few random points are not in the water
   return largest;
 }
 
@@ -58,7 +60,8 @@ TEST(RoundTrip, InFloatOfLargerImages) {
   }
 }
 
-// Ports turned away until some pixels graze them at 87 degrees: more steps, same accuracy.
+// Tests ports with a tilt so strong that some pixels have an incidence of 87 degrees. The solver
+// then takes more steps; the accuracy must be the same.
 TEST(RoundTrip, InFloatThroughStronglyTiltedPorts) {
   Random random(7);
   int tested = 0;
@@ -78,7 +81,8 @@ TEST(RoundTrip, InFloatThroughStronglyTiltedPorts) {
   EXPECT_GT(tested, 700);
 }
 
-// Not only consistent with itself: float against double, for the same point and the same port.
+// Compares float with double for the same point and the same port. A round trip in float alone
+// would not detect an error that both directions share.
 TEST(RoundTrip, FloatAgreesWithDouble) {
   Random random(5);
   double largest = 0;
@@ -95,7 +99,7 @@ TEST(RoundTrip, FloatAgreesWithDouble) {
   EXPECT_LT(largest, 2e-3);
 }
 
-// The ray leaves the glass where exit_point() says.
+// The ray passes through exit_point(), which lies on the outer plane.
 TEST(RoundTrip, ExitPointLiesOnTheRayAndTheOuterPlane) {
   Random random(6);
   for (int k = 0; k < 2000; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fixed number of steps that single precision takes, in double precision, so that rounding does
-// not hide what the steps leave.
+// Tests the fixed number of steps of single precision, but in double precision, so that rounding
+// does not hide the error that the steps leave.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,14 +12,15 @@ namespace {
 
 struct Case {
   double largest_tangent, distance, thickness, n_glass;
-  double widened = 1;  // the field's tangent over the largest that errors are promised for
+  double widened = 1;  // the field's tangent divided by the tangent `promised`
 };
 
 class FixedSteps : public testing::TestWithParam<Case> {};
 
-// Just below the incidences at which one more step is taken, from a centimetre of water to very
-// much of it. Pixels: 512 of them reach the largest incidence. What only the Jacobian needs is
-// carried to first order: a part in a thousand of it moves no corner of a window by 0.01 px.
+// Tests tangents just below those at which the solver takes one more step, with 1 cm to 100 m of
+// water. The largest tangent corresponds to 512 pixels. Terms that only the Jacobian uses are
+// extrapolated to first order; an error of 1e-3 of such a term moves the corner of a matching
+// window by less than 0.01 px.
 TEST_P(FixedSteps, LeaveLessThanTheyPromise) {
   const Case& port = GetParam();
   FlatPort<double> measured;
@@ -53,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{1.149, 0.0, 0.005, 1.77}, Case{4.49, 0.05, 0.01, 1.5},
                     Case{6.99, 0.02, 0.02, 1.5}, Case{49.0, 0.05, 0.01, 1.5},
                     Case{0.5, 0.1, 0.0, 1.0},
-                    // A water surface: high above shallow water.
+                    // A water surface, seen from high above.
                     Case{1.149, 2.0, 0.0, 1.34}, Case{4.49, 50.0, 0.0, 1.34},
                     Case{49.0, 10.0, 0.0, 1.34},
                     // Fields widened by the default margin and more.
@@ -62,8 +63,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{6.99, 0.02, 0.02, 1.5, 1.3}, Case{0.5, 0.1, 0.0, 1.0, 1.5},
                     Case{1.149, 2.0, 0.0, 1.34, 1.25}, Case{4.49, 50.0, 0.0, 1.34, 1.3}));
 
-// A margin, a tilt or an oblique look through a water surface can widen the field far beyond the
-// image. Out there the steps need not be right, but nothing may land within the image.
+// A margin, a tilt or an oblique view through a water surface can widen the field far beyond the
+// image. The steps may be inaccurate there, but no such point may be projected into the image.
 TEST(FixedStepsFarOutside, DoNotComeBack) {
   for (const double promised : {1.2, 2.0, 5.0, 13.9}) {
     for (const double distance : {0.0, 0.02, 0.0848, 3.0}) {
@@ -89,9 +90,9 @@ TEST(FixedStepsFarOutside, DoNotComeBack) {
   }
 }
 
-// Nothing but water, at the lowest and the greatest height that single precision sees: its range
-// must hold what the steps multiply. A relative 1e-3 is the rounding of rho, magnified by the
-// thousandfold bending of grazing rays.
+// Tests a port without distance and thickness, at the smallest and the largest height that is
+// visible in single precision: the products of the solver must stay within its range. The tolerance
+// of 1e-3 is the rounding of rho, which grazing rays magnify a thousand times.
 TEST(FixedStepsInSinglePrecision, StayWithinItsRange) {
   FlatPort<double> port;
   port.n_water = 2;

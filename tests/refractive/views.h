@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random underwater views for property tests: the range of housings the project promises accuracy
-// for. Seeded, so that a failure comes back.
+// Random underwater views for property tests. They cover the range of housings for which the
+// project promises accuracy. The seeds are fixed, so that a failure can be reproduced.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,7 +15,7 @@
 
 namespace axial::refractive::testing {
 
-// Shows a measured number in the log, where an acceptance run looks for it.
+// Prints a measured number to standard output, from which the acceptance tests read it.
 inline void report(const char* what, double value) {
   std::printf("measured: %s %.3g\n", what, value);
 }
@@ -56,19 +56,20 @@ inline Eigen::Vector3d tilted_normal(double tilt, double azimuth) {
   return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
 }
 
-// Horizontal field of view in degrees, centred principal point.
+// A lens with the given horizontal field of view and the principal point in the image's centre.
 inline PinholeLens<double> lens_with_fov(double degrees, int width, int height) {
   const double f = 0.5 * width / std::tan(0.5 * degrees * kDegree);
   return {f, f, 0.5 * (width - 1), 0.5 * (height - 1)};
 }
 
-// The paper's housing: 2 cm of air, 1.4 cm of glass.
+// The paper's housing: by default 2 cm of air, and 1.4 cm of glass.
 inline FlatPort<double> paper_port(double distance = 0.02, double tilt_degrees = 0) {
   return {tilted_normal(tilt_degrees * kDegree, 0), distance, 0.014, 1, 1.52, 1.333};
 }
 
-// FOV 50 to 110 degrees, tilt 0 to 15 degrees any way, d_a 1 to 100 mm, glass of 0 to 20 mm from
-// silica to sapphire, water from fresh to deep.
+// Field of view 50 to 110 degrees, tilt 0 to 15 degrees in any direction, 1 to 100 mm of air, glass
+// of 0 to 20 mm with the indices of silica to sapphire, water with the indices of fresh water to
+// deep sea.
 inline View random_view(Random& random, int width = 1024, int height = 768) {
   View view{width, height, lens_with_fov(random.uniform(50, 110), width, height), {}};
   view.lens.cx += random.uniform(-0.02, 0.02) * width;
@@ -87,8 +88,8 @@ inline Vector2<double> random_pixel(Random& random, const View& view) {
   return {random.uniform(0, view.width - 1), random.uniform(0, view.height - 1)};
 }
 
-// The point that the pixel sees at 0.3 to 10 m from the camera. None when that is not in the water
-// (a wide gap seen at a flat angle can be longer than 0.3 m).
+// A point on the pixel's ray at a range of 0.3 to 10 m from the camera. Empty if the point is not
+// in the water: at a large incidence the path to the water can be longer than 0.3 m.
 template <class T>
 std::optional<Vector3<T>> random_point(Random& random, const FlatPortCamera<T>& camera,
                                        const Vector2<T>& pixel) {

@@ -50,7 +50,7 @@ Pair random_pair(Random& random) {
           0.4 * random.unit_vector()};
 }
 
-// Eq. 1: a point's coordinates in both virtual cameras.
+// Eq. 1: the pose relates a point's coordinates in both virtual cameras.
 TEST(RelativePose, TakesPointsFromOneVirtualCameraToTheOther) {
   Random random(82);
   for (int k = 0; k < 500; ++k) {
@@ -65,7 +65,8 @@ TEST(RelativePose, TakesPointsFromOneVirtualCameraToTheOther) {
   }
 }
 
-// Eq. 2: every point of the plane goes from its virtual image to its virtual image.
+// Eq. 2: the homography maps the image of every point of the plane in one virtual camera to its
+// image in the other.
 TEST(VirtualHomography, MapsTheImagesOfThePlane) {
   Random random(83);
   for (int k = 0; k < 500; ++k) {
@@ -83,8 +84,9 @@ TEST(VirtualHomography, MapsTheImagesOfThePlane) {
   }
 }
 
-// Without refraction the paper's warp is exact, and the affine warp is its first order. Without
-// tilt, that is: the virtual image plane is the port's, which a tilt turns against the lens's.
+// Without refraction and without tilt the paper's warp is exact, and the affine warp is its
+// first-order approximation. With a tilt the paper's warp is not exact, because the image plane of
+// the virtual camera is parallel to the port and not to the image plane of the lens.
 TEST(VirtualHomography, IsTheExactWarpWhenAllIndicesAreOne) {
   Random random(84);
   for (int k = 0; k < 500; ++k) {
@@ -112,7 +114,7 @@ TEST(VirtualHomography, IsTheExactWarpWhenAllIndicesAreOne) {
       const auto exact = source.project(pair.R * (other.at(there) - pair.C));
       if (!exact.visible) continue;
       EXPECT_LT((apply_homography(H, q) - exact.pixel).norm(), 1e-8);
-      // What bends over 4 of 1024 px.
+      // The second-order part of the warp over 4 px in an image of 1024 px.
       EXPECT_LT((affine(q) - exact.pixel).norm(), 1e-2 * (exact.pixel - image.pixel).norm() + 0.3);
     }
     const double h = 1e-3;
@@ -126,7 +128,7 @@ TEST(VirtualHomography, IsTheExactWarpWhenAllIndicesAreOne) {
   }
 }
 
-// Eq. 7 corrected: a consistent distance comes back to the very pixel.
+// Eq. 7, corrected: a consistent distance is reprojected to exactly the reference pixel.
 TEST(VirtualReprojection, ReturnsToThePixelOfAConsistentPoint) {
   Random random(85);
   int tested = 0;

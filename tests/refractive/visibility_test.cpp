@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a camera does not see is never reported as visible, and never NaN.
+// A point that a camera does not see must not be reported as visible, and its pixel must be finite.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -10,8 +10,8 @@
 namespace axial::refractive::testing {
 namespace {
 
-// Where X appears, by plain bisection of the increasing function radius(t): no field test, no
-// Halley steps, no image rectangle. None: no light from X reaches the lens from the front.
+// The pixel of X, by bisection of the increasing function radius(t), without the field test, the
+// solver and the image rectangle. Empty if no light from X reaches the lens from the front.
 std::optional<Vector2<double>> image_by_bisection(const View& view, const Vector3<double>& X) {
   const FlatPortOptics<double> optics(view.port);
   const Vector3<double>& n = view.port.normal;
@@ -31,7 +31,7 @@ std::optional<Vector2<double>> image_by_bisection(const View& view, const Vector
   return view.lens.pixel(bearing);
 }
 
-// Distance of a pixel from the image rectangle, 0 inside.
+// Distance of a pixel from the image rectangle along the axes; 0 inside.
 double distance_from_image(const View& view, const Vector2<double>& pixel) {
   const double u = std::max({0.0, -pixel.x(), pixel.x() - (view.width - 1)});
   const double v = std::max({0.0, -pixel.y(), pixel.y() - (view.height - 1)});
@@ -64,7 +64,7 @@ TYPED_TEST(Visibility, OnlyPointsInTheWidenedImageUpToRhoOverZOf20) {
       EXPECT_TRUE(image.visible);
       ++seen;
     }
-    // The margin is an eighth of 1024 px; 0.1 px for rounding near its edge.
+    // The margin is 128 px, an eighth of the width. 0.1 px allows for rounding near its edge.
     if (away > 128.1) {
       EXPECT_FALSE(image.visible) << X.transpose() << " at " << image.pixel.transpose();
       ++outside;
@@ -94,7 +94,7 @@ TYPED_TEST(Visibility, NothingOnTheLensSideOfTheOuterPlane) {
   }
 }
 
-// Without distance and thickness the projection's terms grow like powers of the inverse height.
+// Without distance and thickness, terms of the projection grow as powers of the inverse height.
 TYPED_TEST(Visibility, NothingBehindATiltedPortAtTheLens) {
   using T = TypeParam;
   Random random(15);
@@ -117,7 +117,7 @@ TYPED_TEST(Visibility, NothingBeyondTotalReflection) {
   Random random(13);
   for (int k = 0; k < 5000; ++k) {
     View view = random_view(random);
-    view.port.distance = 0;  // with an air gap every point in the water has a solution
+    view.port.distance = 0;  // with an air gap, light from every point in the water enters the air
     const double c_g = std::pow(view.port.n_glass / view.port.n_air, 2) - 1;
     const double c_w = std::pow(view.port.n_water / view.port.n_air, 2) - 1;
     const double z = random.log_uniform(0.05, 10);
@@ -174,7 +174,7 @@ TYPED_TEST(Visibility, TheAxisItselfIsSeen) {
   }
 }
 
-// Pixels that look along or away from the port still give finite rays.
+// Pixels that look parallel to the port or away from it must have finite rays.
 TYPED_TEST(Visibility, GrazingPixelsHaveFiniteRays) {
   using T = TypeParam;
   const View view{1000,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which camera type serves which mixture of housings.
+// Tests the camera type that make_camera_list() chooses for each mixture of housings.
 #include "scene/camera_list.h"
 
 #include <gmock/gmock.h>
@@ -43,7 +43,7 @@ TEST(CameraList, IsOfTheKindOfItsPorts) {
   EXPECT_EQ(kind({dry, with_barrel(dome), flat}, kExact), 7u);
 }
 
-// Same pixels, same rays, whatever the company.
+// A camera without a port has the same rays and pixels in a list with any other camera.
 TEST(CameraList, LeavesDryCamerasDry) {
   const CameraModel dry = test::dry_camera();
   const auto alone = std::get<refractive::PinholeCamera<double>>(make_camera<double>(dry));
@@ -66,7 +66,7 @@ TEST(CameraList, LeavesDryCamerasDry) {
   }
 }
 
-// One camera, whether it is made alone or in a list, and at any resolution.
+// The lens is the same for a camera made alone and in a list, and at every resolution.
 TEST(CameraList, KeepsTheLens) {
   const CameraModel barrel = with_barrel(test::behind_port(test::dry_camera()));
   const std::vector<CameraModel> models{barrel};
@@ -79,7 +79,7 @@ TEST(CameraList, KeepsTheLens) {
       std::get<Camera>(make_camera<double>(barrel.resized(2 * barrel.width, 2 * barrel.height)));
   const Eigen::Vector2d there = 2 * (pixel.array() + 0.5) - 0.5;
   EXPECT_LT((doubled.ray(there).direction - alone.ray(pixel).direction).norm(), 1e-14);
-  // And it is not the straight one.
+  // It differs from the lens without distortion.
   CameraModel straight = barrel;
   straight.distortion.reset();
   const auto other =
@@ -87,7 +87,7 @@ TEST(CameraList, KeepsTheLens) {
   EXPECT_GT((other.direction - alone.ray(pixel).direction).norm(), 1e-3);
 }
 
-// Behind flat ports and domes together, every camera is exactly the one that it is alone.
+// In a list with flat ports and domes, every camera is identical to the camera made alone.
 TEST(CameraList, LeavesEachItsOwnKindWherePortsDiffer) {
   const CameraModel dry = test::dry_camera(), flat = test::behind_port(dry), dome = behind_dome();
   const std::vector<CameraModel> models{

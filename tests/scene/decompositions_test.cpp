@@ -32,7 +32,8 @@ class Random {
   std::mt19937_64 engine_{7};
 };
 
-// The ends of three axes that are at right angles: their extents are in proportion to the axes.
+// The ends of three perpendicular axes. The extents of these points are proportional to the lengths
+// of the axes.
 Matrix3Xd axes(const Matrix3d& rotation, const Vector3d& lengths) {
   Matrix3Xd points(3, 6);
   points.leftCols<3>() = rotation * lengths.asDiagonal();
@@ -48,8 +49,9 @@ TEST(RelativeWidth, IsTheMiddleAxisOverTheLongest) {
     Matrix3Xd points =
         axes(random.rotation(), size * Vector3d(width * random.uniform(0, 1), 1, width));
     points.colwise() += 10 * size * random.vector();
-    // The shift leaves 15 digits of the coordinates, and so 1e-15 in the square of the width; its
-    // root has that divided by twice the width. Times ten for the sums.
+    // After the shift the coordinates have 15 digits, so that the square of the width has an error
+    // of 1e-15. The error of the width is this error divided by twice the width. A factor of ten
+    // allows for the sums.
     EXPECT_NEAR(relative_width(points), width, 1e-14 / width + 1e-12) << width << " " << size;
   }
 }
@@ -59,7 +61,7 @@ TEST(RelativeWidth, IsZeroForALineOnePlaceAndTooFewPoints) {
   const Vector3d start = random.vector(), along = random.vector();
   Matrix3Xd line(3, 9);
   for (Eigen::Index i = 0; i < 9; ++i) line.col(i) = start + static_cast<double>(i * i) * along;
-  // The root of the rounding of a square.
+  // The square root of the rounding error of the square.
   EXPECT_LT(relative_width(line), 1e-7);
   EXPECT_EQ(relative_width(start.replicate(1, 4)), 0);
   EXPECT_EQ(relative_width(start), 0);
@@ -73,10 +75,10 @@ TEST(SymmetricEigen, SolvesTheEquationInIncreasingOrder) {
     for (double& entry : matrix.reshaped()) entry = random.uniform(-1, 1);
     matrix += matrix.transpose().eval();
     Eigen::MatrixXd lower = matrix;
-    lower.triangularView<Eigen::StrictlyUpper>().setConstant(99);  // is not read
+    lower.triangularView<Eigen::StrictlyUpper>().setConstant(99);  // must not be read
     const EigenPairs pairs = symmetric_eigen(lower);
     for (Eigen::Index i = 0; i < size; ++i) {
-      // Some ten roundings of 1e-16 in each of the rows.
+      // About ten roundings of 1e-16 in each row.
       const Eigen::VectorXd vector = pairs.vectors.col(i);
       EXPECT_LT((matrix * vector - pairs.values(i) * vector).norm(), 1e-13);
       EXPECT_NEAR(vector.norm(), 1, 1e-14);
@@ -94,7 +96,8 @@ TEST(BestSimilarity, IsTheOneThatMovedThePoints) {
     const Vector3d translation = random.vector();
     const Matrix3Xd to = (scale * (rotation * from)).colwise() + translation;
     const SimilarityFit fit = best_similarity(from, to);
-    // Roundings of coordinates up to 20, 1e-15 each, for points a hundred times as long as wide.
+    // Roundings of 1e-15 of coordinates up to 20, for sets of points up to a hundred times as long
+    // as wide.
     EXPECT_NEAR(fit.scale, scale, 1e-12 * scale);
     EXPECT_LT((fit.rotation - rotation).norm(), 1e-12);
     EXPECT_LT((fit.translation - translation).norm(), 1e-11);
@@ -116,7 +119,7 @@ TEST(BestSimilarity, NeverReflects) {
   Random random;
   const Matrix3Xd from = random.points(6);
   const SimilarityFit fit = best_similarity(from, Vector3d(1, 1, -1).asDiagonal() * from);
-  // Some ten roundings of 1e-16.
+  // About ten roundings of 1e-16.
   EXPECT_NEAR(fit.rotation.determinant(), 1, 1e-14);
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 const Eigen::Vector3d kUtm(534000, 3378500, 30);
 
-// Within `spread` of `middle`, on a grid of a micrometre.
+// `count` random places. Each coordinate differs from that of `middle` by at most `spread`, in
+// steps of 1e-6 `spread`.
 std::vector<Eigen::Vector3d> places(std::size_t count, const Eigen::Vector3d& middle,
                                     double spread) {
   std::vector<Eigen::Vector3d> result(count);
@@ -40,8 +41,8 @@ RC_GTEST_PROP(LocalFrame, IsNearAFarScene, ()) {
   for (const double x : frame.origin) RC_ASSERT(std::fmod(x, 10) == 0);
   for (const Eigen::Vector3d& centre : centres) {
     RC_ASSERT(frame.to_local(centre).cwiseAbs().maxCoeff() <= 45);
-    // Local coordinates are below 64, where doubles are this far apart. Larger world coordinates
-    // come back exactly; smaller ones, as heights, may be rounded.
+    // Local coordinates are below 64, where doubles are 64 epsilon apart at most. World coordinates
+    // that are larger are restored exactly. Smaller ones, such as heights, may be rounded.
     const double step = 64 * std::numeric_limits<double>::epsilon();
     const Eigen::Vector3d back = frame.to_world(frame.to_local(centre));
     RC_ASSERT((back - centre).cwiseAbs().maxCoeff() <= step);
@@ -50,7 +51,7 @@ RC_GTEST_PROP(LocalFrame, IsNearAFarScene, ()) {
 }
 
 RC_GTEST_PROP(LocalFrame, MovesWithTheScene, ()) {
-  // A shift by whole tens changes nothing but the origin.
+  // A shift by multiples of ten changes only the origin.
   const auto tens = [] { return 10.0 * *rc::gen::inRange(200, 600000); };
   const Eigen::Vector3d shift(tens(), tens(), tens());
   auto centres = places(some(), {3000, 0, 0}, 20), moved = centres;
@@ -79,7 +80,7 @@ RC_GTEST_PROP(LocalFrame, TakesAWholeScene, ()) {
     scene.images.emplace_back().pose.centre = centre;
     scene.points.emplace_back().position = centre.cast<float>();
   }
-  scene.images.emplace_back().calibrated = false;  // its pose means nothing
+  scene.images.emplace_back().calibrated = false;  // its pose must be ignored
   scene.region = OrientedBox{Eigen::Matrix3d::Identity(), kUtm, {1, 2, 3}};
   const LocalFrame frame = frame_of(scene);
   Scene local = scene;

@@ -8,7 +8,7 @@
 namespace axial {
 namespace {
 
-// Cameras on a horizontal ring around the origin, looking at it.
+// Eight cameras on a horizontal circle around the origin, looking at the origin.
 Scene ring(double radius) {
   Scene scene;
   for (int i = 0; i < 8; ++i) {
@@ -35,7 +35,7 @@ TEST(EstimateRegion, BoxesWhatTheCamerasSurround) {
   for (const float s : {-0.5f, 0.5f}) add_point(scene, {s, 2 * s, 0.2f * s});
   add_point(scene, {0, 0, 0});
   scene.points.push_back(scene.points.back());
-  // Far behind: only a camera that looks away from the ring's centre would see it near.
+  // A point far behind the circle's centre, as seen from its only camera, must not count.
   scene.points.back().position = {100, 0, 0};
   scene.points.back().views = {{4, 0}};
   for (const RegionMode mode : {RegionMode::on, RegionMode::adaptive}) {
@@ -52,7 +52,8 @@ TEST(EstimateRegion, KeepsAVolumeAroundPointsInOnePlane) {
   for (const float s : {-0.5f, 0.5f}) add_point(scene, {s, 2 * s, 0});
   const auto region = estimate_region(scene, RegionMode::on);
   ASSERT_TRUE(region);
-  // 1.1 times half the extents 1, 2 and, for none at all, a tenth of the largest.
+  // 1.1 times half of the extents 1 and 2. The third extent is 0 and becomes a tenth of the
+  // largest.
   EXPECT_LT((region->half_extent - Eigen::Vector3d(0.55, 1.1, 0.11)).norm(), 1e-6);
 }
 

@@ -12,7 +12,7 @@
 namespace axial {
 namespace {
 
-// `points` points that `track` neighbours of a row of cameras see.
+// A row of cameras and `points` points. Each point is seen by `track` cameras next to each other.
 Scene row_of_cameras(std::size_t images, std::size_t points, std::size_t track) {
   std::vector<Pose> poses(images);
   for (std::size_t i = 0; i < images; ++i) poses[i].centre.x() = 0.1 * static_cast<double>(i);
@@ -27,10 +27,10 @@ Scene row_of_cameras(std::size_t images, std::size_t points, std::size_t track) 
   return scene;
 }
 
-// Large blocks are counted in pages.
+// Tolerance: large blocks are allocated in whole pages.
 constexpr std::uint64_t kPages = 1 << 16;
 
-// What is said beforehand is taken, and hardly less.
+// Scoring uses at most the memory of scoring_memory(), and not much less.
 TEST(ScoringMemory, IsWhatScoringTakes) {
   const ThreadLimit threads(2);
   struct Case {

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A grid of points on a slope 0.8 to 1.2 m in front of a circle of cameras, seen by all of them.
+// A grid of points on a slope, 0.8 to 1.2 m in front of a circle of cameras that all see the
+// points.
 Scene make_scene(const CameraModel& model, std::size_t count = 5, double radius = 0.2) {
   Scene scene = test::scene_of(model, test::circle_of_poses(count, radius));
   for (int i = -8; i <= 8; ++i) {
@@ -50,7 +51,7 @@ TEST(ScoreNeighbours, ReproducesStoredScores) {
       const ViewScore &a = actual.neighbours[k], &e = expected.neighbours[k];
       EXPECT_EQ(a.image, e.image);
       EXPECT_EQ(a.points, e.points);
-      // 1e-5: the precision the stored floats are accumulated with.
+      // 1e-5 is the precision with which the stored floats were accumulated.
       EXPECT_NEAR(a.scale / e.scale, 1, 1e-5);
       EXPECT_NEAR(a.angle / e.angle, 1, 1e-5);
       EXPECT_EQ(a.area, e.area);
@@ -80,7 +81,7 @@ RC_GTEST_PROP(ScoreNeighbours, APortOfAirChangesNothing, ()) {
     for (std::size_t k = 0; k < dry.images[i].neighbours.size(); ++k) {
       const ViewScore &a = dry.images[i].neighbours[k], &b = port.images[i].neighbours[k];
       RC_ASSERT(a.points == b.points);
-      // Rounding of projections and of directions stored as floats.
+      // Tolerances for the rounding of projections and of directions, which are stored as floats.
       RC_ASSERT(std::abs(a.scale - b.scale) < 1e-5f);
       RC_ASSERT(std::abs(a.angle - b.angle) < 1e-5f);
       RC_ASSERT(std::abs(a.score / b.score - 1) < 2e-2f);  // a point on a cell's border may move
@@ -88,7 +89,7 @@ RC_GTEST_PROP(ScoreNeighbours, APortOfAirChangesNothing, ()) {
   }
 }
 
-// Angle and scale from first principles, for cameras behind a port: two rays of known pixels.
+// Compares the angles for cameras behind a port with the angles between the rays of the pixels.
 TEST(ScoreNeighbours, MeasuresAnglesInTheWater) {
   const CameraModel model = test::behind_port(test::dry_camera());
   Scene scene = make_scene(model, 3);
@@ -109,7 +110,7 @@ TEST(ScoreNeighbours, MeasuresAnglesInTheWater) {
   };
   ASSERT_FALSE(scene.images[0].neighbours.empty());
   for (const ViewScore& view : scene.images[0].neighbours) {
-    // 1e-6: directions are kept as floats.
+    // 1e-6, because directions are stored as floats.
     EXPECT_NEAR(view.angle, std::acos(direction(0).dot(direction(view.image))), 1e-6);
   }
 }
@@ -146,7 +147,7 @@ TEST(ScoreNeighbours, WeighsPointsOutsideTheRegionLess) {
   Scene scene = make_scene(test::dry_camera());
   score_neighbours(scene);
   const float everywhere = scene.images[0].neighbours[0].score;
-  scene.region = OrientedBox{};  // of no extent: all points are outside
+  scene.region = OrientedBox{};  // has no extent, so that all points are outside
   score_neighbours(scene);
   EXPECT_NEAR(scene.images[0].neighbours[0].score, 0.7f * everywhere, 1e-4f * everywhere);
 }
@@ -164,8 +165,7 @@ TEST(ScoreNeighbours, SaysWhyAnImageCannotBeUsed) {
 }
 
 TEST(ScoreNeighbours, SaysWhereThePointsOfAnUnusableImageLie) {
-  // The first camera looks away from all points; the second is told points beside its image, of the
-  // third only the points that no other image sees are left.
+  // The first camera looks away from all points.
   Scene scene = make_scene(test::behind_port(test::dry_camera()));
   scene.images[0].pose.rotation =
       Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY()) * scene.images[0].pose.rotation;
@@ -183,7 +183,8 @@ TEST(ScoreNeighbours, SaysWhereThePointsOfAnUnusableImageLie) {
             "it sees only 0 sparse points (of 289 more, 289 seen by no other image)");
 }
 
-// Neighbours with one fault each, in any number: every one is counted once, under its own reason.
+// Any number of neighbours with one reason for rejection each. Every neighbour must be counted
+// once, under its own reason.
 RC_GTEST_PROP(WhyNoSourceView, CountsEachNeighbourOnce, ()) {
   const ViewSelectionOptions options;
   const auto good = [] {
@@ -220,11 +221,11 @@ RC_GTEST_PROP(WhyNoSourceView, CountsEachNeighbourOnce, ()) {
   }
 }
 
-// The bounds on the number of neighbours hold, and the closer one is exact where every camera can
-// have made its observations.
+// Tests the bounds of the number of neighbours. The bound of count_neighbours() is exact if every
+// camera can have made its observations.
 RC_GTEST_PROP(CountNeighbours, IsWhatScoringFinds, ()) {
   Scene scene = test::scene_of(test::dry_camera(), test::circle_of_poses(7, 0.2));
-  // Each track as bits of the images that see the point.
+  // The bits of a track are the images that see the point.
   const auto tracks = *rc::gen::container<std::vector<unsigned>>(rc::gen::inRange(0u, 128u));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     SparsePoint point;
@@ -280,7 +281,7 @@ TEST(FilterNeighbours, DropsUnsuitableOnesFromTheWorstWhileEnoughRemain) {
   list[5].area = 0.01f;
   list[7].scale = 4.0f;
   const auto filtered = filter_neighbours(list);
-  // 11 entries, 9 are to remain: 7 and 5 leave, the best one stays in spite of its angle.
+  // Of 11 neighbours 9 must remain. 7 and 5 are removed; 0 stays in spite of its angle.
   ASSERT_EQ(filtered.size(), 9u);
   EXPECT_EQ(filtered[0].image, 0u);
   for (const ViewScore& view : filtered) EXPECT_TRUE(view.image != 5 && view.image != 7);

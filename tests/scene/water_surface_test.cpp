@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The port that a water surface is to a camera, against light that crosses the plane in the world.
+// Compares the port of a water surface with rays of light that cross the surface in the world
+// frame.
 #include "scene/water_surface.h"
 
 #include <gmock/gmock.h>
@@ -34,8 +35,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// A drone's flight: any plane in any world, the camera 0.2 to 50 m above it, up to 60 degrees
-// inclined.
+// The camera of a drone above a water surface of any orientation. The camera is 0.2 to 50 m above
+// the surface and up to 60 degrees inclined.
 struct Flight {
   WaterSurface surface;
   Pose pose;
@@ -66,8 +67,8 @@ Flight any_flight(Random& random) {
   return flight;
 }
 
-// Where light from the camera's centre to X crosses the surface: on the line between the feet of
-// the two, at the only point that obeys Snell's law.
+// The point at which light from the camera centre to X crosses the surface. It lies on the line
+// between the feet of both points, and is found by bisection of Snell's law.
 Vector3d crossing(const WaterSurface& surface, const Vector3d& centre, const Vector3d& X) {
   const double above = surface.height_of(centre), below = -surface.height_of(X);
   const Vector3d foot = centre + above * surface.normal;
@@ -83,7 +84,8 @@ Vector3d crossing(const WaterSurface& surface, const Vector3d& centre, const Vec
   return foot + low * across;
 }
 
-// A point of the water that the pinhole without water would see: no ray of refractive/ is involved.
+// A point in the water that the pinhole would see without refraction. So the test uses no ray of
+// refractive/.
 Vector3d any_point(Random& random, const Flight& flight) {
   const CameraModel& camera = flight.camera;
   const Vector3d bearing = camera.lens.bearing(
@@ -107,7 +109,8 @@ TEST(WaterSurface, ProjectsAsLightThatCrossesThePlane) {
     ++tested;
     const Vector3d entry = crossing(flight.surface, flight.pose.centre, X);
     const auto expected = flight.camera.lens.pixel(flight.pose.to_camera(entry));
-    // Distances of 100 m have 1e-14 m: 1e-12 px for the camera, some digits for the oracle.
+    // The rounding of distances of 100 m is 1e-14 m and causes errors of 1e-12 px. The oracle loses
+    // some more digits.
     EXPECT_LT((image.pixel - expected).norm(), 1e-9);
     EXPECT_LT((flight.pose.to_world(camera.exit_point(image.pixel)) - entry).norm(), 1e-10);
     const auto ray = camera.ray(image.pixel);
@@ -116,10 +119,11 @@ TEST(WaterSurface, ProjectsAsLightThatCrossesThePlane) {
     EXPECT_LT(in_water.cross(way).norm(), 1e-9);
     EXPECT_GT(in_water.dot(way), 0);
   }
-  EXPECT_GT(tested, 500);  // refraction moves the others out of the image
+  EXPECT_GT(tested, 500);  // refraction moves some points out of the image
 }
 
-// What depth maps rely on: no point in the water lies behind a camera whose axis meets it.
+// No visible point in the water lies behind a camera whose axis meets the surface. Depth maps rely
+// on this property.
 TEST(WaterSurface, SeesOnlyWhatIsBeforeTheCamera) {
   Random random(2);
   int seen = 0;
@@ -141,7 +145,7 @@ TEST(WaterSurface, IsTheSamePortWhereverTheWorldIs) {
     const Flight flight = any_flight(random);
     const Eigen::Matrix3d turn(Eigen::AngleAxisd(random.between(0, 3), random.direction()));
     const Vector3d shift = 5 * random.direction();
-    // Another point of the plane will do, too.
+    // The result is the same for another point of the plane.
     const Vector3d in_plane = flight.surface.normal.cross(random.direction());
     WaterSurface moved = flight.surface;
     moved.normal = turn * flight.surface.normal;
@@ -156,7 +160,8 @@ TEST(WaterSurface, IsTheSamePortWhereverTheWorldIs) {
   }
 }
 
-// At x = 0, looking down from z = `height` on water at z = 1; turned about its x axis.
+// A camera at x = 0 and z = `height` that looks down at the water at z = 1, rotated about its x
+// axis.
 Pose above(double height, double incline_degrees) {
   Pose pose;
   pose.rotation = Eigen::AngleAxisd(incline_degrees * M_PI / 180, Vector3d::UnitX()) *

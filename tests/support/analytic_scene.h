@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plane with a sphere in front of it, and exact depth maps of it for any axial camera: every
-// pixel's ray is met with the surfaces in closed form.
+// A plane with a sphere in front of it, and exact depth maps of this scene for any axial camera.
+// The depth maps come from the intersection of every pixel's ray with the surfaces in closed form.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,7 +25,7 @@ struct AnalyticScene {
     Eigen::Vector3d normal;
   };
 
-  // The first surface on the ray.
+  // The first intersection of the ray with a surface.
   std::optional<Hit> hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
     std::optional<Hit> best;
     const double slope = direction.dot(plane.normal());
@@ -82,7 +82,7 @@ inline DepthMap exact_map(const AnalyticScene& scene, const CameraModel& model, 
   return map;
 }
 
-// 96 x 72 pixels, about 65 degrees wide.
+// A camera without a port: 96 x 72 pixels, about 65 degrees wide.
 inline CameraModel dry_camera() {
   CameraModel model;
   model.width = 96;
@@ -102,8 +102,8 @@ inline CameraModel behind_port(CameraModel model, double n_glass = 1.52, double 
   return model;
 }
 
-// `count` cameras on a circle of radius 0.2 m in the plane z = 0, looking at (0, 0, 1), turned
-// about their axes. With a port and indices above 1 they see a bit less.
+// `count` cameras on a circle around the z axis near the plane z = 0, looking at (0, 0, 1) and
+// rotated about their optical axes. `radius` [m].
 inline std::vector<Pose> circle_of_poses(std::size_t count, double radius = 0.2) {
   std::vector<Pose> poses(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,7 +118,7 @@ inline std::vector<Pose> circle_of_poses(std::size_t count, double radius = 0.2)
   return poses;
 }
 
-// A scene of those cameras without sparse points.
+// A scene with a camera `model` at each of `poses`, without sparse points.
 inline Scene scene_of(const CameraModel& model, const std::vector<Pose>& poses) {
   Scene scene;
   for (const Pose& pose : poses) {

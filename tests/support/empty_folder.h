@@ -9,8 +9,9 @@
 
 namespace axial::test {
 
-// An empty folder of the running test's own. Tests run side by side, those of one fixture too, and
-// each a second time in the sanitized build: no fixed name under the temporary folder is safe.
+// Creates an empty folder for the running test. Its name contains the test's name and the process
+// number: tests run in parallel, also those of one fixture, and each test runs a second time in the
+// sanitized build.
 inline std::filesystem::path empty_folder() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(testing::TempDir()) /

@@ -9,8 +9,8 @@
 
 namespace axial::test {
 
-// The message of the Error that `run` throws; empty, and a failure, if it throws none. Any other
-// exception ends the test.
+// Returns the message of the Error that `run` throws. If `run` throws nothing, the test fails and
+// the result is empty. Any other exception ends the test.
 template <class Run>
 std::string error_of(Run run) {
   try {

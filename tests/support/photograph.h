@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs of a painted plane: every pixel's rays are met with it.
+// Photographs of a painted plane. The rays of every pixel are intersected with the plane.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace axial::test {
 
-// `paint(x, y)`: how bright the plane z = 0 of the world is there, 0 to 1. 3 x 3 rays a pixel,
-// those at its corners alone where they are of one colour.
+// Renders the plane z = 0 of the world. `paint(x, y)`: brightness of the plane at (x, y), 0 to 1. A
+// pixel is the mean of 3 x 3 rays; if the four corner rays are equal, it takes their value.
 template <class Paint>
 cv::Mat1b photograph(const CameraModel& model, const Pose& pose, const Paint& paint) {
   constexpr int kSide = 3;
@@ -46,8 +46,8 @@ cv::Mat1b photograph(const CameraModel& model, const Pose& pose, const Paint& pa
   return image;
 }
 
-// A checkerboard whose inner corners are at whole multiples of `square` from (0, 0) on, with a
-// white margin of one square on grey ground.
+// A checkerboard whose inner corners lie at multiples of `square`, starting at (0, 0). It has a
+// white margin of one square and lies on grey ground.
 inline auto checkerboard(int columns, int rows, double square) {
   return [=](double x, double y) {
     const double column = std::floor(x / square), row = std::floor(y / square);
@@ -57,7 +57,7 @@ inline auto checkerboard(int columns, int rows, double square) {
   };
 }
 
-// A picture that spans (0, 0) to (width, height) of the plane, white beyond.
+// A picture that covers the plane from (0, 0) to (width, height). Outside, the plane is white.
 inline auto picture(const cv::Mat1b& pixels, double width, double height) {
   return [=](double x, double y) {
     const int column = static_cast<int>(std::floor(x / width * pixels.cols));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs one of the project's programs in a folder of the test's own.
+// Runs one of the project's programs in a folder that belongs to the test.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,10 +18,10 @@ namespace axial::test {
 
 struct Outcome {
   int exit_code;
-  std::string output;  // both streams
+  std::string output;  // standard output and standard error
 };
 
-// A fixture with an empty folder that goes with the test.
+// A fixture with an empty folder, which is removed at the end of the test.
 class ProgramTest : public testing::Test {
  protected:
   void SetUp() override { folder_ = empty_folder(); }
@@ -38,7 +38,7 @@ class ProgramTest : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
   }
 
-  // Exit code 1 and one line that says `expected`.
+  // Expects exit code 1 and exactly one line of output, which contains `expected`.
   void expect_refusal(const std::string& program, const std::string& arguments,
                       const std::string& expected) const {
     const Outcome outcome = run_program(program, arguments);

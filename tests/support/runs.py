@@ -110,7 +110,8 @@ def survey(views, base):
 
 # Reconstruction.
 
-# Instead of two of either: for what depends on the number of images and not on the sweeps.
+# One sweep of each kind instead of two, for measurements that depend on the number of images and
+# not on the number of sweeps.
 ONE_SWEEP = ("--iters", 1, "--geometric-iters", 1)
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sphere-capped floor with a solid texture, imaged through any axial camera by meeting its rays
-// with the surface: images and exact depth for tests of the matcher, in milliseconds.
+// A floor with a spherical cap and a solid texture. Images and exact depths for any axial camera
+// come from the intersection of its rays with the surface. Tests of the matcher use them, because
+// rendering takes only milliseconds.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +16,13 @@
 
 namespace axial::test {
 
-// Floor z = 2, and a sphere of radius 0.5 around (0, 0, 2.2) rising out of it; with a bar along y
-// before them, if it has a width.
+// The floor is z = 2. A sphere of radius 0.5 around (0, 0, 2.2) projects from it. If bar_width is
+// not 0, there is a bar parallel to y in front of them.
 struct TexturedScene {
   double cell = 0.02;    // size of the finest texture detail [m]
-  double bar_width = 0;  // around x = -0.15, z = 1.2 [m]
+  double bar_width = 0;  // width of the bar at x = -0.15, z = 1.2 [m]
 
-  // Distance along the ray to the surface.
+  // Distance [m] along the ray to the surface.
   double depth(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
     const double bar = (1.2 - origin.z()) / direction.z();
     if (std::abs(origin.x() + bar * direction.x() + 0.15) < bar_width / 2) return bar;
@@ -38,7 +39,7 @@ struct TexturedScene {
     return sphere > 0 && sphere < floor ? sphere : floor;
   }
 
-  // Smooth noise in three octaves, about 0 to 1.
+  // The intensity at x: smooth noise in three octaves, about 0 to 1.
   double texture(const Eigen::Vector3d& x) const {
     return 0.45 * noise(x / cell, 1) + 0.35 * noise(x / (3 * cell), 2) +
            0.2 * noise(x / (9 * cell), 3);
@@ -72,7 +73,8 @@ struct RenderedView {
   cv::Mat1f depth;  // lambda
 };
 
-// Four samples a pixel for the image, the pixel centre's ray for the depth.
+// Renders with four samples per pixel for the image, and the ray of the pixel's centre for the
+// depth.
 inline RenderedView render(const TexturedScene& scene, const CameraModel& model, const Pose& pose) {
   RenderedView view{cv::Mat1b(model.height, model.width), cv::Mat1f(model.height, model.width)};
   std::visit(
