@@ -25,8 +25,7 @@ class Svg {
   // `kind` is a class of the style sheet: "title", "small", "grid" or "axis".
   void text(double x, double y, std::string_view content, Anchor anchor = Anchor::kStart,
             std::string_view kind = "");
-  void upright_text(double x, double y,
-                    std::string_view content);  // upwards, centred
+  void upright_text(double x, double y, std::string_view content);  // upwards, centred
   void line(double x1, double y1, double x2, double y2, std::string_view kind);
   void polyline(const std::vector<cv::Point2d>& points, std::string_view color);
   void circle(double x, double y, std::string_view color, std::string_view tip);
