@@ -63,7 +63,8 @@ Preset make_preset(const PresetOptions& options);
 // The port of `view`: the preset's port, or its water surface.
 Port port_of_view(const Preset& preset, const View& view);
 
-// Error that names the view and the value if check_port refuses the port of a view.
+// Error if check_port refuses the port of a view. It names the value, and the view if there is a
+// water surface.
 void check_ports(const Preset& preset);
 
 // Error unless the whole mesh is below the preset's water surface. No effect without one.

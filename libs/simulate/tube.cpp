@@ -11,8 +11,7 @@ namespace {
 
 // A cross section.
 struct Ring {
-  Eigen::Vector3d centre, across,
-      up;  // across, up: unit vectors perpendicular to the spine
+  Eigen::Vector3d centre, across, up;  // across and up: unit, square to the spine
   double radius = 0;
 };
 
