@@ -41,7 +41,7 @@ struct PlaceOptions {
 };
 
 // Classifies the pixels. `truth`: distances along the rays of `camera` [m]; 0: no truth. `grey`:
-// the photograph. Error unless both have the size of the camera's image, or if the reach is below
+// the photograph. Error unless both have the size of the camera's image and the reach is at least
 // 1.
 PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
                    const PlaceOptions& options = {});

@@ -35,6 +35,8 @@ ColmapPose pose_to_colmap(const Pose& pose);
 // finite.
 void check_colmap_camera(const ColmapCamera& camera, const std::string& where);
 
+// Read one part of a model from a file. Error that names the file and the record for malformed or
+// truncated data. References between the parts are not checked.
 std::vector<ColmapCamera> read_cameras_text(const std::filesystem::path& path);
 std::vector<ColmapImage> read_images_text(const std::filesystem::path& path);
 std::vector<ColmapPoint3D> read_points_text(const std::filesystem::path& path);

@@ -29,12 +29,13 @@ struct ColmapImport {
 //
 // An image id is COLMAP's id minus one, or COLMAP's id if the ids start at 0. The views of a sparse
 // point are sorted by image and have confidence 0. An image that occurs twice in a track counts
-// once, and a line of the log states how many such observations there are. Memory holds the
-// undistortion maps of only those images that are in work, at most one for each thread.
+// once, and a line of the log states how many such observations there are.
 //
-// Error that names the file, the field and the value, before any file is written. The model must
-// have at least two images. Every image file must exist and have the size of its camera. No two
-// images may be undistorted to the same file, and no undistorted image may replace a photograph.
+// Memory: undistortion maps exist only for images in work, at most one image for each thread.
+//
+// Error that names the file, the field and the value, before any file is written, if the model has
+// fewer than two images, an image file is missing or has another size than its camera, two images
+// would be undistorted to the same file, or an undistorted image would replace a photograph.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
                           const ProgressSink& preparing_cameras = {});

@@ -61,8 +61,11 @@ void check_port(const HousingPort& port, const std::string& where);
 // ports that move with the camera.
 void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& file);
 
+// `checked`: unusual values give warnings (warn_of_port_values).
+enum class PortValues { checked, passed_over };
 // Reads a housing file, or the port of Calibmar's calibration.yaml (calibmar.h), which then holds
-// for all images. Lengths are metres; directions and the dome centre are in the camera frame.
+// for all images. Lengths are metres. Directions and the dome centre are in the camera frame, a
+// water surface is in the world.
 //
 // Error that names the file, the key and the value for an unknown key, a wrong type, a version
 // other than 1, an unknown port type, a port name that is not defined, an index outside 1 to 3, a
@@ -70,12 +73,10 @@ void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& 
 // 0.9 times the inner radius, a water or glass index below that of air, or a Calibmar file that
 // does not mention a port. A normal whose length differs from 1 by more than 1e-6 is normalised
 // with a warning.
-//
-// Values that are possible but unusual under water give warnings (warn_of_port_values) unless
-// `values` is passed_over.
-enum class PortValues { checked, passed_over };
 Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked);
 
+// Writes a housing file. Error that names the file and the port for values that are not possible or
+// a port name that is not defined.
 void write_housing(const std::filesystem::path& path, const Housing& housing);
 
 // "<scene without extension>.housing.json".

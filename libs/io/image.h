@@ -43,8 +43,9 @@ cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits);
 // Reads a photograph in 8 bits. Of 16-bit values the upper 8 bits are kept.
 cv::Mat3b read_color_image(const std::filesystem::path& path);
 
-// Reads a label image of 8 or 16 bits as 16 bits. It has one channel, or three equal ones; alpha is
-// ignored. For a PNG with a palette, the labels are the palette indices. Error for other images.
+// Reads a label image of 8 or 16 bits as 16 bits. It has one channel, or three equal ones; the
+// alpha of a PNG is ignored. For a PNG with a palette, the labels are the palette indices. Error
+// for other images.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
 // Error if a mask of `size` is not a resized version of an image of size `image` (the aspect ratios
@@ -58,6 +59,8 @@ cv::Mat1f read_float_tiff(const std::filesystem::path& path);
 cv::Mat3f read_float3_tiff(const std::filesystem::path& path);
 void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image);
 
+// Write an image (B G R or grey). Error if it cannot be encoded or written. JPEG `quality`: 0 to
+// 100.
 void write_jpeg(const std::filesystem::path& path, const cv::Mat3b& image, int quality);
 void write_png(const std::filesystem::path& path, const cv::Mat& image);
 

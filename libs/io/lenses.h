@@ -21,8 +21,9 @@ struct Lenses {
 // "<scene without extension>.lenses.json".
 std::filesystem::path lenses_beside(const std::filesystem::path& scene_path);
 
-// Error that names the file, the key and the value for an unknown key, a wrong type, a lens name
-// that is not defined, a version other than 1, or numbers that are not possible.
+// Read and write the file. Error of reading that names the file, the key and the value for an
+// unknown key, a wrong type, a lens name that is not defined, a version other than 1, or numbers
+// that are not possible.
 Lenses read_lenses(const std::filesystem::path& path);
 void write_lenses(const std::filesystem::path& path, const Lenses& lenses);
 

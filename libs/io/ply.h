@@ -66,6 +66,7 @@ class CloudWriter {
 
   std::size_t size() const;  // points so far
 
+  // Writes the number of points and gives the file its name. Error if the file cannot be written.
   void finish();
 
  private:
@@ -83,6 +84,7 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
+// Writes a mesh with its colours, if it has any. Error if there is not one colour for each vertex.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 

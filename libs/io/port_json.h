@@ -40,7 +40,7 @@ WaterSurface water_surface_from_json(const JsonPlace& place);
 nlohmann::json water_surface_to_json(const WaterSurface& surface);
 
 // Returns `n` normalised; unchanged if its length is 1 up to rounding. Warns if the length differs
-// from 1 by more than 1e-6. Error that starts with `where` if `n` is zero or not finite.
+// from 1 by more than 1e-6. Error that starts with `where` if `n` is almost zero or not finite.
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
 
 // Error that starts with `where` for values that are not possible: see read_housing (housing.h).
