@@ -57,7 +57,7 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
   for (const io::ColmapImage& image : reference.images) poses[image.name] = image.pose;
   CentreAlignment result;
   std::vector<Eigen::Vector3d> source, target;
-  std::vector<Eigen::Matrix3d> apart;  // from the model's world to the reference's
+  std::vector<Eigen::Matrix3d> apart;  // rotations from the model's world to the reference's
   for (const io::ColmapImage& image : model.images) {
     const auto found = poses.find(image.name);
     if (found == poses.end()) continue;

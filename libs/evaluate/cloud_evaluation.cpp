@@ -12,7 +12,7 @@
 namespace axial::evaluate {
 namespace {
 
-// What nanoflann asks of a point set.
+// The interface that nanoflann requires of a point set.
 struct PointSet {
   std::span<const Eigen::Vector3f> points;
 
@@ -109,7 +109,8 @@ CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface
                               std::span<const View> views, const CloudOptions& options,
                               std::vector<Eigen::Vector3f>& sampled) {
   check(options);
-  // Another seed than the truth's: the same mesh twice must not meet itself in the same points.
+  // The seed differs from that of the truth, so that a mesh that is compared with itself is not
+  // sampled at the same points.
   sampled = sample_surface(mesh, options.samples, options.seed + 1);
   Places places = draw_places(truth, surface, views, options);
   std::vector<float> found = distances_to(Surface(mesh), places.positions);

@@ -48,7 +48,7 @@ void check(const cv::Mat1f& estimate, const cv::Mat1f& truth, const DepthOptions
       fail("tolerance is {}: it must be a positive length in metres", tolerance);
 }
 
-// `count` rings of equal width from the image centre to its corners.
+// Divides an image into `count` rings of equal width from the centre to the corners.
 class Rings {
  public:
   Rings(cv::Size size, std::size_t count)

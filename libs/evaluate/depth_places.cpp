@@ -12,8 +12,8 @@
 namespace axial::evaluate {
 namespace {
 
-// Windows of 2 reach + 1 pixels that hold both pixels of a jump to the next column, or to the next
-// row if `to_row` is 1.
+// Marks the centres of the windows of 2 reach + 1 pixels that contain both pixels of a jump to the
+// next column, or to the next row if `to_row` is 1.
 cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PlaceOptions& options) {
   cv::Mat1b jumps(truth.size(), std::uint8_t{0});
   for (int v = 0; v + to_row < truth.rows; ++v)
@@ -22,7 +22,8 @@ cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PlaceOpti
       if (std::max(a, b) < static_cast<float>(options.jump) * std::min(a, b)) continue;
       jumps(v, u) = jumps(v + to_row, u + 1 - to_row) = 1;
     }
-  // Both pixels are marked: where a window holds one alone, it holds no jump.
+  // Both pixels of a jump are marked. A window that contains only one of them contains no jump, so
+  // the structuring element is two pixels shorter along the jump.
   const int side = 2 * options.reach + 1;
   const cv::Size window = to_row ? cv::Size(side, side - 2) : cv::Size(side - 2, side);
   cv::dilate(jumps, jumps, cv::getStructuringElement(cv::MORPH_RECT, window));
@@ -46,8 +47,8 @@ cv::Mat1f deviations_of(const cv::Mat1b& grey, int reach) {
   return deviation;
 }
 
-// From the points that the neighbouring pixels see, one-sided at the border; 0 beside missing
-// truth.
+// The cosine of the angle between ray and surface normal. The normal is computed from the points of
+// the neighbouring pixels, one-sided at the border. 0 beside pixels without truth.
 template <class Camera>
 double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v) {
   bool whole = true;
@@ -62,15 +63,15 @@ double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v)
   return std::abs(across.cross(down).normalized().dot(camera.ray({u, v}).direction));
 }
 
-// How the pixels of one map are seen by a source view.
+// The position of a pixel of one map in a source view.
 struct Seen {
-  double phase;  // of the true image
-  double shift;  // of the estimated one [px]
+  double phase;  // fractional part of the true position
+  double shift;  // estimated minus true position [px]
 };
 
 using Ray = refractive::AxialRay<double>;
 
-// Of the open pixels of row v; `rays`: that row's.
+// Appends the open pixels of row v to `all`. `rays`: the rays of that row.
 template <class Source>
 void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const DepthMap& source_map,
               const Source& source, std::vector<Seen>& all) {
@@ -95,7 +96,7 @@ void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const D
   }
 }
 
-// Row by row, so that neither camera's type has to know of the other's.
+// Works row by row, so that no code is needed for each pair of camera types.
 void add_seen(const PlacedMap& placed, const DepthMap& source, std::vector<Seen>& all) {
   const auto from = make_camera<double>(placed.map->camera),
              to = make_camera<double>(source.camera);

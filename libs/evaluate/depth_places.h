@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where in depth maps the errors are, and whether depths are drawn towards whole pixels of a source
-// view.
+// Finds where in depth maps the errors are, and whether depths are biased towards whole pixels of a
+// source view.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace axial::evaluate {
 
-// What a pixel lies on, the first that applies.
+// The class of a pixel; the first that applies.
 enum class Place : std::uint8_t {
   nothing,  // no truth
-  edge,     // a window around the pixel sees two surfaces, or pixels without truth
+  edge,     // the window around the pixel contains two surfaces, or pixels without truth
   plain,    // no texture
-  steep,    // the surface turns away
-  open      // none of these
+  steep,    // the surface is seen at a steep angle
+  open      // none of the other classes
 };
 
 struct PlaceMap {
@@ -35,32 +35,34 @@ struct PlaceMap {
 
 struct PlaceOptions {
   int reach = 4;               // half of the matching window [px], at least 1
-  double jump = 1.02;          // ratio of neighbouring true distances that is an edge
-  double least_deviation = 5;  // standard one of the grey values in the window, else it is plain
-  double steep_degrees = 60;   // between the ray and the surface's normal
+  double jump = 1.02;          // ratio of neighbouring true distances at an edge
+  double least_deviation = 5;  // standard deviation of grey values in a window with texture
+  double steep_degrees = 60;   // angle between the ray and the surface normal
 };
 
-// `truth`: distances along the rays of `camera` [m], 0: none. `grey`: the photograph. Both of the
-// camera's size. Error if they are not.
+// Classifies the pixels. `truth`: distances along the rays of `camera` [m]; 0: no truth. `grey`:
+// the photograph. Error unless both have the size of the camera's image and the reach is at least
+// 1.
 PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
                    const PlaceOptions& options = {});
 
-// A depth map, what it is worth, and what its pixels lie on.
+// A depth map, its evaluation, and the classes of its pixels.
 struct PlacedMap {
   const DepthMap* map;
   DepthEvaluation evaluation;
   PlaceMap places;
 };
 
-// An error of more than PlaceOptions::jump - 1 of the true distance: mostly another surface, or
-// none. A mean that has such errors in it says nothing of the others.
+// True for an error of more than 2 % of the true distance (PlaceOptions::jump - 1). Most gross
+// errors lie on another surface or on none. A mean that includes gross errors says nothing about
+// the other errors.
 bool is_gross(float error, float truth);
 
-// |estimate - truth| [m] of pixels that have both.
+// Values of |estimate - truth| [m] of pixels that have both.
 struct Magnitudes {
-  std::vector<float> all, fine;  // fine: those not gross
+  std::vector<float> all, fine;  // fine: without gross errors
 
-  // Nothing where `error` is not finite: no estimate, or no truth.
+  // Ignores the pixel if `error` is not finite (no estimate or no truth).
   void add(float error, float truth);
   std::size_t gross() const { return all.size() - fine.size(); }
 };
@@ -68,25 +70,26 @@ struct Magnitudes {
 struct PlaceErrors {
   Place place;
   std::size_t truth_pixels = 0, compared_pixels = 0;
-  std::size_t gross_pixels = 0;  // of the compared ones
-  double median = 0;             // of |estimate - truth| [m]; 0 where nothing is compared
-  double mean = 0;               // the same, of those not gross; 0 where there are none
+  std::size_t gross_pixels = 0;  // compared pixels with a gross error
+  double median = 0;             // of |estimate - truth| [m]; 0 without compared pixels
+  double mean = 0;               // of the errors that are not gross [m]; 0 without any
 };
 
-// All pixels of all maps, from `edge` to `open`.
+// Returns the errors of all pixels of all maps for each class from `edge` to `open`.
 std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps);
 
-// Pixels whose true image in a source view lies between two fractions of a pixel.
+// Pixels whose true position in a source view has a fractional part within [begin, end).
 struct PhaseErrors {
   double begin = 0, end = 0;
   std::size_t count = 0;
-  double shift = 0;  // median of estimated minus true position there [px]
+  double shift = 0;  // median of estimated minus true position [px]
 };
 
-// Of all open pixels that the source view images, along its axis (columns or rows) on which a depth
-// moves the image more; `bins` of equal width. The source view is the first one of a map's list
-// that is among `maps`. Pixels more than half a pixel off are left out: they are wrong for other
-// reasons. What interpolation or a rounded projection does to depths comes out as a wave over the
+// Returns `bins` bins of equal width over all open pixels that are visible in a source view. The
+// source view of a map is the first one in its list that is among `maps`. Positions are taken along
+// the axis of the source view (columns or rows) in which a change of depth moves the image more.
+// Pixels that are off by more than half a pixel are left out, because they are wrong for other
+// reasons. Interpolation, or rounding in the projection, shows as a wave over the fraction of a
 // pixel.
 std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins);
 

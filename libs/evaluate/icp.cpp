@@ -30,7 +30,8 @@ std::vector<Pair> find_pairs(std::span<const Eigen::Vector3f> points, const Surf
       [&](std::size_t i) {
         const Eigen::Vector3d x = transform(points[i].cast<double>());
         const ClosestPoint closest = surface.closest(x);
-        // On the surface itself the gradient has two signs; either holds the point in its plane.
+        // On the surface itself the sign of the gradient is undefined. Either sign holds the point
+        // in the plane.
         const Eigen::Vector3d normal = closest.distance > 1e-12
                                            ? Eigen::Vector3d((x - closest.point) / closest.distance)
                                            : surface.face_normal(closest.face);
@@ -63,8 +64,8 @@ Frame frame_of(std::span<const Eigen::Vector3f> points) {
   return {centre, std::sqrt(sum / static_cast<double>(points.size()))};
 }
 
-// The step (rotation vector times radius, translation) that lessens the pairs' squared distances
-// most; none along directions that the pairs leave open.
+// Returns the step (rotation vector times radius, translation) that minimises the squared distances
+// of the pairs. The step is zero along directions that the pairs do not constrain.
 Vector6d solve_step(const std::vector<Pair>& pairs, const Eigen::Vector3d& centre, double radius,
                     double limit) {
   Matrix6d normal_matrix = Matrix6d::Zero();

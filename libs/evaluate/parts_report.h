@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of an evaluation by numbers of views, thickness, expected error and along a strip: as
-// text for people and as JSON for programs (fields: docs/evaluate.md).
+// Reports the parts of an evaluation (by number of views, by thickness, by expected error, along a
+// strip) as text for people and as JSON for programs (fields: docs/evaluate.md).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,8 +13,9 @@
 
 namespace axial::evaluate {
 
-// Recall of classes without places, and errors of classes without points, are null. Lengths in the
-// JSON are metres, in the tables millimetres. `tolerances`: those of the shares, in their order.
+// Recall of a class without places and errors of a class without points are null in the JSON.
+// Lengths are metres in the JSON and millimetres in the tables. `tolerances` are those of the
+// shares, in their order.
 nlohmann::ordered_json to_json(std::span<const RecallOfViews> classes);
 nlohmann::ordered_json to_json(std::span<const RecallOfThickness> classes);
 nlohmann::ordered_json to_json(std::span<const ErrorsOfViews> classes);

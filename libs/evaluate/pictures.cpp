@@ -55,7 +55,7 @@ cv::Mat3b panel(const cv::Mat3b& picture, const std::string& caption, int width)
   return framed;
 }
 
-// In camera coordinates; z is the order of what hides what.
+// Projects all points. x and y are pixels; z is the depth by which points hide each other.
 std::vector<Eigen::Vector3f> project_all(std::span<const Eigen::Vector3f> positions,
                                          const Viewpoint& view) {
   std::vector<Eigen::Vector3f> images;
@@ -195,7 +195,7 @@ cv::Mat3b draw_depth_comparison(const cv::Mat1f& estimate, const DepthEvaluation
   const auto [near, far] = inner_range(std::move(depths), 2);
   const cv::Mat3b depth_table = color_table(cv::COLORMAP_VIRIDIS);
   cv::Mat1f shown = evaluation.error.clone();
-  // A pixel without any error is a result; only what is missing (NaN) is left grey.
+  // A pixel with error 0 is a result. Only missing pixels (NaN) stay grey.
   for (float& value : shown) value = std::max(std::abs(value), std::numeric_limits<float>::min());
   const std::array<cv::Mat3b, 3> panels{
       panel(colored(estimate, near, far, depth_table),

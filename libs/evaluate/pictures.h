@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors as colours and as pictures.
+// Shows errors as colours and in pictures.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,13 +13,14 @@
 
 namespace axial::evaluate {
 
-// The colour ramp of all error pictures: OpenCV's "turbo", dark violet at 0 through blue, cyan,
-// green and yellow to dark red at `upper` and beyond. Not finite: black.
+// The colour of an error in all error pictures: OpenCV's "turbo" map from dark violet (0) through
+// blue, cyan, green and yellow to dark red (`upper` and beyond). Black for an error that is not
+// finite.
 Rgb error_color(float error, double upper);
 std::vector<Rgb> error_colors(std::span<const float> errors, double upper);
 
-// From where a cloud is looked at. Camera frame as in Pose; `focal` is in pixels, or for parallel
-// rays (orthographic) in pixels per metre.
+// The viewpoint of a picture of a cloud. The camera frame is that of Pose. The focal lengths are in
+// pixels, or in pixels per metre for parallel rays (orthographic).
 struct Viewpoint {
   Pose pose;
   int width = 0, height = 0;
@@ -27,24 +28,26 @@ struct Viewpoint {
   bool orthographic = false;
 };
 
-// What the camera of `view` would see in air with a straight lens, `width` pixels wide.
+// The viewpoint of the camera of `view` in air with a lens without distortion, `width` pixels wide.
 Viewpoint viewpoint_of(const View& view, int width);
 
-// Along the direction of least extent of the points, against their normals where there are any, so
-// that all but their outermost hundredth on each side fill the picture.
+// An orthographic viewpoint along the direction in which the points extend least, against their
+// normals if there are any. All points fill the picture, except the outermost hundredth on each
+// side.
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height);
 
-// The points as little squares on white, the nearest in front. Their size follows the number of
-// points, so that dense clouds look closed.
+// Draws the points as small squares on white; the nearest point covers the others. The size of the
+// squares follows from the number of points, so that dense clouds look closed.
 cv::Mat3b draw_cloud(std::span<const Eigen::Vector3f> positions, std::span<const Rgb> colors,
                      const Viewpoint& viewpoint);
 
-// `picture` with the error ramp and its ticks [mm] below.
+// Returns `picture` with the error ramp and its ticks [mm] below.
 cv::Mat3b with_error_scale(const cv::Mat3b& picture, double upper);
 
-// Depth beside truth beside absolute error, each with a caption, each at most `panel_width` pixels
-// wide. Depths share one scale (2nd to 98th percentile of the truth); nothing: dark grey.
+// Draws depth, truth and absolute error side by side, each with a caption and at most `panel_width`
+// pixels wide. Depth and truth share one scale (2nd to 98th percentile of the truth). Missing
+// pixels are dark grey.
 cv::Mat3b draw_depth_comparison(const cv::Mat1f& estimate, const DepthEvaluation& evaluation,
                                 double upper, int panel_width = 640);
 

@@ -11,8 +11,8 @@
 namespace axial::evaluate {
 namespace {
 
-constexpr std::size_t kMostDraws = 20;     // times the samples asked for
-constexpr std::uint32_t kEnoughViews = 4;  // so many and more are one class
+constexpr std::size_t kMostDraws = 20;     // factor of the requested samples
+constexpr std::uint32_t kEnoughViews = 4;  // this many views and more are one class
 
 Places seen_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
                    std::size_t samples, const PlaceDraw& draw) {
@@ -35,7 +35,7 @@ Places seen_places(const Mesh& truth, const Surface& surface, std::span<const Vi
   return places;
 }
 
-// Adds a place to the class that `is_in` is true of.
+// Counts a place in the first class for which `is_in` is true.
 template <class Class, class IsIn>
 void count_place(std::vector<Class>& classes, float distance, std::span<const double> tolerances,
                  IsIn is_in) {
@@ -53,7 +53,8 @@ void counts_to_shares(std::vector<Class>& classes) {
       if (one.places > 0) recall /= static_cast<double>(one.places);
 }
 
-// At a place: 0 if its face is not wholly of something thin.
+// The thickness at a place: the mean of the face's corners, or 0 if not all corners belong to a
+// thin structure.
 double thickness_at(const Mesh& truth, std::uint32_t face, std::span<const float> thickness) {
   double sum = 0;
   for (const std::uint32_t corner : truth.faces[face]) {
@@ -83,7 +84,8 @@ Places draw_places(const Mesh& truth, const Surface& surface, std::span<const Vi
                    const PlaceDraw& draw) {
   Places places = seen_places(truth, surface, views, draw.samples, draw);
   if (views.empty()) return places;
-  // A truth that reaches far beyond the pictures needs more samples for as many that count.
+  // If the truth reaches far beyond the photographs, more samples are needed for the same number
+  // that count.
   const std::size_t factor =
       std::min(kMostDraws, draw.samples / std::max<std::size_t>(places.size(), 1));
   if (factor > 1) places = seen_places(truth, surface, views, factor * draw.samples, draw);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places of the truth that cameras see, and how much of them a reconstruction has: by the number of
-// cameras, and by the thickness of what they are part of.
+// Places of the truth that cameras see, and the share of them that a reconstruction contains: by
+// the number of cameras, and by the thickness of the structure to which a place belongs.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,13 +14,13 @@
 
 namespace axial::evaluate {
 
-// Samples of the truth. Every array is as long as `positions`; `views` is empty if there are no
-// cameras.
+// Samples of the truth. All arrays have the length of `positions`, but `views` is empty if there
+// are no cameras.
 struct Places {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<std::uint32_t> faces;  // of the truth, that they lie on
-  std::vector<std::uint32_t> views;  // that see each of them, as count_views has it
-  std::size_t drawn = 0;             // samples of the truth that they were chosen from
+  std::vector<std::uint32_t> faces;  // faces of the truth on which the samples lie
+  std::vector<std::uint32_t> views;  // number of views that see each sample (count_views)
+  std::size_t drawn = 0;             // samples of the truth before the selection
 
   std::size_t size() const { return positions.size(); }
 };
@@ -31,34 +31,37 @@ struct PlaceDraw {
   std::uint32_t least_views = 2;
 };
 
-// Samples of `truth`, uniform by area, that `least_views` of `views` see, or all if there are no
-// views. If few of them are seen, up to 20 times as many are drawn, so that about `samples` count.
-// `surface` is the one of `truth`. Error if none is seen.
+// Draws samples of `truth`, uniform by area. Keeps those that at least `least_views` of `views`
+// see, or all if there are no views. If few of `samples` samples are seen, up to 20 times as many
+// are drawn, so that about `samples` remain. `surface` must be made from `truth`. Error if no
+// sample is seen.
 Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
                    const PlaceDraw& draw);
 
-// Of the places that `least` to `most` views see.
+// Recall of the places that `least` to `most` views see.
 struct RecallOfViews {
   std::uint32_t least = 0, most = 0;  // most 0: or more
   std::size_t places = 0;
-  std::vector<double> recall;  // share of them within each tolerance; 0 where there are none
+  std::vector<double> recall;  // share of places within each tolerance; 0 without places
 };
 
-// Exactly `least` views, exactly one more, ... and, from 4 on, all that more see. `distances`: of
-// each place to the reconstruction.
+// Returns a class for exactly `least` views, for exactly one more, and so on, and a last class for
+// 4 or more views (`least` or more, if `least` is above 4). `distances`: from each place to the
+// reconstruction [m].
 std::vector<RecallOfViews> recall_by_views(const Places& places, std::span<const float> distances,
                                            std::span<const double> tolerances, std::uint32_t least);
 
-// Of the places on structures that are so many pixels thick.
+// Recall of the places on structures with a thickness in [least, most).
 struct RecallOfThickness {
-  double least = 0, most = 0;  // [px]; both 0: what is not thin; most 0: or more
+  double least = 0, most = 0;  // [px]; both 0: not thin; only most 0: `least` or more
   std::size_t places = 0;
   std::vector<double> recall;  // as RecallOfViews
 };
 
-// `thickness`: of the structure at each vertex of the truth [m], 0 where it is not thin. Its pixels
-// are counted where the views that see a place have them, in the mean. Classes in steps of two
-// around 1, 2, 4, 8 and 16 pixels, and last what is not thin.
+// Returns classes by a factor of two around 1, 2, 4, 8 and 16 pixels, a class of thicker
+// structures, and last the places that are not thin. `thickness`: of the structure at each vertex
+// of the truth [m], 0 where it is not thin. It is converted to pixels with the mean pixel width of
+// the views that see the place. Error unless there is one thickness for each vertex.
 std::vector<RecallOfThickness> recall_by_thickness(const Places& places,
                                                    std::span<const float> distances,
                                                    std::span<const double> tolerances,

@@ -27,7 +27,8 @@ std::vector<double> shares_within(std::span<const float> distances,
   return within;
 }
 
-// The values of the points that rest on `least` to `most` views; most 0: or more.
+// The values of the points that were fused from `least` to `most` depth maps; most 0: `least` or
+// more.
 std::vector<float> of_views(std::span<const float> values, std::span<const std::uint32_t> views,
                             std::uint32_t least, std::uint32_t most) {
   std::vector<float> chosen;
@@ -45,7 +46,7 @@ NormalisedErrors summary_of(std::vector<float> normalised) {
   return errors;
 }
 
-// Distances of points in units of their expected errors; not a number where none is expected.
+// The distances of points divided by their expected errors; NaN where no error is expected.
 std::vector<float> normalised(const PointWorth& worth, std::span<const float> distances) {
   std::vector<float> result(distances.size(), NAN);
   for (std::size_t i = 0; i < distances.size(); ++i)

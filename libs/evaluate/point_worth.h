@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cloud says its points are worth, against their true errors.
+// Compares the errors that a cloud expects of its points with the true errors.
 #pragma once
 
 #include <array>
@@ -11,46 +11,49 @@
 
 namespace axial::evaluate {
 
-// Each array is empty, or one a point.
+// Each array is empty or has one element for each point.
 struct PointWorth {
-  std::vector<std::uint32_t> views;  // depth maps that the point rests on
+  std::vector<std::uint32_t> views;  // number of depth maps from which the point was fused
   std::vector<float> error;          // expected standard deviation [m]
   std::vector<float> confidence;     // 0 to 1
 };
 
-// Of the points that rest on `least` to `most` views.
+// Errors of the points that were fused from `least` to `most` depth maps.
 struct ErrorsOfViews {
   std::uint32_t least = 0, most = 0;  // most 0: or more
   std::size_t points = 0;
   double share = 0;  // of all points
   double mean = 0, median = 0;
-  double gross_share = 0;      // of these points: farther from the truth than `gross`
+  double gross_share = 0;      // share of these points farther from the truth than `gross`
   std::vector<double> within;  // share of these points within each tolerance
 };
 
-// Up to 2 views, exactly 3, and 4 or more. `distances`: of each point to the truth.
+// Returns classes for up to 2 views, exactly 3, and 4 or more. `views` and `distances` have one
+// element for each point; `distances` are from each point to the truth [m].
 std::vector<ErrorsOfViews> errors_by_views(std::span<const std::uint32_t> views,
                                            std::span<const float> distances,
                                            std::span<const double> tolerances, double gross);
 
-// Of the points whose confidence is in [begin, end), the last class with its end.
+// The reliability of the points whose confidence is in [begin, end); the last class includes its
+// end.
 struct Reliability {
   double begin = 0, end = 0;
   std::size_t points = 0;
   double mean_confidence = 0;
-  double within = 0;  // share of them within kReliableErrors expected errors of the truth
+  double within = 0;  // share of points within kReliableErrors expected errors of the truth
 };
 inline constexpr double kReliableErrors = 3;
 
-// Distances to the truth / expected errors, of the points with an expected error above 0.
+// Statistics of distance to the truth / expected error, for the points with an expected error above
+// 0.
 struct NormalisedErrors {
   std::size_t points = 0;
-  double rms = 0;  // 1 if they are calibrated
+  double rms = 0;  // 1 if the expected errors are calibrated
   double median = 0;
   std::array<double, 3> within{};  // share of the points within 1, 2 and 3 expected errors
 };
 
-// Of the points that rest on `least` to `most` views.
+// Normalised errors of the points that were fused from `least` to `most` depth maps.
 struct NormalisedErrorsOfViews {
   std::uint32_t least = 0, most = 0;  // most 0: or more
   NormalisedErrors errors;
@@ -58,11 +61,12 @@ struct NormalisedErrorsOfViews {
 
 struct Calibration {
   NormalisedErrors all;
-  std::vector<NormalisedErrorsOfViews> by_views;  // classes as above; empty unless views are known
-  std::vector<Reliability> reliability;           // empty unless there are confidences
+  std::vector<NormalisedErrorsOfViews> by_views;  // as in errors_by_views; empty without views
+  std::vector<Reliability> reliability;           // empty without confidences
 };
 
-// Nothing where no expected errors are known. Error for a confidence outside [0, 1].
+// Compares expected errors with true ones. `distances`: from each point to the truth [m]. Nothing
+// if no expected errors are known. Error for a confidence outside [0, 1].
 std::optional<Calibration> calibration_of(const PointWorth& worth,
                                           std::span<const float> distances);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Evaluations as text for people and as JSON for programs (fields: docs/evaluate.md).
+// Reports evaluations as text for people and as JSON for programs (fields: docs/evaluate.md).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,7 +11,7 @@
 
 namespace axial::evaluate {
 
-// Lengths in the JSON are metres, lengths in the tables millimetres.
+// Lengths are metres in the JSON and millimetres in the tables.
 nlohmann::ordered_json to_json(const CloudEvaluation& evaluation);
 nlohmann::ordered_json to_json(const DepthEvaluation& evaluation);
 nlohmann::ordered_json to_json(const Similarity& similarity);

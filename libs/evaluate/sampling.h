@@ -10,14 +10,15 @@
 
 namespace axial::evaluate {
 
-// `count` points on the mesh, uniform by area: the surface is cut into `count` pieces of equal area
-// (along the order of its faces) and each gets one point at random. The same for the same seed.
-// Error if the mesh has no area or a coordinate or index is unusable. `faces`, unless null, becomes
-// the face of each sample.
+// Returns `count` points on the mesh, uniform by area. The surface is cut into `count` pieces of
+// equal area, along the order of its faces, and each piece gets one random point. The same seed
+// gives the same points. `faces`, unless null, receives the face of each sample. Error if the mesh
+// has no area, or if a coordinate or an index is not valid.
 std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed,
                                             std::vector<std::uint32_t>* faces = nullptr);
 
-// At most `count` of the points, one at random out of each of `count` runs of equal length.
+// Returns at most `count` of the points: one random point out of each of `count` runs of equal
+// length.
 std::vector<Eigen::Vector3f> subsample(std::span<const Eigen::Vector3f> points, std::size_t count,
                                        std::uint64_t seed);
 

@@ -12,7 +12,7 @@ namespace axial::evaluate {
 namespace {
 
 constexpr std::size_t kPiecesOfSpacing = 5;
-constexpr double kLargestWidth = 0.25;  // of a strip, over its length
+constexpr double kLargestWidth = 0.25;  // width of a strip / length
 
 Eigen::Matrix3Xd centres_of(std::span<const View> views) {
   Eigen::Matrix3Xd centres(3, static_cast<Eigen::Index>(views.size()));
@@ -21,7 +21,7 @@ Eigen::Matrix3Xd centres_of(std::span<const View> views) {
   return centres;
 }
 
-// From the first view on.
+// The direction of the strip, starting at the first view.
 Eigen::Vector3d direction_of(const Eigen::Matrix3Xd& centres) {
   const Eigen::Matrix3Xd off = centres.colwise() - centres.rowwise().mean();
   const Eigen::Vector3d along =
@@ -37,7 +37,8 @@ struct Range {
   }
 };
 
-// The density of each piece that counts, largest and smallest over the mean.
+// Sets `least` and `most`: the smallest and the largest density of the pieces that count, divided
+// by the mean.
 void compare_pieces(Strip& strip) {
   std::vector<std::size_t> places;
   for (const StripPiece& piece : strip.pieces) places.push_back(piece.places);
@@ -81,7 +82,7 @@ Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places&
   for (const Eigen::Vector3f& place : places.positions) ground.add(along(place));
   const double spacing = (cameras.most - cameras.least) / static_cast<double>(views.size() - 1);
   const double length = ground.most - ground.least;
-  // Views at one place would make a strip of endless pieces.
+  // Views at (almost) one place would give a huge number of pieces.
   constexpr double kMostPieces = 1e5;
   const double pieces = std::ceil(length / spacing * static_cast<double>(kPiecesOfSpacing));
   if (!(pieces <= kMostPieces)) fail("the camera centres are no strip: {} m apart", spacing);

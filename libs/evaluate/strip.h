@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How evenly a cloud covers the ground along one strip of cameras.
+// Measures how evenly a cloud covers the ground along one strip of cameras.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace axial::evaluate {
 
-// Of an equal length of the strip.
+// A piece of the strip. All pieces have the same length.
 struct StripPiece {
   double begin = 0, end = 0;  // along the strip, from the first camera [m]
   std::size_t points = 0, places = 0;
@@ -21,17 +21,20 @@ struct StripPiece {
 struct Strip {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit
   std::vector<StripPiece> pieces;
-  // Points per area of counted truth, over their mean along the strip: of the emptiest and of the
-  // fullest piece.
+  // Density (points per counted place) of the emptiest and of the fullest piece, divided by the
+  // mean density of the strip.
   double least = 0, most = 0;
 };
 
-// Error unless there are three views, in a line to a quarter of its length.
+// Error unless there are at least three views whose centres lie on a line, up to a width of a
+// quarter of its length.
 void require_strip(std::span<const View> views);
 
-// The strip lies along the greatest extent of the camera centres, from end to end of the places,
-// and is cut into five pieces a view spacing. Pieces with less than half of the places of the
-// median piece do not count in `least` and `most`: ends of the strip. Error as require_strip.
+// Cuts the strip into pieces and counts points and places in them. The strip runs along the
+// greatest extent of the camera centres, over the whole extent of the places. There are five pieces
+// for each spacing between views. Pieces with fewer than half of the places of the median piece are
+// left out of `least` and `most`; they are the ends of the strip. Error as for require_strip, or
+// for views that are nearly at one place.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 

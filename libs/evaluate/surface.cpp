@@ -55,7 +55,7 @@ struct Search {
   const std::vector<Eigen::Vector3f>* vertices;
   const std::vector<std::array<std::uint32_t, 3>>* faces;
   Eigen::Vector3d point;
-  double rounding;  // of `point` as the hierarchy knows it, in float
+  double rounding;  // rounding error of `point` in the hierarchy, in float
   double best2 = std::numeric_limits<double>::infinity();
   Eigen::Vector3d closest = Eigen::Vector3d::Zero();
   std::uint32_t face = 0;
@@ -68,7 +68,8 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   const Eigen::Vector3d candidate = closest_on_triangle(
       search.point, {v[f[0]].cast<double>(), v[f[1]].cast<double>(), v[f[2]].cast<double>()});
   const double distance2 = (candidate - search.point).squaredNorm();
-  // The lower face wins a tie, so that the order of the hierarchy does not show.
+  // Of faces at equal distance the lower index is taken, so that the result does not depend on the
+  // hierarchy.
   const bool nearer =
       distance2 < search.best2 || (distance2 == search.best2 && arguments->primID < search.face);
   if (!nearer) return false;
@@ -77,7 +78,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   search.closest = candidate;
   search.face = arguments->primID;
   if (!shrinks) return false;
-  // A little wider than the distance found: boxes are compared in float.
+  // A little wider than the distance found, because boxes are compared in float.
   arguments->query->radius =
       static_cast<float>(std::sqrt(distance2) * (1 + 1e-6) + search.rounding);
   return true;

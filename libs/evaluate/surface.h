@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle mesh that answers how far a point is and whether something stands in between.
+// A triangle mesh for queries of distance and occlusion.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,8 @@ struct ClosestPoint {
   std::uint32_t face;
 };
 
-// Keeps an own copy of the triangles in an Embree hierarchy. All queries may run on many threads
-// and give the same answer whatever the number.
+// Holds a copy of the triangles in an Embree hierarchy. All queries may run concurrently. The
+// answers do not depend on the number of threads.
 class Surface {
  public:
   // Error if the mesh has no faces, a face index is out of range or a coordinate is not finite.
@@ -28,15 +28,16 @@ class Surface {
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
-  // The nearest point of the surface. The triangles are those of the mesh (float); the distance to
-  // them is computed in double and the hierarchy only prunes, so it is exact to rounding.
+  // Returns the nearest point of the surface. The distance to the triangles, which are float, is
+  // computed in double. The hierarchy only prunes, so the result is exact up to rounding.
   ClosestPoint closest(const Eigen::Vector3d& point) const;
 
-  // Unit normal of a face; zero for one without area.
+  // The unit normal of a face; zero for a face without area.
   Eigen::Vector3d face_normal(std::uint32_t face) const;
 
-  // True if a triangle crosses the open segment from `from` to `to`. The first `skip` [fraction of
-  // its length] is left out, so that a point on the surface does not hide itself.
+  // True if a triangle crosses the open segment from `from` to `to`. The first part of the segment
+  // (`skip`, a fraction of its length) is left out, so that a point on the surface does not hide
+  // itself.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
 
  private:
@@ -44,7 +45,7 @@ class Surface {
   std::unique_ptr<Impl> impl_;
 };
 
-// Unsigned distance [m] of every point to the surface, in the points' order.
+// Returns the unsigned distance [m] of every point to the surface, in the points' order.
 std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points);
 
 }  // namespace axial::evaluate

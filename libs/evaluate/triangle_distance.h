@@ -9,7 +9,7 @@
 
 namespace axial::evaluate {
 
-// The point of the segment ab nearest to p. A segment of no length is its point.
+// The point of the segment ab that is nearest to p. A segment of length 0 is a point.
 inline Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a;
@@ -18,7 +18,8 @@ inline Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& p, const Eigen:
   return a + along * ab;
 }
 
-// The point of the closed triangle nearest to p. Triangles of no area count as their edges.
+// The point of the closed triangle that is nearest to p. A triangle without area counts as its
+// edges.
 inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
                                            const std::array<Eigen::Vector3d, 3>& corners) {
   const auto& [a, b, c] = corners;
@@ -32,7 +33,8 @@ inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
   const bool inside = normal2 > 0 && u >= 0 && v >= 0 && u + v <= normal2;
   Eigen::Vector3d best = a;
   if (inside) best = a + (u / normal2) * e1 + (v / normal2) * e2;
-  // The normal of a sliver is rounding; its edges are as near as its inside.
+  // The normal of a very thin triangle is dominated by rounding, but its edges are as near as its
+  // interior.
   if (inside && normal2 > 1e-16 * e1.squaredNorm() * e2.squaredNorm()) return best;
   for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &c}, std::pair{&c, &a}}) {
     const Eigen::Vector3d candidate = closest_on_segment(p, *from, *to);

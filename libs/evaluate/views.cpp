@@ -26,7 +26,7 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
   return model;
 }
 
-// `surface` null: nothing stands in between.
+// `surface` may be null: nothing occludes the point.
 template <class Camera>
 bool sees(const Camera& camera, const View& view, const Surface* surface,
           const Eigen::Vector3d& point) {
@@ -38,8 +38,8 @@ bool sees(const Camera& camera, const View& view, const Surface* surface,
          !(surface && surface->blocked(point, view.pose.to_world(camera.exit_point(image.pixel))));
 }
 
-// Calls visit(i, camera, view) for every point and every view that sees it, view by view.
-// `surface` null: nothing stands in between. Concurrent for different points.
+// Calls visit(i, camera, view) for every point and every view that sees it, one view after the
+// other, concurrently for different points. `surface` may be null: nothing occludes the points.
 template <class Visit>
 void for_each_sight(std::span<const Eigen::Vector3f> points, std::span<const View> views,
                     const Surface* surface, const Visit& visit) {
@@ -65,8 +65,8 @@ std::vector<std::uint32_t> count(std::span<const Eigen::Vector3f> points,
   return counts;
 }
 
-// Of a pixel at a point that the camera sees: what moves its image by one pixel, as the mean of all
-// directions across the ray.
+// The width of a pixel at a point that the camera sees: the motion across the ray that moves the
+// image by one pixel, as the geometric mean over directions.
 template <class Camera>
 double pixel_width(const Camera& camera, const Eigen::Vector3d& in_camera) {
   Eigen::Matrix<double, 2, 3> jacobian;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cameras that took the pictures, and what they can have seen of the truth.
+// The cameras of the photographs, and the parts of the truth that they can have seen.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,23 +22,25 @@ struct View {
   Pose pose;
 };
 
-// One view an image of the model, ports from `housing` (null: dry). Error if there is no image, a
-// camera is no pinhole, or an image has no port by Housing::port_at.
+// Returns one view for each image of the model, with the ports of `housing` (null: dry). Error if
+// there are no images, if a lens is neither a pinhole nor a lens with a known distortion
+// (io::lens_distortion), or as for Housing::port_at.
 std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing* housing);
 
-// How many views see each point [world]: the point's image lies in the image rectangle, and nothing
-// stands on the straight line from it to the camera centre, or, behind a port, to where that
-// pixel's light enters the glass. The surface's own orientation does not count.
+// Returns for each point [world] the number of views that see it. A view sees a point if its image
+// lies in the image rectangle and the straight line from the point to the camera centre is free.
+// Behind a port the line ends where the ray of that pixel crosses the outer face of the glass. The
+// orientation of the surface does not matter.
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
                                        std::span<const View> views, const Surface& surface);
 
-// In how many views' image rectangles each point's image lies, whatever stands in between: also for
-// points that are a little below the surface.
+// Returns for each point the number of views in whose image rectangle it is projected, even if it
+// is occluded. This also suits points that are slightly below the surface.
 std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
                                         std::span<const View> views);
 
-// The mean width [m] of a pixel, across the ray, at each point, over the views that see it as
-// count_views has it; 0 where none does.
+// Returns for each point the mean width of a pixel at the point, across the ray [m], over the views
+// that see it (count_views); 0 if no view sees it.
 std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
                                 std::span<const View> views, const Surface& surface);
 

@@ -19,8 +19,9 @@ namespace axial::io {
 
 static_assert(std::endian::native == std::endian::little, "the file readers assume little-endian");
 
-// Reads one value after the other from bytes that outlive the reader. Every function takes the name
-// of the field it reads, for the Error it throws where the bytes end too early.
+// Reads values one after the other. `bytes` must outlive the reader. Every reading function takes
+// the name of the field, which appears in the Error that the function throws if the bytes end too
+// early.
 class ByteReader {
  public:
   ByteReader(std::string_view bytes, std::string file) : bytes_(bytes), file_(std::move(file)) {}
@@ -54,8 +55,8 @@ class ByteReader {
     std::memcpy(values.data(), take(values.size_bytes(), field).data(), values.size_bytes());
   }
 
-  // A 64-bit count of elements that take at least `min_bytes` each: checked against the bytes left,
-  // so that nothing is ever allocated for elements that cannot be there.
+  // Reads a 64-bit count of elements, each of which takes at least `min_bytes`. Error if the bytes
+  // left cannot hold so many elements. The caller can therefore allocate memory for the count.
   std::size_t count(std::size_t min_bytes, std::string_view field) {
     const auto number = read<std::uint64_t>(field);
     require_room(number, min_bytes, field);
@@ -69,13 +70,13 @@ class ByteReader {
           file_, field, number, left());
   }
 
-  // A 64-bit length followed by that many bytes.
+  // Reads a 64-bit length, then that many bytes.
   std::string string(std::string_view field) {
     const std::size_t size = count(1, field);
     return std::string(take(size, field));
   }
 
-  // Bytes up to a NUL, which is consumed.
+  // Reads bytes up to a NUL and skips the NUL.
   std::string c_string(std::string_view field) {
     const std::size_t end = bytes_.find('\0', position_);
     if (end == std::string_view::npos)
@@ -85,7 +86,7 @@ class ByteReader {
     return text;
   }
 
-  // Error unless everything has been read.
+  // Error unless all bytes have been read.
   void require_end() const {
     if (left() > 0) fail("{}: malformed: {} bytes follow the end of the data", file_, left());
   }

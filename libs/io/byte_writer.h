@@ -17,7 +17,7 @@ class ByteWriter {
  public:
   const std::string& bytes() const { return bytes_; }
 
-  // Room for so many bytes: more is possible, and costs a copy.
+  // Allocates room for `bytes` bytes. More bytes can be written, at the cost of a copy.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
 
   template <class T>
@@ -36,7 +36,7 @@ class ByteWriter {
 
   void text(std::string_view characters) { bytes_.append(characters); }
 
-  // A 64-bit length followed by the bytes.
+  // Writes a 64-bit length, then the bytes.
   void string(std::string_view characters) {
     count(characters.size());
     text(characters);

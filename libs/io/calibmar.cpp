@@ -30,14 +30,14 @@ std::string_view unquoted(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-// As much of YAML as these files use: keys with one word, or a list, in brackets or with a dash
-// before each item.
+// The subset of YAML that these files use: a key with one word or with a list, in brackets or with
+// a dash before each item.
 class YamlKeys {
  public:
   explicit YamlKeys(const std::filesystem::path& path) : file_(path.string()) {
     constexpr std::uintmax_t kLargest = 1u << 20;
     std::string text = read_file(path, kLargest);
-    if (!text.ends_with('\n')) text += '\n';  // some writers leave it out
+    if (!text.ends_with('\n')) text += '\n';  // some writers omit the last newline
     TextReader reader(text, file_);
     while (const auto line = reader.line()) add(without_comment(line->rest()), line->where());
     if (open_) fail("{}: the list of {} has no end: the file is truncated", file_, key_);
@@ -121,7 +121,7 @@ class YamlKeys {
 refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file) {
   const std::string word = yaml.word("non_svp_model");
   if (!is_port_word(
-          word))  // before its numbers, which a port unknown here may have more of or none
+          word))  // before its numbers: an unknown kind of port may have another number of them
     fail("{}: non_svp_model: the port '{}' is neither FLATPORT nor DOMEPORT nor NONE", file, word);
   const std::vector<double> values = yaml.numbers<double>("non_svp_parameters");
   if (values.size() != kPortNumbers)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Calibmar's calibration.yaml: one camera, its lens in air and its port (docs/formats.md).
+// Calibmar's calibration.yaml: one camera with its lens in air and its port (docs/formats.md).
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,24 @@
 
 namespace axial::io {
 
-// True for names that end in .yaml or .yml.
+// True for file names that end in .yaml or .yml.
 bool is_calibmar(const std::filesystem::path& path);
 
-// The camera, with id 1 and the port if the file has one; pixel centres at 0.5, as in COLMAP's
-// files. Keys that say nothing about it, such as a stereo camera's place, are passed over. Error
-// that names file, key and value for a key that is missing or occurs twice, a number that is none,
-// a model COLMAP does not have, a wrong count of parameters, a port that cannot be.
+// Reads the camera. Its id is 1, and it has the port if the file has one. Pixel centres are at 0.5,
+// as in COLMAP's files. Keys that do not describe this camera are ignored, for example the pose of
+// a stereo camera.
+//
+// Error that names the file, the key and the value for a missing or repeated key, a malformed
+// number, a camera model that COLMAP does not have, a wrong number of parameters, or port values
+// that are not possible.
 ColmapCamera read_calibmar(const std::filesystem::path& path);
 
-// Whether the file says that the camera has no port, "non_svp_model: NONE" or an empty one. False
-// where that key is missing. Error as for read_calibmar.
+// True if the file states that the camera has no port: "non_svp_model" is NONE or empty. False if
+// that key is missing. Errors as for read_calibmar.
 bool says_no_port(const std::filesystem::path& path);
 
-// `comments`: lines to put in front.
+// Writes `camera` with its port, if it has one. `comments` are written at the top of the file, one
+// line each.
 void write_calibmar(const std::filesystem::path& path, const ColmapCamera& camera,
                     std::span<const std::string> comments = {});
 

@@ -40,8 +40,8 @@ bool holds_any_model(const fs::path& folder) {
   return holds_model(folder, ModelForm::text) || holds_model(folder, ModelForm::binary);
 }
 
-// Models that a user of `folder` may have meant instead of the one in `taken`: in the other places,
-// and those beside DIR/sparse/0 that COLMAP could not join to it.
+// Complete models that a user of `folder` may have meant instead of `taken`: models in the other
+// places, and models beside DIR/sparse/0 that COLMAP could not merge with it.
 std::vector<std::string> other_models(std::span<const fs::path> places, const fs::path& taken) {
   std::vector<std::string> others;
   for (const fs::path& place : places)
@@ -61,7 +61,7 @@ void require_unique_ids(const std::vector<T>& items, const char* what, const std
     if (!seen.insert(item.id).second) fail("{}: {} {} occurs twice", model, what, item.id);
 }
 
-// An image is known by its path relative to the folder of the images.
+// An image is identified by its normalised path relative to the image folder.
 void require_unique_names(const ColmapModel& model, const std::string& where) {
   std::unordered_map<std::string, std::uint32_t> seen;
   for (const ColmapImage& image : model.images) {
@@ -105,7 +105,7 @@ void check_references(const ColmapModel& model, const std::string& where) {
 fs::path find_colmap_model(const fs::path& folder) {
   const std::array<fs::path, 3> places{folder / "sparse", folder / "sparse" / "0", folder};
   auto taken = std::ranges::find_if(places, holds_any_model);
-  // Without a whole model the reader's message says what is missing.
+  // If no model is complete, the reader's message says which files are missing.
   if (taken == places.end()) taken = std::ranges::find_if(places, has_cameras);
   if (taken == places.end())
     fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// COLMAP sparse models, text and binary, as COLMAP 3.8 to 4.1 write them (see docs/formats.md).
+// Reads and writes COLMAP sparse models, text and binary, as COLMAP 3.8 to 4.1 write them
+// (docs/formats.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +25,8 @@ struct ColmapCamera {
   std::string model;  // "PINHOLE", "OPENCV", ...
   std::uint64_t width = 0, height = 0;
   std::vector<double> params;  // pixel centres at 0.5, as in the file
-  // COLMAP-Underwater's files carry a port with the camera; `params` are then the lens in air.
+  // Only COLMAP-Underwater's and Calibmar's files have a port. `params` then describes the lens in
+  // air.
   std::optional<refractive::Port<double>> port = std::nullopt;
 };
 
@@ -60,39 +62,46 @@ struct ColmapModel {
   std::vector<ColmapPoint3D> points;
 };
 
-// The folder that holds the model: DIR/sparse, DIR/sparse/0 or DIR itself, the first with a whole
-// model, or else with a cameras file. A line names other models there. Error listing the places
-// looked in.
+// Finds the folder that holds the model. The candidates are DIR/sparse, DIR/sparse/0 and DIR, in
+// this order. The first one with a complete model is taken; if none is complete, the first one with
+// a cameras file. The log names other complete models that were found. Error that lists the
+// candidates if none has a cameras file.
 std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 
-// Reads cameras, images and points3D, COLMAP's and COLMAP-Underwater's: binary cameras of the two
-// differ in length. As in COLMAP the folder's binary model is read if it is whole, else its text
-// model; a warning names the files of the other form that differ. All of COLMAP's camera models are
-// parsed; Error for an unknown model, a wrong number of parameters, a NaN, a reference to a camera,
-// image or point that does not exist, two images of one name, a truncated file, a folder without a
-// whole model.
+// Reads cameras, images and points3D of COLMAP or COLMAP-Underwater. A binary cameras file does not
+// say which program wrote it; its length tells. As in COLMAP, the binary model in the folder is
+// read if it is complete, otherwise the text model. A warning names the files of the other form
+// that differ. All camera models of COLMAP are parsed.
+//
+// Error for an unknown camera model, a wrong number of parameters, a value that is not finite, a
+// reference to a camera, image or point that does not exist, an id that occurs twice, two images
+// with the same name, a truncated file, or a folder without a complete model.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
-// The cameras alone: of a model's folder, or a file cameras.txt or cameras.bin by any name with
-// that extension, or Calibmar's, with its port (calibmar.h).
+// Reads only the cameras. `path` is the folder of a model, a text file or a .bin file with COLMAP's
+// cameras, or a file of Calibmar with its port (calibmar.h). Errors as for read_colmap_model.
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
-// Error if `folder` holds a whole binary model: readers would take it before a text model there.
+// Error if `folder` holds a complete binary model, because readers would prefer it to a text model
+// in the same folder.
 void require_no_binary_model(const std::filesystem::path& folder);
 
-// For COLMAP: ports are left out, which its readers cannot read. Error if a text model would go
-// into a folder that holds a binary one, which readers take first.
+// Write a model for COLMAP. Ports are left out because COLMAP cannot read them. Error if a text
+// model would be written into a folder with a complete binary model, which readers prefer. Error
+// for a name that the format cannot hold.
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
 
-// For COLMAP-Underwater: cameras with their ports. Error for a camera whose model it lacks.
+// Write a model for COLMAP-Underwater, with the ports of the cameras. The binary writer gives an
+// Error for a camera model that COLMAP-Underwater does not have.
 void write_underwater_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_underwater_binary(const std::filesystem::path& folder, const ColmapModel& model);
 
-// How many of a camera model's parameters, the first ones, are focal lengths; -1 if unknown.
+// The number of focal lengths among the parameters of a camera model; the focal lengths come first.
+// -1 if the model is unknown.
 int colmap_focal_count(std::string_view model);
 
-// Number of parameters of a camera model by name; -1 if unknown.
+// The number of parameters of a camera model; -1 if the model is unknown.
 int colmap_parameter_count(std::string_view model);
 
 }  // namespace axial::io

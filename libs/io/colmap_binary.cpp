@@ -84,7 +84,7 @@ ColmapPoint3D parse_point(ByteReader& in) {
   return point;
 }
 
-// A file that is a count followed by that many records and nothing else.
+// Reads a file that consists of a count and that many records.
 template <class T>
 std::vector<T> read_records(const fs::path& path, std::size_t min_bytes, const char* field,
                             T (*parse)(ByteReader&)) {
@@ -169,8 +169,9 @@ std::string points_as_bytes(const ColmapModel& model) {
 
 }  // namespace
 
-// The dialects do not say which they are. A file of one, read as the other, is out of step from the
-// first camera's end on: it names no models, or does not end where its cameras do.
+// The file does not name its dialect. If a file of one dialect is read as the other, the reader is
+// misaligned after the first camera. It then finds unknown model numbers, or does not end where the
+// file ends.
 std::vector<ColmapCamera> read_cameras_binary(const fs::path& path) {
   const std::string bytes = read_file(path);
   try {

@@ -34,7 +34,7 @@ constexpr std::array<Model, 19> kModels{{
     {15, "FISHEYE", 4, 2},
     {16, "EUCM", 6, 2},
     {17, "EQUIRECTANGULAR", 2, 2},
-    // COLMAP-Underwater's own: number 11 in its binary files, and the last that it has.
+    // COLMAP-Underwater's own model: number 11, the last one, in its binary files.
     {-1, "METASHAPE_FISHEYE", 10, 2},
 }};
 constexpr int kSharedId = 11;
@@ -95,8 +95,8 @@ Pose pose_from_colmap(const ColmapPose& values, const std::string& where) {
 
 ColmapPose pose_to_colmap(const Pose& pose) {
   const Eigen::Matrix3d& r = pose.rotation;
-  // The largest component comes from its square root, the others by division by it: no cancellation
-  // at half turns. 4 q_i^2 for w, x, y, z:
+  // The largest component is computed with a square root, the others by dividing by it. This avoids
+  // cancellation near half turns. The array holds 4 q_i^2 for w, x, y, z:
   const std::array<double, 4> squares{
       1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
       1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};

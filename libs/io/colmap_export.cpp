@@ -25,7 +25,7 @@ std::vector<double> numbers_of(const refractive::DomePort<double>& port) {
           port.thickness,  port.n_air,      port.n_glass,    port.n_water};
 }
 
-// Cameras with equal keys are one.
+// Cameras with equal keys become one COLMAP camera.
 std::vector<double> key_of(const CameraModel& camera) {
   const auto& lens = camera.lens;
   std::vector<double> key{static_cast<double>(camera.width),
@@ -75,7 +75,7 @@ std::string name_below(const SceneImage& image, const fs::path& folder) {
   return name.generic_string();
 }
 
-// Where each image sees its points, in the order of the points; kNoId for those it cannot see.
+// The projection of a point into one image; `seen` is false where the camera does not see it.
 struct Sighting {
   std::uint32_t image = 0;
   Eigen::Vector2d pixel{0, 0};

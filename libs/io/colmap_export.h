@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene back to a COLMAP model.
+// Converts a scene to a COLMAP model.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,17 @@
 
 namespace axial::io {
 
-// The calibrated images of `scene`, one PINHOLE camera (with its port, if any) for each distinct
-// one, and the sparse points. Image ids are the scene's plus one, names relative to `image_folder`.
-// Observations are where the points project to: a scene does not keep those that were measured.
-// Views that a camera cannot have are left out, and so are points without any. Error that names the
-// image for a distorted lens, a path outside `image_folder` and two images with one name.
+// Returns the calibrated images of `scene`, the sparse points, and one PINHOLE camera for each
+// distinct camera, with its port if it has one. The id of an image is the scene's id plus one.
+// Image names are relative to `image_folder`.
+//
+// A scene does not keep the measured observations, so each observation is the projection of its
+// point. Observations that the camera does not see are left out, and points without any
+// observation. Error that names the image for a distorted lens, a path outside `image_folder`, or
+// two images with the same name.
 ColmapModel export_colmap_model(const Scene& scene, const std::filesystem::path& image_folder);
 
-// The deepest folder that all calibrated images lie below.
+// Returns the deepest folder that contains all calibrated images; an empty path if there are none.
 std::filesystem::path common_image_folder(const Scene& scene);
 
 }  // namespace axial::io

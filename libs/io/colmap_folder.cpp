@@ -86,7 +86,7 @@ bool same_part(const std::vector<T>& a, const std::vector<T>& b) {
                             [](const T* x, const T* y) { return x->id == y->id && same(*x, *y); });
 }
 
-// Whether `file` exists and is another than `part` of the model.
+// True if `file` exists and differs from `part` of the model.
 template <class T>
 bool is_rival(const fs::path& file, ModelForm form, const std::vector<T>& part,
               std::vector<T> (*text)(const fs::path&), std::vector<T> (*binary)(const fs::path&)) {
@@ -98,7 +98,7 @@ bool is_rival(const fs::path& file, ModelForm form, const std::vector<T>& part,
   }
 }
 
-// The rivals found so far of one folder.
+// The files of one folder that differ from the model that is read.
 struct Rivals {
   const fs::path& folder;
   ModelForm read;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: which of a folder's files hold its COLMAP model.
+// Private to libs/io: finds the files of a folder that hold its COLMAP model.
 #pragma once
 
 #include <filesystem>
@@ -12,24 +12,25 @@ namespace axial::io {
 
 enum class ModelForm { text, binary };
 
-// The file of one part, "cameras", "images" or "points3D", in `form`.
+// The file of one part ("cameras", "images" or "points3D") in `form`.
 std::filesystem::path part_file(const std::filesystem::path& folder, const std::string& part,
                                 ModelForm form);
 
-// Whether the folder holds all three parts in `form`.
+// True if the folder holds all three parts in `form`.
 bool holds_model(const std::filesystem::path& folder, ModelForm form);
 
-// As COLMAP decides, for the folder and not for each file: binary if it holds a whole binary model,
-// else text if it holds a whole text model. Error that names what is missing of both.
+// Chooses the form as COLMAP does, for the whole folder and not for each file: binary if the binary
+// model is complete, otherwise text if the text model is complete. Error that names the missing
+// files of both forms.
 ModelForm model_form(const std::filesystem::path& folder);
 
-// The form of the cameras alone: the model's, or else that of the cameras file that there is, the
-// binary one of two. Error if there is none.
+// The form in which the cameras are read: the form of the model if it is complete, otherwise the
+// form of the cameras file that exists (binary if both exist). Error if there is no cameras file.
 ModelForm cameras_form(const std::filesystem::path& folder);
 
-// One warning that names the files of both forms, if the folder also has parts in the other form
-// than `read` that differ from the model in content or cannot be read. Order, and differences of
-// 1e-9 (relative beyond 1), do not count.
+// Warns, in one line, of files in the other form than `read` whose content differs from the model,
+// or which cannot be read. The order of the elements does not matter, nor do differences up to 1e-9
+// (relative for values above 1).
 void warn_of_rivals(const std::filesystem::path& folder, ModelForm read, const ColmapModel& model);
 void warn_of_rival_cameras(const std::filesystem::path& folder, ModelForm read,
                            const std::vector<ColmapCamera>& cameras);

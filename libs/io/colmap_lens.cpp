@@ -17,7 +17,7 @@ namespace axial::io {
 namespace {
 
 using Eigen::Vector2d;
-using Parameters = std::span<const double>;  // the distortion's: behind the principal point
+using Parameters = std::span<const double>;  // distortion parameters only
 
 // a[0] x + a[1] x^2 + ...
 double power_series(Parameters a, double x) {
@@ -71,7 +71,7 @@ Vector2d thin_prism_fisheye(Parameters k, const Vector2d& p) {
 Vector2d rad_tan_thin_prism_fisheye(Parameters k, const Vector2d& p) {
   const Vector2d e = radial(k.first(6), equidistant(p));
   const double r2 = e.squaredNorm();
-  // Its first tangential parameter acts as Brown's second.
+  // The model's first tangential parameter has the role of Brown's second.
   return e + tangential(e, k[7], k[6]) + Vector2d(k[8], k[10]) * r2 +
          Vector2d(k[9], k[11]) * r2 * r2;
 }
@@ -93,8 +93,8 @@ Vector2d eucm(Parameters k, const Vector2d& p) {
   return below > 0 ? Vector2d(p / below) : Vector2d::Constant(std::nan(""));
 }
 
-// The same models as the matcher has them. The parameters of two models in one: OPENCV is
-// FULL_OPENCV without the last four, and so on; what a model does not have is zero.
+// The same models in the matcher's form. One function handles related models: OPENCV is FULL_OPENCV
+// without the last four parameters, for example. Missing parameters are zero.
 using Bent = refractive::LensDistortion<double>;
 
 double at(Parameters k, std::size_t i) {
@@ -146,9 +146,9 @@ struct Lens {
   std::string_view model;
   int focal_lengths;  // 1: f cx cy ..., 2: fx fy cx cy ...
   Vector2d (*distort)(Parameters, const Vector2d&);
-  bool flat;                   // the pinhole where all distortion parameters are zero
-  Bent (*bent)(Parameters){};  // null: the matcher has no such lens,
-  bool radial = false;         // but one that can be fitted to it
+  bool flat;                   // a pinhole if all distortion parameters are zero
+  Bent (*bent)(Parameters){};  // null: the matcher does not have this model
+  bool radial = false;         // the matcher's fisheye can be fitted to the model
 };
 
 constexpr std::array kLenses = {
@@ -171,11 +171,11 @@ constexpr std::array kLenses = {
     Lens{"EUCM", 2, eucm, false, nullptr, true},
 };
 
-// COLMAP-Underwater's own, which COLMAP itself cannot undistort.
+// COLMAP-Underwater's own model, which COLMAP cannot undistort.
 constexpr std::string_view kNotColmaps = "METASHAPE_FISHEYE";
 
-// A camera's parameters taken apart: focal lengths and principal point (pixel centres at
-// integers), and the distortion.
+// A camera's parameters in parts: focal lengths and principal point (pixel centres at integers),
+// and distortion.
 struct Parts {
   const Lens* lens;
   refractive::PinholeLens<double> pinhole;
@@ -206,9 +206,9 @@ bool inside(const ColmapCamera& camera, const Vector2d& pixel) {
          pixel.y() <= static_cast<double>(camera.height) - 1;  // false for NaN
 }
 
-// True if everything between the principal ray and (u, v) is imaged ever farther from the principal
-// point: polynomials fold back beyond the field they were fitted to, and a folded ray can land
-// inside again. `wanted` is asked about every pixel on the way.
+// True if the distance of the image from the principal point grows from the axis up to `direction`.
+// Polynomials fold back beyond the field to which they were fitted, and a folded ray can be imaged
+// inside the picture again. `wanted` must be true for every pixel on the way.
 template <class Wanted>
 bool grows_until(const Parts& parts, const Vector2d& direction, const Wanted& wanted) {
   constexpr int kSteps = 50;
@@ -221,7 +221,7 @@ bool grows_until(const Parts& parts, const Vector2d& direction, const Wanted& wa
     if (!wanted(pixel) || !(next > distance)) return false;
     distance = next;
   }
-  // The steps are coarse: a fold within the last one shows only in the slope at its end.
+  // The steps are coarse. A fold within the last step is visible only in the slope at its end.
   const Vector2d beyond = image_point(parts, direction * (1 + 1e-6));
   return (beyond - centre).norm() > distance;
 }
@@ -246,7 +246,7 @@ bool whole_border_seen(const ColmapCamera& camera, const Parts& parts,
   return true;
 }
 
-// Central differences: the models have no closed derivatives in common.
+// Central differences, because the models share no closed-form derivative.
 Eigen::Matrix2d derivative_at(const Parts& parts, const Vector2d& direction) {
   const double h = 1e-6 * (1 + direction.norm());
   Eigen::Matrix2d derivative;
@@ -275,7 +275,7 @@ std::optional<ImagedDirection> direction_at(const ColmapCamera& camera, const Ve
       return ImagedDirection{direction - derivative.inverse() * miss, derivative};
     }
     Vector2d step = derivative.inverse() * miss;
-    // A fisheye's edge is far out on the plane: not there in one leap.
+    // The edge of a fisheye is far out on the plane z = 1, so the step length is limited.
     const double reach = 0.5 * (1 + direction.norm());
     if (step.norm() > reach) step *= reach / step.norm();
     direction -= step;
@@ -293,8 +293,8 @@ Vector2d image_direction(const ColmapCamera& camera, double u, double v) {
 
 namespace {
 
-// [rad] off the axis, of the image's corners; as far as the matcher follows a lens where one shows
-// nothing.
+// The largest angle of an image corner from the axis [rad], at most 85 degrees, which is as far as
+// the matcher follows a lens. Corners that no direction projects to count as 85 degrees.
 double widest_angle(const ColmapCamera& camera) {
   constexpr double kWidest = 85 * std::numbers::pi / 180;
   const double right = static_cast<double>(camera.width) - 1;
@@ -308,7 +308,7 @@ double widest_angle(const ColmapCamera& camera) {
   return std::min(widest, kWidest);
 }
 
-// A tenth of what single precision leaves of a pixel in the matcher.
+// The tolerance is a tenth of the rounding error of a pixel in the matcher's single precision.
 std::optional<Bent> fitted(const ColmapCamera& camera, const Parts& parts) {
   constexpr double kPixels = 1e-4;
   const auto radius = [&](double theta) {

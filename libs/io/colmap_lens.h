@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// COLMAP's lens models: where they image a direction, and the pinhole that replaces them.
+// COLMAP's lens models: projection of a direction in air, and the pinhole that replaces the lens.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,43 +13,46 @@
 
 namespace axial::io {
 
-// Where `camera` images the in-air direction (u, v, 1), in pixels with centres at integers. NaN
-// where the model does not define it. Models and parameter order as COLMAP documents them, up to
-// EUCM; all of them but EQUIRECTANGULAR (which is no perspective camera) and METASHAPE_FISHEYE.
-// Error for a model that is not supported or a wrong number of parameters.
+// Projects the in-air direction (u, v, 1) to a pixel of `camera` (pixel centres at integers). NaN
+// where the model is not defined. Models and order of parameters are those of COLMAP's
+// documentation, up to EUCM. EQUIRECTANGULAR, which is no perspective camera, and METASHAPE_FISHEYE
+// are not supported. Error for a model that is not supported or a wrong number of parameters.
 Eigen::Vector2d image_direction(const ColmapCamera& camera, double u, double v);
 
-// The inverse of image_direction.
+// The inverse of image_direction, with the derivative of image_direction at the result.
 struct ImagedDirection {
   Eigen::Vector2d direction;   // (u, v)
   Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) there
 };
 
-// What in-air direction `camera` images at `pixel` (centres at integers). Nothing where the model
-// has none, or none that is found from the undistorted one. Error as image_direction.
+// Returns the in-air direction that `camera` projects to `pixel` (centres at integers). Newton's
+// method starts from the direction of the undistorted lens. Nothing if no direction projects to the
+// pixel, if the method does not converge, or if the lens folds back between the axis and the
+// direction. Errors as for image_direction.
 std::optional<ImagedDirection> direction_at(const ColmapCamera& camera,
                                             const Eigen::Vector2d& pixel);
 
-// The lens without its distortion: focal lengths and principal point. Pixel centres at integers.
+// The lens without its distortion: focal lengths and principal point (pixel centres at integers).
 refractive::PinholeLens<double> undistorted_lens(const ColmapCamera& camera);
 
-// How the lens bends the picture of undistorted_lens(), for models that the matcher follows: the
-// polynomials, perspective and fisheye, and FOV; and, by a fit that is right to 1e-4 px as far as
-// the image's corners, the division models and EUCM. Nothing for RAD_TAN_THIN_PRISM_FISHEYE,
-// pinholes, and lenses that no fit is right for.
+// Returns the distortion of the lens relative to undistorted_lens(), in the form that the matcher
+// uses. The perspective and fisheye polynomials and FOV are exact. The division models and EUCM are
+// fitted, with an error of at most 1e-4 px up to the image corners. Nothing for pinholes, for
+// RAD_TAN_THIN_PRISM_FISHEYE, and for lenses that cannot be fitted so well.
 std::optional<refractive::LensDistortion<double>> lens_distortion(const ColmapCamera& camera);
 
-// The lens if `camera` is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a lens model whose distortion is
-// exactly zero. Pixel centres at integers.
+// Returns the lens if `camera` is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a perspective lens model
+// whose distortion parameters are all exactly zero. Pixel centres at integers.
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const ColmapCamera& camera);
 
-// A pinhole of the same size, principal point and ratio of focal lengths, zoomed out as far as
-// every pixel of its image still lies inside the image of `camera` (at most to half, at least to
-// four times the focal length), so that an undistorted image has no black border. Error, starting
-// with `name`, if there is none: the lens sees more than a plane can show.
+// Returns a pinhole that replaces `camera` without a black border in the undistorted image. It has
+// the camera's size, principal point and ratio of focal lengths. Its focal length is the shortest,
+// between half and four times that of the camera, for which every pixel lies inside the image of
+// `camera`. Error that starts with `name` if there is none.
 refractive::PinholeLens<double> pinhole_inside(const ColmapCamera& camera, const std::string& name);
 
-// For every pixel of the pinhole the position in `camera`'s image: the map of cv::remap.
+// Returns, for every pixel of the pinhole, its position in the image of `camera`: the map for
+// cv::remap.
 cv::Mat2f undistortion_map(const ColmapCamera& camera,
                            const refractive::PinholeLens<double>& pinhole);
 

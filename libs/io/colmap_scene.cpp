@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What replaces one camera of the model.
+// The scene's camera for one camera of the model.
 struct ImportedCamera {
   CameraModel camera;
-  bool resampled = false;  // its images
+  bool resampled = false;  // its images are undistorted
 };
 
-// The lens as it is. A warning where it does not show its whole image.
+// Keeps the distorted lens. Warns if it does not cover its whole image.
 void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double>& distortion,
                const fs::path& model_folder, CameraModel& camera) {
   camera.distortion = distortion;
@@ -85,7 +85,7 @@ std::map<std::uint32_t, ImportedCamera> import_cameras(const ColmapModel& model,
   return imported;
 }
 
-// Returns whether a JPEG can hold the image's pixels.
+// Checks the size of the image. Returns true if a JPEG can hold its pixels.
 bool check_image(const fs::path& path, const CameraModel& camera) {
   const ImageHeader header = read_image_header(path);
   const cv::Size size = header.size;
@@ -95,12 +95,12 @@ bool check_image(const fs::path& path, const CameraModel& camera) {
   return header.bits == 8 && !header.alpha;
 }
 
-// The mask of an image that is to be undistorted, which has `camera`'s size.
+// Checks the mask of an image that needs to be undistorted. The image has the size of `camera`.
 void check_mask(const fs::path& mask, const CameraModel& camera) {
   if (!mask.empty()) check_mask_shape(mask, read_image_size(mask), {camera.width, camera.height});
 }
 
-// Where the masks of images are that are to be undistorted; empty for the others.
+// The masks of the images that need to be undistorted; empty for other images.
 std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<bool>& resampled) {
   std::vector<MaskRequest> requests;
   for (const SceneImage& image : scene.images) requests.push_back({image.path, {}});
@@ -115,8 +115,8 @@ std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<b
   return masks;
 }
 
-// Names come from a file: none may lead out of the folder that is written to, or back to the
-// photographs, and no two to one file. `distorted`: the images to undistort.
+// The names come from a file. No name may lead out of the output folder or to a photograph, and no
+// two names may lead to one file. `distorted`: the images to undistort.
 void check_undistorted_names(const ColmapModel& model, std::span<const DistortedImage> distorted,
                              const ColmapImport& import) {
   std::error_code error;
@@ -138,8 +138,8 @@ void check_undistorted_names(const ColmapModel& model, std::span<const Distorted
   require_no_inputs(undistorted, photographs, "The undistorted image");
 }
 
-// Undistorts the images that are `resampled`, and makes the scene name the new files. `masks` and
-// `fits_jpeg`: of all images of the model.
+// Undistorts the images that are `resampled` and sets their new paths in the scene. `masks` and
+// `fits_jpeg` have one element for every image of the model.
 void undistort(const ColmapModel& model, const ColmapImport& import,
                const std::vector<bool>& resampled, std::span<const fs::path> masks,
                std::span<const char> fits_jpeg, const ProgressSink& progress, Scene& scene) {
@@ -183,7 +183,7 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
              import.model_folder.string(), repetitions);
 }
 
-// The name that `image`, imported as `path`, goes by in the scene's housing.
+// The name of `image` in the scene's housing. `path` is its path in the scene.
 std::string scene_name(const ColmapImage& image, const fs::path& path, const ColmapImport& import) {
   const bool undistorted = path != (import.image_folder / image.name).lexically_normal();
   const fs::path name =
@@ -191,7 +191,8 @@ std::string scene_name(const ColmapImage& image, const fs::path& path, const Col
   return name.lexically_normal().generic_string();
 }
 
-// Names are told apart by the ends of paths: what is written must be what is read.
+// Readers find an entry by the end of a path. Checks that they will find the right port for every
+// image.
 void check_ports(const Housing& resolved, const Scene& scene,
                  const std::vector<std::string>& ports) {
   for (std::size_t i = 0; i < scene.images.size(); ++i) {

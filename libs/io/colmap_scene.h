@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a COLMAP model and its images to a scene.
+// Converts a COLMAP model and its images to a scene.
 #pragma once
 
 #include <filesystem>
@@ -18,36 +18,44 @@ struct ColmapImport {
   std::filesystem::path model_folder;        // for messages
   std::filesystem::path image_folder;        // image names are relative to it
   std::filesystem::path undistorted_folder;  // where undistorted images go; made when needed
-  bool undistort = true;  // false: lenses stay distorted where the matcher follows their model
+  bool undistort = true;  // false: keep the lenses whose distortion the matcher can model
 };
 
-// The scene of `model`, images in the model's order, at least two. Every image file must exist and
-// have its camera's size. Cameras that are no pinholes keep their lens (lens_distortion), or are
-// replaced by a pinhole (pinhole_inside) and their images resampled into `undistorted_folder`, with
-// the masks beside them: JPEGs stay JPEGs, everything else becomes PNG. No two images may be
-// undistorted to one file, or to a photograph. Only the images at work, one a thread, have their
-// undistortion maps in memory. Image ids are COLMAP's less one, or COLMAP's own if they start at 0.
-// Views of sparse points are sorted by image, each image once (a line counts the others), and have
-// no confidence. Error that names file, field and value, before anything is written.
+// Returns the scene of `model` with its images in the model's order. Images of pinhole cameras are
+// used as they are. Other cameras either keep their lens (see `undistort` and lens_distortion), or
+// are replaced by a pinhole (pinhole_inside). In the second case their images and masks are
+// resampled into `undistorted_folder`. JPEG files with 8 bits and no transparency stay JPEG; other
+// files become PNG.
+//
+// An image id is COLMAP's id minus one, or COLMAP's id if the ids start at 0. The views of a sparse
+// point are sorted by image and have confidence 0. An image that occurs twice in a track counts
+// once, and a line of the log states how many such observations there are.
+//
+// Memory: undistortion maps exist only for images in work, at most one image for each thread.
+//
+// Error that names the file, the field and the value, before any file is written, if the model has
+// fewer than two images, an image file is missing or has another size than its camera, two images
+// would be undistorted to the same file, or an undistorted image would replace a photograph.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
                           const ProgressSink& preparing_cameras = {});
 
-// The ports that cameras carry, as files of COLMAP-Underwater do: "camera_1" for camera 1, and so
-// on. No port if none does.
+// Returns the ports of `cameras`, as files of COLMAP-Underwater contain them. The port of camera 1
+// is named "camera_1", and so on. The housing has no ports if no camera has one.
 Housing housing_of(std::span<const ColmapCamera> cameras);
 
-// The housing file for the images of a model (for_images).
+// Reads a housing file and resolves its entries for the images of `model` (for_images).
 Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
 
-// `housing` with an entry for every image that would not get its port by the default, and none by
-// camera id: what attach_ports and programs that no longer know COLMAP's ids need. `scene` is the
-// one imported from `model`. Error if an image's path ends in the name of another one with another
-// port.
+// Returns `housing` with one entry for every image whose port is not the default, and without
+// entries by camera id. attach_ports, and programs that no longer know COLMAP's camera ids, need
+// this form. `scene` must have been imported from `model`. Error if an image would get the port of
+// another image because the end of its path is the name of that image.
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
                          const ColmapImport& import);
 
-// The entries that no image of the model goes by, as "images.a.jpg" and "cameras.2".
+// Returns the entries of `housing` that match no image or camera of the model, for example
+// "images.a.jpg" and "cameras.2".
 std::vector<std::string> unused_entries(const Housing& housing, const ColmapModel& model);
 
 }  // namespace axial::io

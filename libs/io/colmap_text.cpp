@@ -15,7 +15,7 @@ void require_no_rest(const TextLine& line) {
     fail("{}: unexpected '{}' at the end", line.where(), line.rest().substr(0, 40));
 }
 
-// COLMAP-Underwater's tail, if there is one.
+// The port at the end of the line, which only COLMAP-Underwater writes.
 std::optional<refractive::Port<double>> parse_port(TextLine& line) {
   TextLine ahead = line;
   if (line.empty() || !is_port_word(ahead.word("port"))) return std::nullopt;

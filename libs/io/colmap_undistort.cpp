@@ -29,15 +29,14 @@ std::string lower(std::string text) {
   return text;
 }
 
-// The maps of cv::remap that undistort images, each in memory from the first of its camera's images
-// to the last.
+// The maps for cv::remap. A map stays in memory from the first to the last image of its camera.
 class UndistortionMaps {
  public:
   explicit UndistortionMaps(std::span<const DistortedImage> images) {
     for (const DistortedImage& image : images) ++entries_[image.camera->id].images_left;
   }
 
-  // To be called once for each of the images, from any thread.
+  // Call once for each image; thread-safe.
   cv::Mat2f take(const DistortedImage& image) {
     Entry& entry = entries_.at(image.camera->id);
     const std::scoped_lock lock(entry.mutex);
@@ -56,7 +55,8 @@ class UndistortionMaps {
   std::map<std::uint32_t, Entry> entries_;
 };
 
-// `mask`, unless it is empty, goes beside `target`. Labels are copied, never mixed.
+// Undistorts `mask`, unless it is empty, and writes it beside `target`. Labels are not
+// interpolated.
 void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2f& map) {
   if (mask.empty()) return;
   const cv::Mat1w distorted = resized_labels(read_label_image(mask), map.size());
@@ -65,21 +65,21 @@ void undistort_mask(const fs::path& mask, const fs::path& target, const cv::Mat2
   write_png(mask_beside(target), straight);
 }
 
-// A photograph as `map` sees it: B G R of its own depth, and alpha if some of it is transparent.
-// Hidden colours are mixed into no pixel that is not.
+// Resamples a photograph with `map`: B G R in its own depth, and alpha if some pixels are
+// transparent. The colour of a transparent pixel does not influence opaque pixels.
 cv::Mat resampled(const Photograph& photograph, const cv::Mat2f& map) {
   cv::Mat straight;
   cv::remap(photograph.pixels, straight, map, cv::noArray(), cv::INTER_LANCZOS4,
             cv::BORDER_REPLICATE);
   if (straight.depth() == CV_16U) {
-    // Where the interpolation overshoots, it must not take more bits than the camera has.
+    // Interpolation can overshoot. The values must not need more bits than the camera has.
     cv::Mat values = straight.reshape(1);
     cv::min(values, (1 << bits_used(photograph.pixels)) - 1, values);
   }
   if (photograph.opaque.empty()) return straight;
   cv::Mat alpha;
   cv::remap(photograph.opaque, alpha, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // what the kernel of 8 x 8 reaches
+  cv::erode(alpha == 255, alpha, cv::Mat1b::ones(7, 7));  // the reach of the 8 x 8 kernel
   alpha.convertTo(alpha, straight.depth(), straight.depth() == CV_16U ? 257 : 1);
   std::vector<cv::Mat> channels;
   cv::split(straight, channels);
@@ -94,7 +94,7 @@ void undistort(const DistortedImage& image, const cv::Mat2f& map, const fs::path
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) fail("{}: cannot be made: {}", target.parent_path().string(), error.message());
-  constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
+  constexpr int kQuality = 98;  // high, because the image is compressed a second time
   if (is_jpeg_name(target))
     write_jpeg(target, straight, kQuality);
   else

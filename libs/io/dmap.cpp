@@ -23,7 +23,8 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 enum Content : std::uint8_t { kDepth = 1, kNormals = 2, kConfidence = 4, kViews = 8 };
 
-// z-depth in the camera frame <-> distance along the pixel's ray: z = o_z + lambda d_z.
+// Converts between z-depth in the camera frame and lambda, the distance along the pixel's ray: z =
+// o_z + lambda d_z.
 struct DepthAlongRay {
   double origin_z, direction_z;
 
@@ -45,8 +46,8 @@ DepthAlongRay centre_ray(const CameraModel& model) {
       make_camera<double>(model));
 }
 
-// `depth` with every valid value replaced by convert(ray, value). Error for values and results that
-// are no depth: not finite or not positive.
+// Returns `depth` with every valid value replaced by convert(ray, value). Error if a value or a
+// result is not finite or not positive.
 template <class Convert>
 cv::Mat1f converted(const cv::Mat1f& depth, const CameraModel& model, const std::string& file,
                     Convert convert) {
@@ -68,7 +69,7 @@ cv::Mat1f converted(const cv::Mat1f& depth, const CameraModel& model, const std:
   return result;
 }
 
-// The range [low, high] widened where valid depths lie outside.
+// The range [low, high], extended to contain all valid depths.
 std::pair<float, float> enclosing(double low, double high, const cv::Mat1f& depth) {
   auto lowest = static_cast<float>(low);
   auto highest = static_cast<float>(high);
@@ -125,7 +126,7 @@ Pose read_pose(ByteReader& in) {
 }
 
 struct Header {
-  DepthMap map;  // without pixels, but with the camera of its own resolution
+  DepthMap map;  // without pixels; the camera has the depth map's resolution
   std::uint8_t content = 0;
 
   std::uint64_t pixels() const {
@@ -139,7 +140,7 @@ struct Header {
   }
 };
 
-// What the .dmap alone says: z-depth, a camera without a port.
+// The header of the .dmap file alone: z-depth, a camera without a port.
 Header parse_header(ByteReader& in) {
   if (in.take(2, "magic") != "DR") fail("{}: is no .dmap: it does not start with DR", in.file());
   const auto content = in.read<std::uint8_t>("content flags");
@@ -196,7 +197,7 @@ DepthMap parse_dmap(ByteReader& in) {
   return std::move(header.map);
 }
 
-// The beginning of a file, which holds every header.
+// Reads the beginning of a file, which is long enough for every header.
 std::string read_beginning(const fs::path& path) {
   constexpr std::streamsize kLongestHeader = 1 << 18;  // names have at most 65535 bytes
   std::ifstream in(path, std::ios::binary);
@@ -365,8 +366,8 @@ void write_dmap(const fs::path& path, const DepthMap& map, const std::string& ma
   write_pixels(out, map.confidence);
   const DmapSideFile side{map.camera, map.min_depth, map.max_depth, made_from,
                           fingerprint_of(out.bytes())};
-  // Whenever this is interrupted, a map of ours has its own side file: a map that does not fit the
-  // one beside it is another program's.
+  // In this order an interruption never leaves one of our maps beside the side file of another. A
+  // map that does not match its side file was therefore written by another program.
   write_atomically(path, [&](const fs::path& temporary) {
     write_atomically(temporary, out.bytes());
     std::error_code ignored;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenMVS depth maps (.dmap) with the side file that says which camera they belong to.
+// OpenMVS depth maps (.dmap), with a side file that describes their camera.
 #pragma once
 
 #include <filesystem>
@@ -10,41 +10,44 @@
 
 namespace axial::io {
 
-// A .dmap holds z-depth in the camera frame, normals in the camera frame, and the in-air K and
-// pose. The side file "<path>.json" holds the camera model (port included) and `made_from`, a
-// fingerprint of the inputs and options; without one the map counts as pinhole and `made_from` is
-// empty. It also holds a fingerprint of the map's bytes: a damaged or foreign map is told from the
-// one it was written with. In memory depth is lambda (see DepthMap): it is converted here, at the
-// file boundary.
+// A .dmap file holds z-depth and normals in the camera frame, and the in-air K and the pose. The
+// side file "<path>.json" holds the camera model with its port, `made_from`, which is a fingerprint
+// of the inputs and options, and a fingerprint of the .dmap file. The last one shows whether the
+// depth map is damaged or was written by another program. Without a side file the camera counts as
+// a pinhole and `made_from` is empty. In memory depth is lambda (see DepthMap). The functions below
+// convert between z-depth and lambda.
 struct StoredDepthMap {
   DepthMap map;
   std::string made_from;
 };
 
-// `ignored`: the map counts as a pinhole's whatever lies beside it, for maps that another program
-// wrote over one of ours.
+// `ignored`: the camera counts as a pinhole even if there is a side file. This is for depth maps of
+// another program that replaced our own.
 enum class DmapSide { used, ignored };
 
-// The camera model used for the conversion is the side file's, or the file's K without a port.
-// Error for truncated or malformed files, sizes that disagree, or a side file of another map.
+// Reads a depth map and converts its z-depth to lambda with the camera of the side file, or with
+// the K of the .dmap file and no port. Error for a truncated or malformed file, sizes that
+// disagree, depths that are not positive, or a side file that belongs to another depth map.
 StoredDepthMap read_dmap(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
-// The same without pixels: `depth`, `normal` and `confidence` stay empty, and the side file is not
-// compared with the map's bytes. Error also for a file that is shorter or longer than its header
-// says.
+// Reads a depth map without its pixels: `depth`, `normal` and `confidence` stay empty. The
+// fingerprint in the side file is not checked. Errors as for read_dmap, and for a file whose length
+// disagrees with its header.
 DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
-// A map that lies at `path` already takes its leave and the side file its place just before the new
-// map takes its own: at no time is there a map beside a side file of another one. `made_from`: what
-// read_dmap returns later.
+// Writes a depth map and its side file. An existing depth map at `path` is removed first, then the
+// side file is replaced, and last the new depth map gets its name. No depth map is therefore ever
+// beside the side file of another depth map, even if the program is interrupted. `made_from` is the
+// text that read_dmap returns later. Error for an empty map, arrays of different sizes, a map
+// without ids, or a depth that is not in front of the camera.
 void write_dmap(const std::filesystem::path& path, const DepthMap& map,
                 const std::string& made_from);
 
 enum class DmapOrigin {
   none,     // no such file
-  ours,     // as its side file describes it
-  damaged,  // has a side file, but either of the two is incomplete
-  foreign   // whole or not, without a side file; or whole, and another one than its side file says
+  ours,     // matches its side file
+  damaged,  // has a side file, but the map or the side file is incomplete
+  foreign   // has no side file, or is complete but does not match its side file
 };
 
 struct DmapStatus {
@@ -52,10 +55,10 @@ struct DmapStatus {
   std::string made_from;  // of ours
 };
 
-// Who wrote the file at `path`. Reads it whole where there is a side file.
+// Tells who wrote the file at `path`. If there is a side file, the whole depth map is read.
 DmapStatus dmap_status(const std::filesystem::path& path);
 
-// `made_from` of the side file of `path`, if both files exist and belong together.
+// Returns `made_from` of the side file if the depth map exists and matches it (DmapOrigin::ours).
 std::optional<std::string> dmap_made_from(const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -11,8 +11,8 @@
 namespace axial::io {
 namespace {
 
-// 1 to 255, from the lowest to the highest value above 0 but for the outermost hundredths; 0 where
-// there is none.
+// Scales the values above 0 to 1 .. 255. The lowest and highest hundredth are clamped. 0 where
+// there is no value.
 cv::Mat1b levels_of(const cv::Mat1f& values) {
   std::vector<float> sorted;
   for (const float value : values)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth maps to look at.
+// Pictures of depth maps for people.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,11 @@
 
 namespace axial::io {
 
-// Beside "<name>.dmap": <name>.png, depth from near (blue) to far (yellow); <name>.normal.png, red
-// to the right, green down, blue towards the camera; <name>.confidence.png, from low (dark) to
-// high. Black where there is nothing. The hundredth of the values at either end share a colour.
+// Writes pictures beside "<name>.dmap". <name>.png shows the depth from near (blue) to far
+// (yellow). <name>.normal.png shows the normal: red to the right, green down, blue towards the
+// camera. <name>.confidence.png, written if the map has confidences, shows low (dark) to high
+// values. Pixels without a value are black. The lowest and the highest hundredth of the values each
+// share one colour.
 void write_dmap_pictures(const std::filesystem::path& dmap, const DepthMap& map);
 
 }  // namespace axial::io

@@ -58,7 +58,8 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
       fail("{}.distortion is no lens's: the image would be turned over", root.where);
   }
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
-    // A water surface is a flat port as far away as the camera is high.
+    // A water surface is a flat port at a distance that equals the camera's height, which has no
+    // limit.
     side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());
   side.min_depth = static_cast<float>(root.number("min_depth_m"));
   side.max_depth = static_cast<float>(root.number("max_depth_m"));

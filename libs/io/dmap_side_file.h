@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: the file beside a .dmap that says which camera it belongs to.
+// Private to libs/io: the file beside a .dmap file that describes its camera (see dmap.h).
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct DmapSideFile {
 
 std::filesystem::path dmap_side_path(const std::filesystem::path& dmap);
 
-// Nothing if there is no such file; Error if there is a malformed one.
+// Nothing if there is no such file. Error if the file is malformed.
 std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap);
 
 void write_dmap_side_file(const std::filesystem::path& dmap, const DmapSideFile& side);

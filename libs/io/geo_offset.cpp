@@ -30,7 +30,7 @@ Eigen::Vector3d offset_from(const JsonPlace& place) {
   return offset;
 }
 
-// How far apart neighbouring floats are at the largest coordinate of a scene's points.
+// The spacing of floats at the largest coordinate of the scene's points.
 double float_step(const Scene& scene) {
   float largest = 0;
   for (const SparsePoint& point : scene.points)
@@ -39,7 +39,7 @@ double float_step(const Scene& scene) {
   return static_cast<double>(next) - static_cast<double>(largest);
 }
 
-// A file of another scene's offset, left behind, is noticed by the cameras' distance from it.
+// A stale file of another scene shows in a large distance of the cameras from its offset.
 void warn_if_far(const Scene& scene, const fs::path& file) {
   constexpr double kFar = 1e5;
   const double left = frame_of(scene).origin.norm();

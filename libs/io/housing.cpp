@@ -87,7 +87,7 @@ Housing calibmar_housing(const fs::path& path) {
   return housing_with(to_housing_port(*camera.port));
 }
 
-// The port `name`; nothing for "none". Error that starts with `where` if it is not defined.
+// Returns the port `name`; null for "none". Error that starts with `where` if it is not defined.
 const HousingPort* find_port(const Housing& housing, const std::string& name,
                              const std::string& where) {
   if (name == kDry) return nullptr;
@@ -223,7 +223,7 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
   Housing result = housing;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (entries[i] == housing.entry_of(names[i])) continue;
-    // The longest end of its name is another image's whole name.
+    // The longest matching end of this name is the whole name of another image.
     const auto camera = housing.cameras.find(images[i].camera);
     result.images[names[i]] = entries[i] != housing.images.end() ? entries[i]->second
                               : camera != housing.cameras.end()  ? camera->second

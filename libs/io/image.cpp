@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// OpenCV's own lines would come before ours: those of its log, and others that it writes to
-// std::cerr besides throwing them. While a Silence lives, nothing of its thread comes out there.
+// OpenCV prints messages besides throwing exceptions: through its log, and directly to std::cerr.
+// They would appear before ours. While a Silence exists, nothing that its thread writes to
+// std::cerr is printed.
 class Silence {
  public:
   Silence() {
@@ -55,7 +56,7 @@ class Silence {
 
   static bool install() {
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));  // as long-lived as std::cerr
+    std::cerr.rdbuf(new Filter(std::cerr.rdbuf()));  // never deleted
     return true;
   }
 
@@ -71,7 +72,7 @@ std::string read_image_bytes(const fs::path& path) {
   return bytes;
 }
 
-// Formats that users of photographs meet, and that are not read.
+// Names common image formats that are not supported.
 std::string_view unread_format(std::string_view bytes) {
   if (bytes.starts_with("GIF8")) return "GIF";
   if (bytes.substr(0, 12).ends_with("ftypheic") || bytes.substr(0, 12).ends_with("ftypmif1"))
@@ -91,7 +92,7 @@ bool opencv_knows(const fs::path& path) {
   }
 }
 
-// What other libraries than those of image_codecs.h read.
+// Decodes formats that image_codecs.h does not handle.
 cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int flags) {
   const Silence silence;
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
@@ -116,7 +117,7 @@ cv::Mat read_as_stored(const fs::path& path) {
   return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
-// Three channels where there may be colours.
+// Returns three channels if the image may have colours.
 cv::Mat decode_labels(const std::string& bytes, const fs::path& path) {
   if (is_png(bytes)) return decode_png_labels(bytes, path);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, path).pixels;
@@ -125,7 +126,7 @@ cv::Mat decode_labels(const std::string& bytes, const fs::path& path) {
 
 // WebP, JPEG 2000, BMP and so on.
 Photograph decode_rare(const std::string& bytes, const fs::path& path) {
-  // The fourth byte of a BMP's pixel is no alpha, whatever it is.
+  // The fourth byte of a BMP pixel is not alpha.
   const int flags = bytes.starts_with("BM") ? cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION
                                             : cv::IMREAD_UNCHANGED;
   cv::Mat pixels = decode_by_opencv(bytes, path, flags);
@@ -146,7 +147,7 @@ Photograph decode_photograph(const std::string& bytes, const fs::path& path) {
   return decode_rare(bytes, path);
 }
 
-// One channel of three that hold the same.
+// Returns one channel if all three are equal, otherwise the image.
 cv::Mat without_copies(const cv::Mat& image) {
   if (image.channels() != 3) return image;
   std::array<cv::Mat, 3> channels;
@@ -277,13 +278,13 @@ cv::Mat3f read_float3_tiff(const fs::path& path) {
 
 void write_float_tiff(const fs::path& path, const cv::Mat& image) {
   if (image.depth() != CV_32F) fail("{}: only float images are written as TIFF", path.string());
-  // The file's first channel is the first of ours, not the last as OpenCV has it.
+  // OpenCV stores its last channel first in the file. Our first channel must be first.
   cv::Mat stored;
   if (image.channels() == 3)
     cv::cvtColor(image, stored, cv::COLOR_RGB2BGR);
   else
     stored = image;
-  // Said explicitly because OpenCV's default for three float channels is lossy (LogLuv).
+  // Set explicitly, because OpenCV's default for three float channels is lossy (LogLuv).
   constexpr int kNoCompression = 1;
   write_encoded(path, ".tiff", stored, {cv::IMWRITE_TIFF_COMPRESSION, kNoCompression});
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: images out of the bytes of a file, by the library of each format. OpenCV
-// reads these formats, too, but it turns pixels, drops alpha and lets the libraries print. Every
-// function throws an Error of one line that names `path` for damaged bytes and for what is not
-// supported.
+// Private to libs/io: decodes images with the library of each format. OpenCV can decode these
+// formats too, but it rotates pixels, drops alpha and lets the libraries print messages. Every
+// function throws an Error of one line that names `path` for damaged bytes and for features that
+// are not supported.
 #pragma once
 
 #include <filesystem>
@@ -17,32 +17,31 @@ bool is_jpeg(std::string_view bytes);
 bool is_png(std::string_view bytes);
 bool is_tiff(std::string_view bytes);
 
-// JPEG files that end before their end marker, and PNG files without a whole end chunk, are
-// truncated.
+// Error for a truncated file: a JPEG without an end marker, or a PNG without a complete end chunk.
 void refuse_truncated_jpeg(std::string_view bytes, const std::filesystem::path& path);
 void refuse_truncated_png(std::string_view bytes, const std::filesystem::path& path);
 
 ImageHeader jpeg_header(std::string_view bytes, const std::filesystem::path& path);
 ImageHeader png_header(std::string_view bytes, const std::filesystem::path& path);
-// Error, too, if the file is shorter than its directory says.
+// Also an Error if the file is shorter than its TIFF directory says.
 ImageHeader tiff_header(std::string_view bytes, const std::filesystem::path& path);
 
 Photograph decode_jpeg(std::string_view bytes, const std::filesystem::path& path);
 Photograph decode_png(std::string_view bytes, const std::filesystem::path& path);
 Photograph decode_tiff(std::string_view bytes, const std::filesystem::path& path);
 
-// One channel of 8 or 16 bits: grey values, or the indices of a palette. Where there are colours,
-// three channels. Without alpha.
+// Decodes a label image without alpha: one channel of 8 or 16 bits (grey values or palette
+// indices), or three channels if the image has colours.
 cv::Mat decode_png_labels(std::string_view bytes, const std::filesystem::path& path);
 
-// Error if a photograph of this size cannot be held.
+// Error if a photograph of this size has too many pixels (more than 2^30).
 void check_image_size(cv::Size size, const std::filesystem::path& path);
 
-// ImageHeader::decode_bytes where all pixels are decoded, converted and brought to 8 bits one after
-// the other.
+// ImageHeader::decode_bytes for a format whose pixels are all decoded, then converted, then reduced
+// to 8 bits.
 unsigned bytes_as_a_whole(const ImageHeader& header);
 
-// B G R and alpha, of 8 or 16 bits, as a photograph.
+// Converts pixels (B G R, or B G R and alpha) of 8 or 16 bits to a photograph.
 Photograph without_alpha(const cv::Mat& pixels);
 
 }  // namespace axial::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <jpeglib.h>
-// Behind it, which it needs.
+// jerror.h needs jpeglib.h, so it comes second.
 #include <jerror.h>
 
 #include <array>
@@ -24,7 +24,7 @@ unsigned two_bytes(std::string_view bytes, std::size_t i) {
   return byte_at(bytes, i) << 8 | byte_at(bytes, i + 1);
 }
 
-// What the marker segments of a JPEG file say (ISO 10918-1, annex B).
+// Contents of the marker segments of a JPEG file (ISO 10918-1, annex B).
 struct JpegOutline {
   cv::Size size;
   bool complete = false;  // the end-of-image marker is there
@@ -62,15 +62,15 @@ JpegOutline jpeg_outline(std::string_view bytes) {
   return outline;
 }
 
-// Of the library's warnings, those after which pixels are made up. Bytes too many before a marker,
-// which some cameras write, are none of them.
+// True for warnings of the library after which pixels are invented. Superfluous bytes before a
+// marker, which some cameras write, give another warning and are harmless.
 bool loses_pixels(int code) {
   return code == JWRN_HIT_MARKER || code == JWRN_JPEG_EOF || code == JWRN_HUFF_BAD_CODE ||
          code == JWRN_ARITH_BAD_CODE || code == JWRN_MUST_RESYNC;
 }
 
 struct Complaint {
-  jpeg_error_mgr manager;  // the first member: the library knows only it
+  jpeg_error_mgr manager;  // must be the first member: the library has a pointer to it
   std::jmp_buf jump;
   std::array<char, JMSG_LENGTH_MAX> text;
 };
@@ -93,7 +93,8 @@ struct JpegReading {
   ~JpegReading() { jpeg_destroy_decompress(&info); }
 };
 
-// False after an error. No object with a destructor lives here: the jump would leave it out.
+// Returns false after an error. This function must not hold objects with destructors, because
+// longjmp would skip them.
 bool read_pixels(JpegReading& reading, std::string_view bytes) {
   jpeg_decompress_struct& info = reading.info;
   info.err = jpeg_std_error(&reading.complaint.manager);
@@ -139,7 +140,7 @@ Photograph decode_jpeg(std::string_view bytes, const fs::path& path) {
   JpegReading reading;
   if (!read_pixels(reading, bytes))
     fail("{}: cannot be decoded: {}", path.string(), reading.complaint.text.data());
-  if (reading.pixels.channels() == 4) {  // inks: OpenCV knows how they mix
+  if (reading.pixels.channels() == 4) {  // CMYK: OpenCV converts it
     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     return {cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION), {}};
   }

@@ -8,7 +8,8 @@
 namespace axial::io {
 namespace {
 
-// Of the ends of `name`, the longest first, the entry that is none of `taken`.
+// The entry that matches the longest end of `name`. An end that is shorter than `name` and in
+// `taken` does not count.
 ByImage::const_iterator longest_entry(const ByImage& entries, const std::string& name,
                                       const std::set<std::string>& taken) {
   for (std::size_t begin = 0;;) {
@@ -50,7 +51,7 @@ ByImage entries_for(const std::vector<std::string>& names, const std::vector<std
   ByImage entries;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (values[i] != otherwise) entries[names[i]] = values[i];
-  // Without an entry of its own an image would take that of a shorter name.
+  // An image with a longer name would otherwise get the entry of a shorter name.
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const auto entry = entry_of(entries, names[i]);
         values[i] == otherwise && entry != entries.end())

@@ -23,8 +23,8 @@ std::size_t four_bytes(std::string_view bytes, std::size_t i) {
          byte_at(bytes, i + 2) << 8 | byte_at(bytes, i + 3);
 }
 
-// Whether there is a whole chunk of this type before the end of the file. Chunks: length, type,
-// data, checksum.
+// True if the file contains a complete chunk of this type. A chunk has a length, a type, data and a
+// checksum.
 bool has_chunk(std::string_view bytes, std::string_view type) {
   for (std::size_t i = 8; i + 12 <= bytes.size();) {
     const std::size_t end = i + 12 + four_bytes(bytes, i);
@@ -85,7 +85,8 @@ void make_room(PngReading& reading) {
   for (int y = 0; y < reading.pixels.rows; ++y) reading.rows.push_back(reading.pixels.ptr(y));
 }
 
-// False after an error. No object with a destructor lives here: the jump would leave it out.
+// Returns false after an error. This function must not hold objects with destructors, because
+// longjmp would skip them.
 bool read_pixels(PngReading& reading) {
   reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reading, give_up, pass_over);
   if (!reading.png) return false;
@@ -97,7 +98,7 @@ bool read_pixels(PngReading& reading) {
     ask_for_labels(reading.png, reading.info);
   else
     ask_for_photograph(reading.png, reading.info);
-  png_set_swap(reading.png);  // of 16 bits: the lower byte first
+  png_set_swap(reading.png);  // 16-bit values with the lower byte first
   png_set_interlace_handling(reading.png);
   png_read_update_info(reading.png, reading.info);
   make_room(reading);
@@ -109,7 +110,7 @@ bool read_pixels(PngReading& reading) {
 cv::Mat decode(std::string_view bytes, const fs::path& path, bool labels) {
   const ImageHeader header = png_header(bytes, path);
   check_image_size(header.size, path);
-  // Deflate packs 1032 bytes into one at most.
+  // Deflate compresses at most 1032 bytes to one.
   constexpr double kBestPacked = 1032;
   const double least = static_cast<double>(header.size.area()) / 8;
   if (least > kBestPacked * static_cast<double>(bytes.size()))

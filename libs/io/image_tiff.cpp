@@ -43,12 +43,12 @@ toff_t seek_stream(thandle_t handle, toff_t offset, int whence) {
 
 int map_stream(thandle_t handle, void** data, toff_t* size) {
   const std::string_view bytes = static_cast<Stream*>(handle)->bytes;
-  *data = const_cast<char*>(bytes.data());  // as a file that is mapped to be read
+  *data = const_cast<char*>(bytes.data());  // libtiff only reads it
   *size = bytes.size();
   return 1;
 }
 
-// The library's first complaint about the file that this thread reads.
+// The first error message of the library about the file that this thread reads.
 thread_local std::array<char, 300> complaint;
 
 void hear_error(const char*, const char* format, va_list arguments) {
@@ -61,7 +61,7 @@ class Tiff {
     complaint[0] = '\0';
     TIFFSetErrorHandler(hear_error);
     TIFFSetWarningHandler(nullptr);
-    // Mapped: without, libtiff 4.5 misreads tiles of separate planes.
+    // The data must be mapped, because libtiff 4.5 misreads tiles of separate planes otherwise.
     file_.reset(TIFFClientOpen(
         "TIFF data", "r", &stream_, read_stream,
         [](thandle_t, void*, tmsize_t) { return tmsize_t{0}; }, seek_stream,
@@ -103,7 +103,7 @@ class Tiff {
   std::uint32_t width, height;
   std::uint16_t bits, samples, format, orientation, photometric = 0;
   bool separate;
-  std::vector<std::uint16_t> extras;  // what the samples beyond the colours are
+  std::vector<std::uint16_t> extras;  // meaning of the samples beyond the colours
 
  private:
   struct Close {
@@ -129,7 +129,7 @@ class Tiff {
     check_image_size({static_cast<int>(std::min<std::uint32_t>(width, INT32_MAX)),
                       static_cast<int>(std::min<std::uint32_t>(height, INT32_MAX))},
                      path_);
-    // Fax codes apart, whose pixels are bits, nothing packs better than this.
+    // No method compresses better than this, except fax codes, whose pixels are single bits.
     constexpr double kBestPacked = 2000, kAlways = 1 << 24;
     const double unpacked = static_cast<double>(width) * height * samples * bits / 8;
     if (samples == 0 ||
@@ -157,8 +157,8 @@ class Tiff {
   std::unique_ptr<TIFF, Close> file_;
 };
 
-// Palettes, YCbCr, bits and so on: as the library turns them into colours, but with the rows in the
-// order of the file.
+// Converts palettes, YCbCr, bilevel and other images to colours with the library, but keeps the
+// order of the rows in the file.
 cv::Mat read_by_library(const Tiff& tiff) {
   cv::Mat packed(tiff.size(), CV_8UC4);
   if (!TIFFReadRGBAImageOriented(tiff.get(), tiff.width, tiff.height,
@@ -170,8 +170,8 @@ cv::Mat read_by_library(const Tiff& tiff) {
   return pixels;
 }
 
-// 9 to 16 bits. The samples of a row, as the file has them: whole words, or packed from the upper
-// bit on.
+// The samples of one row, of 8 to 16 bits each: bytes, 16-bit words, or packed with the highest bit
+// first.
 class SampleRow {
  public:
   SampleRow(const unsigned char* row, unsigned bits) : row_(row), bits_(bits) {}
@@ -194,7 +194,7 @@ class SampleRow {
   unsigned bits_;
 };
 
-// All samples of a file, in their order.
+// Reads all samples of a file in their order.
 template <class Sample>
 class SampleReader {
  public:
@@ -210,7 +210,7 @@ class SampleReader {
   }
 
  private:
-  // `count` pixels from (x, y) on, of all samples or of one.
+  // Stores `count` pixels starting at (x, y), with all samples or with the sample `plane` only.
   void put(const unsigned char* row, std::uint32_t x, std::uint32_t y, std::uint32_t count,
            std::uint16_t plane) {
     const SampleRow from(row, tiff_.bits);

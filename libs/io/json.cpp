@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-// Remembers the keys of every open object, because the parser itself keeps the last of two values.
+// Remembers the keys of every open object. The parser itself silently keeps the last of two values
+// with the same key.
 class DuplicateKeys {
  public:
   bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
@@ -41,7 +42,7 @@ json read_json(const std::filesystem::path& path) {
 }
 
 void write_json(const std::filesystem::path& path, const json& value) {
-  // Names in another encoding than UTF-8 cannot be kept exactly in JSON: say so, do not mangle.
+  // JSON cannot hold names in another encoding than UTF-8 exactly. Fail rather than change them.
   try {
     write_atomically(path, value.dump(2) + "\n");
   } catch (const json::exception& error) {

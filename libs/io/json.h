@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON texts and files. No other file has the JSON library parse or write: its parser and writer
-// would be compiled again there, which takes seconds.
+// JSON texts and files. Only json.cpp calls the parser and the writer of the JSON library, because
+// each file that calls them takes seconds longer to compile.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +10,22 @@
 
 namespace axial::io {
 
-// The file as JSON. Error that names the file for anything else, duplicate keys included.
+// Reads a JSON file of at most 256 MiB. Error that names the file for malformed JSON or a key that
+// occurs twice in an object.
 nlohmann::json read_json(const std::filesystem::path& path);
 
-// One JSON text, indented, with a newline at the end; written whole or not at all. Error that names
-// the file for texts that are not UTF-8.
+// Writes `json` indented, with a newline at the end. The file is written completely or not at all.
+// Error that names the file for text that is not UTF-8.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
-// On one line, for messages.
+// The JSON text on one line, for messages.
 std::string to_text(const nlohmann::json& json);
 
-// On one line, or indented by `indent` spaces a level. Bytes that are not UTF-8 are replaced by
-// U+FFFD.
+// The JSON text on one line, or indented by `indent` spaces for each level. Bytes that are not
+// UTF-8 are replaced by U+FFFD.
 std::string to_text(const nlohmann::ordered_json& json, int indent = -1);
 
-// The text as JSON; null if it is malformed.
+// Parses a text; null if it is malformed.
 nlohmann::ordered_json json_from(std::string_view text);
 
 }  // namespace axial::io

@@ -13,9 +13,9 @@ constexpr int kAbove = std::tuple_size_v<decltype(Lens::above)>;
 constexpr int kBelow = std::tuple_size_v<decltype(Lens::below)>;
 constexpr int kUnknowns = kAbove + kBelow;
 
-// above(t) - ratio t below(t) = ratio, linear in the coefficients of both, in t = (theta /
-// widest)^2, at Chebyshev's nodes, where a fit is nearly as good as it can be everywhere. Rows are
-// weighted with theta: an error of the ratio moves the image by that much.
+// Solves above(t) - radius(theta) t below(t) = radius(theta) with t = (theta / widest)^2, which is
+// linear in the coefficients of both polynomials. At Chebyshev nodes the largest error of the fit
+// is nearly minimal. Rows are weighted with theta, so that a residual is an error in the image.
 Eigen::Vector<double, kUnknowns> coefficients(const std::function<double(double)>& radius,
                                               double widest) {
   constexpr int kNodes = 64;

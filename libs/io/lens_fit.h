@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: lenses in other words than the matcher's, in its own.
+// Private to libs/io: fits the matcher's lens model to lenses of other models.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,11 @@
 
 namespace axial::io {
 
-// The matcher's fisheye that images as a lens without tangential distortion does. `radius`: how far
-// from the principal point, over the focal length, the lens images what lies `theta` [rad] off its
-// axis, for 0 < theta <= widest < 90 degrees. The matcher's rational function is fitted to it;
-// nothing where it misses by more than `tolerance` anywhere (over the focal length, too) or has a
-// pole.
+// Fits the rational function of the matcher's fisheye to a lens without tangential distortion.
+// `radius(theta)` is the distance from the principal point, divided by the focal length, at which
+// the lens images a direction `theta` [rad] off its axis, for 0 < theta <= widest < pi/2. Nothing
+// if the fit differs by more than `tolerance` (also divided by the focal length) at any angle, or
+// has a pole.
 std::optional<refractive::LensDistortion<double>> fitted_fisheye(
     const std::function<double(double theta)>& radius, double widest, double tolerance);
 

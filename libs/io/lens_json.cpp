@@ -9,7 +9,7 @@
 namespace axial::io {
 namespace {
 
-// The numbers of a list into the first of `numbers`.
+// Reads a list into the first elements of `numbers`.
 void read_list(const JsonPlace& place, const char* key, std::span<double> numbers) {
   if (!place.has(key)) return;
   const nlohmann::json& list = place.json.at(key);

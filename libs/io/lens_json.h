@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: a lens's distortion in JSON (lenses of a scene, side files of depth maps).
+// Private to libs/io: the distortion of a lens in JSON (lens files of scenes, side files of depth
+// maps).
 #pragma once
 
 #include "io/port_json.h"
@@ -7,9 +8,9 @@
 
 namespace axial::io {
 
-// Error for unknown keys, types other than "perspective" and "fisheye", too many coefficients, and
-// a "spread" or first radial coefficient that is not positive. What is not there is as in a
-// straight lens.
+// Reads or writes a distortion (docs/formats.md). Keys that are missing keep the values of a lens
+// without distortion. Error for an unknown key, a type other than "perspective" and "fisheye", too
+// many coefficients, or a "spread" or first radial coefficient that is not positive.
 refractive::LensDistortion<double> distortion_from_json(const JsonPlace& place);
 nlohmann::json distortion_to_json(const refractive::LensDistortion<double>& distortion);
 

@@ -51,7 +51,7 @@ bool images_anything(const CameraModel& camera) {
   return distorted_lens<double>(camera).field > 0;
 }
 
-// The end of an image's path that a scene keeps when its folder is moved.
+// The end of an image's path that stays the same when the scene's folder is moved.
 std::string name_beside(const fs::path& scene_path, const std::string& image) {
   const fs::path from = fs::absolute(scene_path).parent_path();
   fs::path name;
@@ -60,7 +60,7 @@ std::string name_beside(const fs::path& scene_path, const std::string& image) {
   return name.generic_string();
 }
 
-// The lens's name; a new one for a distortion that has none yet.
+// Returns the name of the lens. A new distortion gets a new name.
 std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
   if (!distortion) return kStraight;
   for (const auto& [name, known] : lenses.lenses)
@@ -70,7 +70,8 @@ std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
   return name;
 }
 
-// Images are found again by their whole paths, of which the names written are but the ends.
+// Readers find an entry by the end of the whole path. Checks that they will find the right lens for
+// every image.
 void check_names(const Lenses& lenses, const Scene& scene, const fs::path& file) {
   for (const SceneImage& image : scene.images) {
     if (!image.calibrated) continue;
@@ -127,7 +128,7 @@ Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
   for (const SceneImage& image : scene.images)
     if (image.calibrated) add(image, named(lenses, image.camera.distortion));
   if (!values.empty()) lenses.default_lens = values.front();
-  // They have no lens, but must not go by the entries of others.
+  // Images without a pose need no lens, but must not match the entries of other images.
   for (const SceneImage& image : scene.images)
     if (!image.calibrated) add(image, lenses.default_lens);
   lenses.images = entries_for(names, paths, values, lenses.default_lens);

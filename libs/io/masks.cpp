@@ -30,7 +30,7 @@ std::string in_words(const std::vector<std::string>& items) {
 
 struct MaskName {
   std::string name;
-  bool of_whole_name;  // images that differ in their extension have different ones
+  bool of_whole_name;  // includes the image's extension
 };
 
 std::vector<MaskName> mask_names(const fs::path& image, bool in_mask_folder) {
@@ -48,7 +48,7 @@ std::string words_of(const std::vector<MaskName>& names) {
   return in_words(items);
 }
 
-// Masks in a folder of their own.
+// Finds masks in a folder of their own.
 class MaskFolder {
  public:
   MaskFolder(const fs::path& folder, const std::unordered_set<std::string>& images)
@@ -85,7 +85,8 @@ class MaskFolder {
  private:
   fs::path place(const fs::path& end) const { return end.empty() ? folder_ : folder_ / end; }
 
-  // Which ends of an image folder's path are subfolders here, the longest first, and "".
+  // Returns the ends of an image folder's path that exist as subfolders here, the longest first,
+  // and "" last.
   std::vector<fs::path> ends_of(const fs::path& image_folder) const {
     std::vector<fs::path> ends{""};
     fs::path end;
@@ -113,7 +114,7 @@ class MaskFolder {
   const fs::path folder_;
   const std::unordered_set<std::string>& images_;
   std::map<std::string, std::vector<fs::path>> ends_;  // by the images' folder
-  // How many images have an end, without and with their extension.
+  // The number of images with each end, without and with the extension.
   std::unordered_map<std::string, std::size_t> stems_, names_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which file holds the labels of which image of a scene.
+// Finds the mask files, which hold the labels, of a scene's images.
 #pragma once
 
 #include <filesystem>
@@ -15,29 +15,31 @@ struct MaskRequest {
 };
 
 struct FoundMask {
-  std::filesystem::path path;                 // empty: there is none
-  std::vector<std::filesystem::path> others;  // that exist as well, in the order of the search
-  std::string looked_for;                     // names and folders, for a message
+  std::filesystem::path path;                 // empty: none was found
+  std::vector<std::filesystem::path> others;  // other candidates that exist, in search order
+  std::string looked_for;                     // names and folders that were searched, for a message
 };
 
-// The masks of all images of a scene. That of `cam0/a.jpg` has one of the names a.mask.png
-// (OpenMVS), a.jpg.png (COLMAP) and a_mask.png, in this order, in the same folder as its image,
-// after the mask that the scene names.
+// Finds the masks of all images of a scene.
 //
-// Where `folder` is not empty, masks lie there and nowhere else, and a.png is a name, too, the last
-// one. They go by the ends of the images' paths, the longest first: `folder`/cam0/a.mask.png, then
-// `folder`/a.mask.png. An end that several images share stands for none of them.
+// Without `folder`, the candidates for cam0/a.jpg are, in this order, the mask that the scene
+// names, and in the folder of the image a.mask.png (OpenMVS), a.jpg.png (COLMAP) and a_mask.png.
 //
-// Images of the scene are not taken for masks. Error if `folder` is none, or if two images would
-// share a mask that no scene names.
+// With `folder`, masks are searched only there, and a.png is a fourth name. Subfolders that match
+// the end of the image's path are searched first, the longest end first: `folder`/cam0/a.mask.png,
+// then `folder`/a.mask.png. A name that several images of the scene share is not used.
+//
+// Images of the scene never count as masks. Error if `folder` is not a folder, or if two images
+// would share a mask that the scene does not name.
 std::vector<FoundMask> find_masks(std::span<const MaskRequest> images,
                                   const std::filesystem::path& folder = {});
 
 // "<image without extension>.mask.png": the name under which programs write an image's mask.
 std::filesystem::path mask_beside(const std::filesystem::path& image);
 
-// The first of `masks` whose file and one of whose `others` hold different labels, and how many
-// there are; `count` 0: none. Files that cannot be read differ.
+// Compares each mask with the other candidates (`others`). `used` and `other` are the first pair of
+// files with different labels; `count` is the number of images that have such a pair. A file that
+// cannot be read counts as different.
 struct RivalMasks {
   std::size_t count = 0;
   std::filesystem::path used, other;

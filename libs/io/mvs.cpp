@@ -45,7 +45,7 @@ void check_intrinsics(const Eigen::Matrix3d& k, const std::string& where) {
          where, k(1, 0), k(2, 0), k(2, 1), k(2, 2));
 }
 
-// One axis's principal point of a normalised K, in pixels. S is the longer side (docs/formats.md).
+// The principal point of a normalised K on one axis [px]. S is the longer side (docs/formats.md).
 double principal_point(double normalised, bool from_corner, double S) {
   return from_corner ? normalised * S : (normalised + 0.5) * S - 0.5;
 }
@@ -164,19 +164,19 @@ void check_points(MvsFile& mvs, const std::string& file) {
   require_length(mvs.colors.size(), "verticesColor");
 }
 
-// The centre is a world point and the extents run along the box axes, as OpenMVS's code has it.
+// The centre is a point in the world, and the extents run along the axes of the box.
 std::optional<OrientedBox> region_of(const MvsBox& box, const std::string& file) {
   if (!(box.min.array() < box.max.array()).all()) return {};
   OrientedBox region{box.rotation, (box.min + box.max) / 2, (box.max - box.min) / 2};
   if (!region.centre.allFinite() || !region.half_extent.allFinite())
     fail("{}: obb has an extent that is not finite", file);
-  // The box is symmetric, so a reflection is as good as a rotation.
+  // The box is symmetric, so a reflection describes the same box as a rotation.
   const double sign = region.rotation.allFinite() && region.rotation.determinant() < 0 ? -1 : 1;
   region.rotation = sign * checked_rotation(sign * region.rotation, file + ": obb rot");
   return region;
 }
 
-// Two conventions are about, and the file does not say which it follows.
+// There are two conventions for the principal point, and the file does not name the one it uses.
 void warn_of_normalised_cameras(const Scene& scene, const MvsFile& mvs, const std::string& file) {
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
@@ -211,8 +211,8 @@ bool same_camera(const MvsCamera& a, const MvsCamera& b) {
   return a.width == b.width && a.height == b.height && a.k == b.k;
 }
 
-// The principal point counts from the centre of the square of side S around the image: what
-// `denormalised` undoes.
+// The principal point is relative to the centre of the square of side S that encloses the image.
+// This is the inverse of `denormalised`.
 MvsCamera normalised_record(const CameraModel& model) {
   const double S = std::max(model.width, model.height);
   const refractive::PinholeLens<double>& lens = model.lens;
@@ -222,8 +222,9 @@ MvsCamera normalised_record(const CameraModel& model) {
   const refractive::PinholeLens<double> read =
       denormalised(camera.k, {model.width, model.height}).lens;
   if (std::hypot(read.cx - lens.cx, read.cy - lens.cy) > 1e-6)
-    fail("--normalize 1: a principal point at ({}, {}) of {}x{} pixels would be read as another one",
-         lens.cx, lens.cy, model.width, model.height);
+    fail(
+        "--normalize 1: a principal point at ({}, {}) of {}x{} pixels would be read as another one",
+        lens.cx, lens.cy, model.width, model.height);
   return camera;
 }
 
@@ -236,7 +237,7 @@ MvsCamera camera_record(const CameraModel& model, MvsIntrinsics intrinsics) {
   return camera;
 }
 
-// One platform a distinct camera, the camera at its origin.
+// Makes one platform for each distinct camera, with the camera at its origin.
 void add_camera_and_pose(const SceneImage& image, MvsIntrinsics intrinsics, MvsFile& mvs,
                          MvsImage& record) {
   if (!image.calibrated) return;

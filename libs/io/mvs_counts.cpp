@@ -13,8 +13,8 @@
 namespace axial::io {
 namespace {
 
-// Numbers and lengths of a file, one after the other; `good` is false from the first that is not
-// there. Nothing is believed that the file's size does not allow.
+// Reads the numbers of a file and skips the other data. `good` becomes false at the first value
+// that is missing. A count is refused if the file is too short for it.
 class Skimmer {
  public:
   explicit Skimmer(const std::filesystem::path& path) : buffer_(1u << 20) {
@@ -41,14 +41,14 @@ class Skimmer {
     if (claim(count, each)) in_.ignore(static_cast<std::streamsize>(count * each));
   }
 
-  // A 64-bit count of elements of at least `each` bytes, which follow.
+  // Reads a 64-bit count of elements of at least `each` bytes.
   std::uint64_t count(std::uint64_t each) {
     const auto number = read<std::uint64_t>();
     if (number > left_ / each) fail();
     return good_ ? number : 0;
   }
 
-  // An array that is passed over; its length.
+  // Skips an array and returns its length.
   std::uint64_t array(std::uint64_t each) {
     const std::uint64_t length = count(each);
     skip(length, each);
@@ -162,13 +162,13 @@ void MvsCounts::set_view_scores(std::uint64_t number) {
 }
 
 std::uint64_t MvsCounts::scene_bytes() const {
-  constexpr std::uint64_t kPath = 128;  // the working folder before a name, and the heap's rounding
+  constexpr std::uint64_t kPath = 128;  // working folder before a name, and heap overhead
   return images * (sizeof(SceneImage) + 2 * kPath) + name_bytes + view_scores * sizeof(ViewScore) +
          points * sizeof(SparsePoint) + view_list_bytes + normals * kVector + colors * kColor;
 }
 
-// The file's bytes, and its records beside the scene that becomes of them; a list of images that
-// grows lies there twice.
+// Counts the bytes of the file, and its records in addition to the scene made from them. A list of
+// images that grows exists twice for a moment.
 std::uint64_t MvsCounts::reading_bytes() const {
   const std::uint64_t records = cameras * (sizeof(MvsCamera) + sizeof(MvsPlatform)) +
                                 poses * sizeof(MvsPose) + images * sizeof(MvsImage) +
@@ -176,7 +176,8 @@ std::uint64_t MvsCounts::reading_bytes() const {
   return scene_bytes() + records + std::max(file_bytes, 2 * images * sizeof(SceneImage));
 }
 
-// The scene's records, and the bytes that they become; those lie there twice when they grow.
+// Counts the records of the scene and the bytes of the file, which exist twice while their buffer
+// grows.
 std::uint64_t MvsCounts::writing_bytes() const {
   return scene_bytes() + 3 * file_bytes;
 }

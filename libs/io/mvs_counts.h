@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much an interchange scene (.mvs) holds, before it is read.
+// Counts the contents of an interchange scene (.mvs) without loading it, to estimate memory.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,25 @@ struct MvsCounts {
   std::uint64_t points = 0;
   std::uint64_t observations = 0;     // views of all points
   std::uint64_t pairs = 0;            // ordered pairs of different views of a point
-  std::uint64_t view_list_bytes = 0;  // what the heap takes for the points' lists of views
+  std::uint64_t view_list_bytes = 0;  // heap memory of the points' lists of views
   std::uint64_t normals = 0, colors = 0;
 
-  // Other lists of view scores, and the file's bytes with them.
+  // Replaces the number of view scores and adapts `file_bytes`.
   void set_view_scores(std::uint64_t number);
 
-  // At most, of the scene that read_mvs makes, in memory.
+  // Upper bound of the memory of the scene that read_mvs makes.
   std::uint64_t scene_bytes() const;
-  // At most, while it is read, the scene included; while it is written, besides the scene.
+  // Upper bounds of the memory while the file is read, including the scene, and while it is
+  // written, in addition to the scene.
   std::uint64_t reading_bytes() const;
   std::uint64_t writing_bytes() const;
 };
 
-// Passes over the file, and takes a megabyte for that. Nothing for a file that cannot be read or is
-// malformed: read_mvs says what is wrong with it.
+// Scans the file with a buffer of one megabyte. Nothing for a file of version 0, and for a file
+// that cannot be read or is malformed, for which read_mvs reports the reason.
 std::optional<MvsCounts> count_mvs(const std::filesystem::path& path);
 
-// The counts of the file that write_mvs makes, at most.
+// The counts of the file that write_mvs makes, as upper bounds.
 MvsCounts count_scene(const Scene& scene);
 
 }  // namespace axial::io

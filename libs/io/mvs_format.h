@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: the .mvs interchange format record by record, before any meaning is given to
-// it (docs/formats.md).
+// Private to libs/io: the records of the .mvs interchange format, without interpretation
+// (docs/formats.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace axial::io {
 
-inline constexpr std::uint32_t kMvsVersion = 7;  // the newest known, the one written
+inline constexpr std::uint32_t kMvsVersion = 7;  // the newest known; the one written
 
 struct MvsPose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -46,7 +46,8 @@ struct MvsBox {
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
 };
 
-// Lines and the transform are passed over: nothing here uses them, nor does OpenMVS 2.3.
+// The contents of a file. Lines and the transform are skipped: AxialMVS does not use them, nor does
+// OpenMVS 2.3.
 struct MvsFile {
   std::vector<MvsPlatform> platforms;
   std::vector<MvsImage> images;
@@ -56,7 +57,8 @@ struct MvsFile {
   MvsBox box;
 };
 
-// Error, naming `file`, for a native project, an unknown version, bytes too few or too many.
+// Parses the bytes of a file. Error that names `file` for a native project, an unknown version, or
+// too few or too many bytes.
 MvsFile parse_mvs(std::string_view bytes, const std::string& file);
 
 // The bytes of version 7.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY clouds and meshes: ascii and binary in, binary little-endian out.
+// PLY clouds and meshes: reads ascii and binary files, writes binary little-endian files.
 #pragma once
 
 #include <cstddef>
@@ -13,42 +13,45 @@
 
 namespace axial::io {
 
-// Properties are looked up by name (x y z, nx ny nz, red green blue or diffuse_*, view_indices,
-// view_weights); legacy (float, uchar) and modern (float32, uint8) type names; unknown elements and
-// properties are skipped. Error that names the file for anything malformed or truncated.
-// Positions are as stored; of a file with a line "comment geo_offset X Y Z" they count from there.
+// Reads a cloud. Properties are found by name: x y z, nx ny nz, red green blue (or diffuse_red and
+// so on), view_indices, view_weights. Old (float, uchar) and new (float32, uint8) type names are
+// known. Other elements and properties are skipped. Error that names the file for a malformed or
+// truncated file.
+//
+// Positions are returned as stored. In a file with a line "comment geo_offset X Y Z" they are
+// relative to that point.
 PointCloud read_cloud_ply(const std::filesystem::path& path);
 
-// The same with positions in `frame`, whatever they count from in the file: moved there before they
-// become float.
+// Reads a cloud with positions in `frame`. The positions are moved from the file's own origin in
+// double, before they become float.
 PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
-// Where a file's vertices are, and how well it knows that.
+// The origin and the precision of a file's positions.
 struct PlyPlace {
   Eigen::Vector3d first_vertex = Eigen::Vector3d::Zero();  // [world]; zero if there is none
-  LocalFrame frame;                                        // that the stored positions count from
+  LocalFrame frame;                                        // origin of the stored positions
   bool is_float = true;                                    // positions are float32
 };
 
-// Error as read_cloud_ply for a header, or a first vertex, that is none.
+// Reads the header and the first vertex. Errors as for read_cloud_ply.
 PlyPlace ply_place(const std::filesystem::path& path);
 
-// The place of positions that are written.
+// How positions are written.
 struct PlyPlacement {
-  LocalFrame frame;    // that they are in; unless it is the world, a comment geo_offset names it
-  bool world = false;  // write them as float64 in world coordinates, without such a comment
+  LocalFrame frame;    // of the positions; a comment geo_offset names it unless it is the world
+  bool world = false;  // write float64 in world coordinates, without the comment
 };
 
-// What every point of a cloud has besides its position.
+// The properties that every point of a cloud has besides its position.
 struct CloudLayout {
   bool colors = false, normals = false, views = false, view_weights = false;
   bool errors = false;  // the expected error and the confidence
 };
 
-// A cloud written portion by portion, of any size. The file takes its name in finish(); until then,
-// and if that is never called, there is none. Layout as OpenMVS writes it: x y z, red green blue,
-// nx ny nz, view_indices, view_weights; then error and confidence, of ours. The number of points is
-// known last, so a comment line keeps the room that its digits do not need.
+// Writes a cloud of any size in portions. The file gets its name in finish(); without finish() no
+// file remains. The layout is OpenMVS's: x y z, red green blue, nx ny nz, view_indices,
+// view_weights. Our own error and confidence follow. The number of points is known only at the end,
+// so the header reserves room for its digits in a comment line.
 class CloudWriter {
  public:
   CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
@@ -58,11 +61,12 @@ class CloudWriter {
 
   // Appends all points of `portion`. Error that names the file if an array of the layout is missing
   // or has another length than the positions, if a point has more than 255 views (the format counts
-  // in a byte), or if the file cannot be written.
+  // them in a byte), or if the file cannot be written.
   void add(const PointCloud& portion);
 
   std::size_t size() const;  // points so far
 
+  // Writes the number of points and gives the file its name. Error if the file cannot be written.
   void finish();
 
  private:
@@ -70,22 +74,22 @@ class CloudWriter {
   std::unique_ptr<File> file_;
 };
 
-// The whole cloud at once, each group of the layout only where the cloud has it. Errors as
-// CloudWriter::add.
+// Writes a whole cloud with the properties that it has; view_indices and view_weights only if
+// `with_views`. Errors as for CloudWriter::add.
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true, const PlyPlacement& placement = {});
 
-// Faces of more than three corners are split into a fan. Error for a face index out of range.
-// Positions as read_cloud_ply.
+// Read a mesh. Faces with more than three corners are split into a fan of triangles. Positions are
+// treated as in read_cloud_ply. Error for a face index out of range, and as for read_cloud_ply.
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
+// Writes a mesh with its colours, if it has any. Error if there is not one colour for each vertex.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 
-// What the writers make of a placement, for files with further properties: the comment line that
-// says where positions count from (empty in the world), the header's lines of the position, and the
-// bytes of a position.
+// Parts of a file for writers of other properties: the comment line with the origin of the
+// positions (empty for the world), the header lines of the position, and the bytes of one position.
 std::string geo_comment(const PlyPlacement& placement);
 const char* position_properties(const PlyPlacement& placement);
 void append_position(std::string& bytes, const Eigen::Vector3f& position,

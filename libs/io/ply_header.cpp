@@ -76,7 +76,7 @@ void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
   properties.push_back(std::move(property));
 }
 
-// Of a comment "geo_offset X Y Z"; other comments mean nothing.
+// Reads a comment "geo_offset X Y Z" and ignores other comments.
 void parse_comment(TextLine line, PlyHeader& header) {
   if (line.empty() || line.word("comment") != "geo_offset") return;
   if (header.geo_offset) fail("{}: second geo_offset", line.where());
@@ -85,7 +85,7 @@ void parse_comment(TextLine line, PlyHeader& header) {
   if (!line.rest().empty()) fail("{}: unexpected '{}'", line.where(), line.rest());
 }
 
-// Smallest number of bytes of one row.
+// The smallest number of bytes of one row.
 std::uint64_t min_row_bytes(const PlyElement& element, PlyFormat format) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& p : element.properties)
@@ -153,7 +153,7 @@ PlyBody::PlyBody(std::string_view bytes, const std::string& file, const PlyHeade
     : reader_(bytes.substr(header.body), file),
       format_(header.format),
       text_(bytes.substr(header.body)) {
-  // The cut of a number's last digits cannot be seen otherwise.
+  // Without the final newline, a truncated last number could not be recognised.
   if (format_ == PlyFormat::kAscii && !text_.empty() && text_.back() != '\n')
     fail("{}: truncated: the last line has no end", file);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: what a PLY header declares, and the scalars that follow it.
+// Private to libs/io: the PLY header, and the values that follow it.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,26 +34,29 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  std::optional<Eigen::Vector3d> geo_offset;  // of "comment geo_offset X Y Z"
-  std::size_t body = 0;                       // where the data begin
+  std::optional<Eigen::Vector3d> geo_offset;  // from "comment geo_offset X Y Z"
+  std::size_t body = 0;                       // offset of the data in bytes
 };
 
-// Error that names `file` for anything that is not a well-formed header.
+// Parses the header. Error that names `file` if it is not well-formed.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file);
 
-// The body's scalars, in any of the three formats, as double (which holds all PLY types exactly).
+// Reads the values of the body, in any of the three formats, as double, which holds all PLY types
+// exactly.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header);
 
-  // Error if `element` cannot have as many rows as it declares in the bytes left. Call before its
-  // rows are read; allocations may trust the count afterwards.
+  // Error if the bytes left cannot hold the declared rows of `element`. Call this before reading
+  // the rows; afterwards memory can be allocated for the count.
   void require_rows(const PlyElement& element) const;
 
-  // Error for a value that does not fit the type; infinite and NaN values are returned.
+  // Reads one value. Error if the bytes end or a value does not fit its type. Infinite and NaN
+  // values are returned.
   double scalar(PlyType type, const std::string& name);
 
-  // Length of a list whose values are still to be read; checked against the bytes left.
+  // Reads the length of a list; the caller reads its values next. Error if the bytes left cannot
+  // hold them.
   std::size_t list_size(const PlyProperty& property);
 
   // Error if data follow the last element.
@@ -66,7 +69,7 @@ class PlyBody {
 
   ByteReader reader_;
   PlyFormat format_;
-  std::string_view text_;  // what is left of an ascii body
+  std::string_view text_;  // the rest of an ascii body
 };
 
 }  // namespace axial::io

@@ -10,7 +10,7 @@
 namespace axial::io {
 namespace {
 
-// Every scalar of a row by its place among the properties; lists are passed over.
+// Calls take(index, value) for every scalar property of a row; lists are skipped.
 template <class Take>
 void read_row(PlyBody& body, const PlyElement& element, Take take) {
   for (std::size_t i = 0; i < element.properties.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers of our own at the vertices of a PLY file, by name.
+// Additional float properties of the vertices of a PLY file.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace axial::io {
 
-// One a vertex, in the file's order, as float; empty where the file's vertices have no such
-// property or it is a list. Errors as read_cloud_ply.
+// Reads the property `name`: one value for each vertex, in the order of the file. Empty if the
+// vertices have no such property or it is a list. Errors as for read_cloud_ply.
 std::vector<float> read_vertex_property(const std::filesystem::path& path, const std::string& name);
 
 struct VertexProperty {
   std::string name;
-  std::span<const float> values;  // one a vertex
+  std::span<const float> values;  // one for each vertex
 };
 
-// As write_mesh_ply, with a float property behind the others of a vertex. Error for another number
-// of values than vertices.
+// Writes a mesh as write_mesh_ply in ply.h does, with one more float property of the vertices.
+// Error if the number of values differs from the number of vertices.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const VertexProperty& property, const PlyPlacement& placement = {});
 

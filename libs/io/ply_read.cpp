@@ -12,7 +12,7 @@
 namespace axial::io {
 namespace {
 
-// Where a property's value goes in a vertex row.
+// The slot of a vertex row that receives a property's value.
 enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kSlots };
 constexpr std::array<const char*, kSlots> kSlotNames{"x",  "y",   "z",     "nx",  "ny",
                                                      "nz", "red", "green", "blue"};
@@ -31,7 +31,7 @@ const PlyElement* find_element(const PlyHeader& header, const std::string& name)
   return nullptr;
 }
 
-// The slots and lists of one element that are wanted, and the row read last.
+// Finds the properties of interest of an element, and holds the values of the last row read.
 class VertexRow {
  public:
   explicit VertexRow(const PlyElement& element)
@@ -68,7 +68,8 @@ class VertexRow {
   }
   Eigen::Vector3f vector(Slot first) const { return numbers(first).cast<float>(); }
 
-  // Integer colours are 0..255; some writers store floats in [0, 255].
+  // Integer colours are in 0..255; some writers store floats in [0, 255]. Values outside are
+  // clamped.
   Rgb color() const {
     Rgb rgb;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -89,11 +90,11 @@ class VertexRow {
     }
   }
 
-  std::vector<double> indices, weights;  // lists of the row read last
+  std::vector<double> indices, weights;  // lists of the last row read
 
  private:
   const PlyElement& element_;
-  std::vector<std::size_t> slot_of_;  // by property
+  std::vector<std::size_t> slot_of_;  // indexed by property
   std::array<bool, kSlots> has_{};
   std::array<double, kSlots> values_{};
   std::size_t indices_ = kNone, weights_ = kNone;
@@ -132,7 +133,7 @@ void skip_rows(PlyBody& body, const PlyElement& element) {
         body.scalar(property.type, property.name);
 }
 
-// By how much stored positions move into `frame`; nothing where they are to stay.
+// The shift of the stored positions into `frame`; nothing if they stay as stored.
 std::optional<Eigen::Vector3d> shift_into(const LocalFrame* frame, const PlyHeader& header) {
   if (!frame) return {};
   const Eigen::Vector3d shift = header.geo_offset.value_or(Eigen::Vector3d::Zero()) - frame->origin;
@@ -236,7 +237,7 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
   return mesh;
 }
 
-// The first row, elements before it skipped.
+// Reads the first vertex after skipping the elements before it.
 Eigen::Vector3d first_vertex(std::string_view bytes, const std::string& file,
                              const PlyHeader& header, const PlyElement& vertices) {
   PlyBody body(bytes, file, header);

@@ -56,7 +56,7 @@ void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i, bool w
   out.write(std::span(cloud.view_weights).subspan(cloud.view_begin[i], views.size()));
 }
 
-// The same length for any number of points.
+// The header has the same length for any number of points.
 std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placement,
                          std::size_t points) {
   constexpr std::size_t kMostDigits = 20;
@@ -175,7 +175,7 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
 
 namespace {
 
-// `property` null: none.
+// `property` may be null: no additional property.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const VertexProperty* property,
                 const PlyPlacement& placement) {
   if (!mesh.colors.empty())

@@ -60,7 +60,7 @@ struct PlyCounts {
   bool normals = false, colors = false;
 };
 
-// Of a file whose header is no longer than `kHeader`.
+// Only for files whose header has at most `kHeader` bytes.
 std::optional<PlyCounts> count_ply(const std::filesystem::path& ply) {
   constexpr std::size_t kHeader = 1u << 16;
   std::error_code error;

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 void require_index(double n, const char* key, const std::string& where) {
-  // No transparent solid or liquid a port is made of is denser than 3 (diamond: 2.4).
+  // No material of a port is denser than 3 (diamond: 2.4).
   if (!(n >= 1 && n <= 3)) fail("{}.{} is {}, expected an index from 1 to 3", where, key, n);
 }
 
@@ -44,7 +44,7 @@ json to_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-// What both kinds have.
+// Fields that both kinds of port have.
 
 template <class Port>
 void read_glass(const JsonPlace& place, Port& port) {
@@ -119,7 +119,7 @@ void check(const refractive::DomePort<double>& port, const std::string& where,
            double /*longest_gap*/) {
   require_length(port.inner_radius, "inner_radius_m", where);
   check_glass(port, where);
-  // Beyond this the light of some pixel may graze the glass.
+  // Farther out, the light of some pixels may graze the glass.
   const double away = port.centre.stableNorm();
   if (!(away < 0.9 * port.inner_radius))
     fail(
@@ -165,7 +165,8 @@ Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) 
   if (!(length > 1e-6 && std::isfinite(length)))
     fail("{} is [{},{},{}], which is no direction", where, n.x(), n.y(), n.z());
   if (std::abs(length - 1) > 1e-6) log_warning("{} has length {}: normalised", where, length);
-  // Left as it is where it is unit to rounding, so that writing what was read changes nothing.
+  // A normal that is of unit length up to rounding stays unchanged, so that reading and writing a
+  // file does not change it.
   return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
 }
 

@@ -11,7 +11,7 @@
 
 namespace axial::io {
 
-// A value inside a JSON file, with its place for error messages: `where` is "file: key.key".
+// A value in a JSON file, with its location for error messages: `where` is "file: key.key".
 struct JsonPlace {
   const nlohmann::json& json;
   std::string where;
@@ -24,25 +24,26 @@ struct JsonPlace {
   std::string text(const char* key) const;
 };
 
-// A housing's flat port lies within this of the camera [m]: more is a mistaken unit.
+// The largest distance of a housing's flat port from the camera [m]. A larger value is probably in
+// a wrong unit.
 inline constexpr double kLongestGap = 1;
 
-// Reads a port object. Error for unknown keys, values no port has, a flat port further than
-// `longest_gap` from the camera, and types other than "flat" and "dome". A normal off unit length
-// by more than 1e-6 is normalised with a warning.
+// Reads a port. Error for an unknown key, values that are not possible, a flat port farther than
+// `longest_gap` [m] from the camera, or a type other than "flat" and "dome". A normal whose length
+// differs from 1 by more than 1e-6 is normalised with a warning.
 refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap = kLongestGap);
 nlohmann::json port_to_json(const refractive::Port<double>& port);
 
-// The same of type "water-surface".
+// Functions for the type "water-surface".
 bool is_water_surface(const JsonPlace& place);
 WaterSurface water_surface_from_json(const JsonPlace& place);
 nlohmann::json water_surface_to_json(const WaterSurface& surface);
 
-// `n` with unit length, exactly as it is where it has that to rounding; with a warning where it is
-// off by more than 1e-6. Error that starts with `where` if it is no direction.
+// Returns `n` normalised; unchanged if its length is 1 up to rounding. Warns if the length differs
+// from 1 by more than 1e-6. Error that starts with `where` if `n` is almost zero or not finite.
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
 
-// Error that starts with `where` for values no port has.
+// Error that starts with `where` for values that are not possible: see read_housing (housing.h).
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_water_surface(const WaterSurface& surface, const std::string& where);
 

@@ -18,13 +18,13 @@ namespace {
 using refractive::DomePort;
 using refractive::FlatPort;
 
-// Fresh water in the red to the saltiest sea in the blue is 1.33 to 1.36.
+// From fresh water in red light to the saltiest sea in blue light: 1.33 to 1.36.
 constexpr double kLeastWater = 1.30, kMostWater = 1.40;
-// Fused silica is 1.46, acrylic 1.49, sapphire 1.77, the densest optical glass 2.0.
+// Fused silica has 1.46, acrylic 1.49, sapphire 1.77, the densest optical glass 2.0.
 constexpr double kLeastGlass = 1.30, kMostGlass = 2.00;
 constexpr double kMostDegrees = 30;
-// Divers see dark bodies at 40 m and more in the clearest water, but pictures to be matched are
-// taken from a fraction of that.
+// In the clearest water divers see dark objects at 40 m and more, but photographs for matching are
+// taken from much nearer.
 constexpr double kFarthest = 25;
 
 void check_range(double value, const char* field, double least, double most,
@@ -66,10 +66,11 @@ struct Values {
   }
 };
 
-// Of one observed point, along the port's normal or from the dome's centre [m].
+// Distances of one observed point and of the port, along the port's normal or from the dome's
+// centre [m].
 struct Reach {
-  double point = 0;  // as far as the point is
-  double inner = 0;  // where the glass begins and ends
+  double point = 0;  // distance of the point
+  double inner = 0;  // inner and outer face of the glass
   double outer = 0;
 };
 
@@ -78,11 +79,11 @@ Reach reach(const FlatPort<double>& port, const Eigen::Vector3d& x) {
 }
 
 Reach reach(const DomePort<double>& port, const Eigen::Vector3d& x) {
-  // What is behind the camera is as far from the centre, too, but not seen.
+  // Points behind the camera would also count as far from the centre; the caller leaves them out.
   return {(x - port.centre).norm(), port.inner_radius, port.inner_radius + port.thickness};
 }
 
-// Observations through one port.
+// Counts of the observations through one port.
 struct Observed {
   std::size_t all = 0, before_glass = 0, before_water = 0, far = 0;
 
@@ -105,7 +106,7 @@ struct SceneCheck {
   void operator()(const DomePort<double>& port) const {
     glass("inner_radius_m", port.inner_radius, port.thickness);
   }
-  // The point may be in the scene's frame here, and not as the file has it.
+  // Does not print the point, because it may be in the scene's local frame and not as in the file.
   void operator()(const WaterSurface&) const {
     if (seen.is_half(seen.before_water))
       log_warning(

@@ -10,7 +10,8 @@
 namespace axial::io {
 namespace {
 
-// Removes and returns the quoted text that `text` begins with; nothing if its quote is not closed.
+// Removes and returns the quoted text at the beginning of `text`; nothing if the quote is not
+// closed.
 std::optional<std::string> take_quoted(std::string_view& text) {
   std::string content;
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -41,7 +42,7 @@ struct Reading {
   std::array<std::string_view, 3> numbers;
 };
 
-// NAME X Y Z; nothing if the text ends in fewer than three numbers, or has nothing before them.
+// Reads NAME X Y Z; nothing if the text ends in fewer than three numbers or the name is empty.
 std::optional<Reading> read_from_end(std::string_view text) {
   Reading reading;
   for (std::size_t i = 3; i-- > 0;) {
@@ -53,7 +54,8 @@ std::optional<Reading> read_from_end(std::string_view text) {
   return reading;
 }
 
-// Where comments may begin, the last first, and the text's end before all.
+// Positions where a comment may begin. The end of the text comes first, then the positions from
+// right to left.
 std::vector<std::size_t> possible_ends(std::string_view text) {
   std::vector<std::size_t> ends{text.size()};
   for (std::size_t i = text.size(); i-- > 0;)
@@ -62,8 +64,8 @@ std::vector<std::size_t> possible_ends(std::string_view text) {
   return ends;
 }
 
-// A line as it can be read: of several ways the one that names an image, or else the one with the
-// longest comment.
+// Reads a line that can be understood in several ways. Prefers the way whose name is an image,
+// otherwise the way with the longest comment.
 std::optional<Reading> best_reading(std::string_view text, const IsImage& is_image) {
   std::optional<Reading> best;
   for (const std::size_t end : possible_ends(text)) {
@@ -84,7 +86,7 @@ Eigen::Vector3d position_of(const Reading& reading, const std::string& where) {
   return position;
 }
 
-// `"NAME" X Y Z`, and perhaps a comment.
+// Reads `"NAME" X Y Z` with an optional comment.
 std::optional<NamedPosition> parse_quoted(std::string_view text, const std::string& where) {
   if (!text.starts_with('"')) return {};
   const auto name = take_quoted(text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of positions by image name, and lists of names: what users type.
+// Text files of positions by image name, and lists of names, as users write them.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,19 +17,19 @@ struct NamedPosition {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   int line = 0;
-  bool known = false;  // `is_image` says so
+  bool known = false;  // `is_image` is true for the name
 };
 
-// The lines "NAME X Y Z" of a file, in UTF-8 with or without a byte order mark. The numbers are
-// read from the line's end: a name may hold blanks. A comment begins with '#', at the line's
-// beginning or behind a blank, unless `is_image` knows a name with that '#' in it. A name in double
-// quotes is taken as it stands, with "" for a quote in it. Error that names file and line for
-// anything else, and for numbers that are not finite.
+// Reads a file with lines "NAME X Y Z", in UTF-8 with or without a byte order mark. The numbers are
+// read from the end of the line, so a name may contain blanks. A comment starts with '#' at the
+// beginning of the line or after a blank, unless `is_image` knows a name that contains that '#'. A
+// name in double quotes is taken literally; "" in it stands for a quote. Error that names the file
+// and the line for other lines and for numbers that are not finite.
 std::vector<NamedPosition> read_positions(const std::filesystem::path& file,
                                           const IsImage& is_image);
 
-// The fields of a list with commas between them. A field in double quotes may hold commas, and ""
-// for a quote. Error that starts with `where` for a quote that is not closed.
+// Returns the fields of a list separated by commas. A field in double quotes may contain commas,
+// and "" for a quote. Error that starts with `where` if a quote is not closed.
 std::vector<std::string> split_list(std::string_view text, const std::string& where);
 
 }  // namespace axial::io

@@ -25,7 +25,7 @@ std::vector<double> numbers_of(const Port& port) {
   return {numbers.begin(), numbers.end()};
 }
 
-// Nothing for "none", and for a name that is not defined: reading refuses those.
+// Null for "none" and for a name that is not defined, which readers refuse.
 const HousingPort* port_named(const Housing& housing, const std::string& name) {
   const auto port = housing.ports.find(name);
   return port == housing.ports.end() ? nullptr : &port->second;
@@ -35,7 +35,7 @@ bool same(const HousingPort* a, const HousingPort* b) {
   return a && b ? same_port(*a, *b) : a == b;
 }
 
-// By the end of a path, as attach_ports.
+// Finds the port by the end of a path, as attach_ports does.
 const HousingPort* port_by_path(const Housing& housing, const std::string& path) {
   const auto entry = housing.entry_of(fs::path(path).generic_string());
   return port_named(housing, entry == housing.images.end() ? housing.default_port : entry->second);

@@ -13,7 +13,8 @@ Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& wh
   const double deviation = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(deviation <= 1e-3)) fail("{} is no rotation: R R^T differs from I by {}", where, deviation);
   if (r.determinant() < 0) fail("{} is no rotation: its determinant is {}", where, r.determinant());
-  // What is right to rounding stays as it is, so that writing what was read changes nothing.
+  // A matrix that is a rotation up to rounding stays unchanged, so that reading and writing a file
+  // does not change it.
   if (deviation < 1e-9) return r;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: whether a matrix read from a file is a rotation.
+// Private to libs/io: checks that a matrix from a file is a rotation.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,8 @@
 
 namespace axial::io {
 
-// `r`, made exactly orthonormal where a writer's rounding left it short of that. Error that starts
-// with `where` if it is not finite, R R^T differs from I by more than 1e-3, or det R < 0.
+// Returns `r`, made orthonormal if rounding in the file left it inexact. Error that starts with
+// `where` if it is not finite, an element of R R^T differs from I by more than 1e-3, or det R < 0.
 Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where);
 
 }  // namespace axial::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A drawing as an SVG that needs no other file.
+// A drawing as an SVG text that refers to no other file.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,22 +15,22 @@ struct Rectangle {
 
 enum class Anchor { kStart, kMiddle, kEnd };
 
-// A picture as text, fit for SVG and JSON.
+// A picture as the base64 text of a PNG file, for SVG and JSON.
 std::string png_in_base64(const cv::Mat3b& bgr);
 
 class Svg {
  public:
   Svg(double width, double height);
 
-  // Kinds are the style sheet's: "title", "small", "grid", "axis".
+  // `kind` is a class of the style sheet: "title", "small", "grid" or "axis".
   void text(double x, double y, std::string_view content, Anchor anchor = Anchor::kStart,
             std::string_view kind = "");
-  void upright_text(double x, double y, std::string_view content);  // read from below, centred
+  void upright_text(double x, double y, std::string_view content);  // upwards, centred
   void line(double x1, double y1, double x2, double y2, std::string_view kind);
   void polyline(const std::vector<cv::Point2d>& points, std::string_view color);
   void circle(double x, double y, std::string_view color, std::string_view tip);
   void box(const Rectangle& where, std::string_view color);
-  // Stretched to fill the rectangle.
+  // Stretches the picture to fill the rectangle.
   void picture(const Rectangle& where, const cv::Mat3b& bgr);
   void picture(const Rectangle& where, std::string_view png_in_base64);
 

@@ -34,7 +34,7 @@ inline std::string_view take_token(std::string_view& text) {
   return token;
 }
 
-// One line of a text file, taken apart from left to right.
+// One line of a text file, read token by token from left to right.
 class TextLine {
  public:
   TextLine(std::string_view text, const std::string& file, std::size_t number)
@@ -57,7 +57,7 @@ class TextLine {
     return *value;
   }
 
-  // Everything not yet taken, without the blanks around it.
+  // The part that is not read yet, without blanks around it.
   std::string_view rest() const { return trimmed(text_); }
 
  private:
@@ -66,18 +66,18 @@ class TextLine {
   std::size_t number_;
 };
 
-// The lines of a text file, without a byte order mark before the first. The file must end with a
-// newline: a last line without one is what a cut file looks like, and is an Error.
+// Reads the lines of a text file. A byte order mark at its beginning is skipped. The last line must
+// end with a newline; otherwise line() gives an Error, because the file was probably truncated.
 class TextReader {
  public:
   TextReader(std::string_view text, std::string file)
       : text_(without_byte_order_mark(text)), size_(text.size()), file_(std::move(file)) {}
 
   const std::string& file() const { return file_; }
-  // Offset of the next line.
+  // Byte offset of the next line.
   std::size_t position() const { return size_ - text_.size(); }
 
-  // The next line, comments and empty ones included; nothing at the end of the file.
+  // Returns the next line, including comments and empty lines; nothing at the end of the file.
   std::optional<TextLine> line() {
     if (text_.empty()) return {};
     ++number_;
@@ -89,7 +89,7 @@ class TextReader {
     return next;
   }
 
-  // The next line that is neither empty nor a '#' comment.
+  // Returns the next line that is neither empty nor a '#' comment; nothing at the end of the file.
   std::optional<TextLine> record() {
     while (std::optional<TextLine> next = line())
       if (!next->empty() && next->rest().front() != '#') return next;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// In pieces: clouds may be larger than the memory.
+// Reads in pieces, because clouds may be larger than the memory.
 std::string fingerprint_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string piece(1 << 20, '\0');
@@ -62,7 +62,7 @@ WrittenFiles find_written(const fs::path& folder, const nlohmann::json& listed) 
 void remove_below(const fs::path& folder, const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     fs::remove(folder / file);
-    std::error_code error;  // not empty
+    std::error_code error;  // ignored: the folder is not empty
     for (fs::path above = file.parent_path(); !above.empty(); above = above.parent_path())
       if (!fs::is_directory(fs::symlink_status(folder / above, error)) ||
           !fs::remove(folder / above, error))

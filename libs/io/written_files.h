@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a program wrote into a folder: a list with fingerprints of the contents, so that the next
-// run removes what it does not replace, and nothing that others wrote or changed.
+// Records the files that a program wrote into a folder, with fingerprints of their contents. The
+// next run can then remove the files that it does not replace, and leave files that others wrote or
+// changed.
 #pragma once
 
 #include <filesystem>
@@ -9,19 +10,21 @@
 
 namespace axial::io {
 
-// All files below `folder`, at any depth, but no links: { "path/below/it": fingerprint, ... }.
+// Lists all regular files below `folder`, at any depth, without symbolic links: { "relative/path":
+// fingerprint, ... }.
 nlohmann::json list_files(const std::filesystem::path& folder);
 
 struct WrittenFiles {
   std::vector<std::filesystem::path> unchanged;  // paths below the folder, sorted
-  std::vector<std::filesystem::path> changed;    // are there, with another content
+  std::vector<std::filesystem::path> changed;    // exist with another content
 };
 
-// Which of `listed`, as list_files made it, are in `folder` today. Entries that list_files does not
-// make, such as paths that lead out of the folder, are passed over.
+// Finds the files of `listed` (made by list_files) that exist in `folder`. Entries that list_files
+// cannot have made are ignored, for example paths that lead out of the folder.
 WrittenFiles find_written(const std::filesystem::path& folder, const nlohmann::json& listed);
 
-// Removes files below `folder`, and the folders below it that are empty then.
+// Removes `files`, given relative to `folder`, and then the folders below `folder` that have become
+// empty.
 void remove_below(const std::filesystem::path& folder,
                   const std::vector<std::filesystem::path>& files);
 

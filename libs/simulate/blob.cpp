@@ -11,7 +11,7 @@
 namespace axial::simulate {
 namespace {
 
-// Rounded lumps with sharp valleys between them, over smaller ones.
+// Rounded lumps with sharp valleys between them, and smaller lumps on top.
 double lumps(const Eigen::Vector3d& p, std::uint32_t seed) {
   const float broad = fractal_noise(1.1 * p, seed, 2, 0.5f);
   const float cracks = std::abs(gradient_noise(turn_octave(2.6 * p), seed + 5u));
@@ -35,7 +35,7 @@ bool Blob::contains(const Eigen::Vector3d& p, double margin) const {
 }
 
 TriangleMesh blob_mesh(const Blob& blob, double cell) {
-  // An icosahedron's edge is 1.05 radii long; each level halves it.
+  // An icosahedron's edge is 1.05 radii long, and each level halves it.
   const double halvings = std::log2(1.05 * blob.radii.maxCoeff() / cell);
   TriangleMesh mesh = unit_sphere(std::clamp(static_cast<int>(std::lround(halvings)), 2, 8));
   parallel_for(
@@ -51,7 +51,7 @@ TriangleMesh blob_mesh(const Blob& blob, double cell) {
 
 TriangleMesh arch_mesh(const Arch& arch, double cell) {
   const double pi = std::numbers::pi;
-  // From below the ground on one side to below the ground on the other.
+  // From below the ground on one side to below the ground on the other side.
   const double from = -0.35, to = pi + 0.35;
   const auto rows = static_cast<std::size_t>(std::ceil((to - from) * arch.span_radius *
                                                        std::max(1.0, arch.rise) / cell)) +

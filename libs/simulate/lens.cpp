@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distorted lenses, written down apart from refractive/ and solved in another way: the two check
-// each other.
+// Distorted lenses. The code is independent of refractive/ and inverts the distortion in another
+// way: each checks the other.
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@
 namespace axial::simulate {
 namespace {
 
-// Beyond, a lens is none for a port.
+// Beyond this angle a lens is not used behind a port.
 constexpr double kWidestAngle = 85 * std::numbers::pi / 180;
 
 double radius_of_angle(const Bend& bend, double angle) {
@@ -40,8 +40,8 @@ Eigen::Vector2d shift_at(const Bend& bend, const Eigen::Vector2d& p) {
           p1 * (r2 + 2 * p.y() * p.y()) + 2 * p2 * p.x() * p.y()};
 }
 
-// What the perspective lens images at d: what is left of d when the shift at the last guess is
-// taken away and the rest shrunk by the stretch there.
+// Inverts the perspective distortion with a damped fixed-point iteration: subtracts the tangential
+// shift at the last estimate from d, and divides by the radial factor there.
 Eigen::Vector2d unbend(const Bend& bend, const Eigen::Vector2d& d) {
   Eigen::Vector2d p = d;
   for (int i = 0; i < 500; ++i) {
@@ -83,7 +83,7 @@ Eigen::Vector3d direction_of(const Lens& lens, double u, double v) {
 
 namespace {
 
-// Where a lens folds back, and from there on until it folds again, its image is turned over.
+// Beyond a fold of the lens, up to the next fold, the image is mirrored.
 bool is_turned_over(const Lens& lens, const Eigen::Vector2d& p) {
   constexpr double kStep = 1e-6;
   const auto at = [&](double x, double y) {
@@ -94,7 +94,7 @@ bool is_turned_over(const Lens& lens, const Eigen::Vector2d& p) {
   return !(slope.determinant() > 0);
 }
 
-// True if the pixel has a direction, without a fold between the axis and it.
+// True if the pixel has a direction and there is no fold between it and the axis.
 bool reaches(const Lens& lens, const Eigen::Vector2d& pixel) {
   const Eigen::Vector3d direction = direction_of(lens, pixel.x(), pixel.y());
   if (!((pixel_of(lens, direction) - pixel).norm() < 1e-6)) return false;
@@ -108,7 +108,7 @@ bool reaches(const Lens& lens, const Eigen::Vector2d& pixel) {
 
 void check_lens(const Lens& lens) {
   if (!lens.bend) return;
-  // The image's outline, corners included.
+  // The border of the image, corners included.
   constexpr int kSamples = 32;
   for (int i = 0; i <= kSamples; ++i) {
     const double share = double(i) / kSamples;

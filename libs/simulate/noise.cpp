@@ -23,8 +23,8 @@ float fade(float t) {
   return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }
 
-// The largest integer that is not above v. (std::floor is a function call for the oldest
-// processors.)
+// The largest integer that is not above v. (On the oldest supported processors std::floor is a
+// function call.)
 std::int64_t lattice(double v) {
   const auto truncated = static_cast<std::int64_t>(v);
   return truncated - (v < static_cast<double>(truncated) ? 1 : 0);
@@ -76,7 +76,7 @@ float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed) {
 }
 
 Eigen::Vector3d turn_octave(const Eigen::Vector3d& p) {
-  // Two turns with the sides of 3-4-5 and 5-12-13 triangles: exact rotations without sin and cos.
+  // Two rotations with the sides of 3-4-5 and 5-12-13 triangles are exact without sin and cos.
   const double x = 0.8 * p.x() - 0.6 * p.y();
   const double y = 0.6 * p.x() + 0.8 * p.y();
   const double t = (5.0 * y - 12.0 * p.z()) / 13.0;

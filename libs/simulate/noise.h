@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Procedural noise from integer hashes: no tables, no transcendental functions, so the same bits
-// on every thread and machine with IEEE arithmetic.
+// Procedural noise from integer hashes, without tables and transcendental functions. The results
+// are identical bit for bit on every thread and on every machine with IEEE arithmetic.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,22 +8,22 @@
 
 namespace axial::simulate {
 
-// Gradient noise with unit lattice spacing: smooth (C2), zero mean, standard deviation about 0.19,
-// most energy at wavelengths near 1.5. `seed` picks one of 2^32 unrelated fields.
+// Gradient noise on a lattice of spacing 1. It is smooth (C2), with mean zero, a standard deviation
+// of about 0.19 and most of its energy at wavelengths near 1.5. `seed` selects one of 2^32
+// unrelated fields.
 float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed);
 
-// Sum of `octaves` fields at p, 2p, 4p... with weights 1, gain, gain^2...; each octave is turned
-// and shifted so that no lattice shows through.
+// The sum of `octaves` noise fields at p, 2p, 4p ... with weights 1, gain, gain^2 ... Each octave
+// is rotated and shifted, so that the lattice is not visible.
 float fractal_noise(const Eigen::Vector3d& p, std::uint32_t seed, int octaves, float gain);
 
-// The rotation and shift by which `fractal_noise` passes from one octave to the next, without the
-// doubling.
+// The rotation and shift from one octave of `fractal_noise` to the next, without the factor 2.
 Eigen::Vector3d turn_octave(const Eigen::Vector3d& p);
 
-// 0 below a, 1 above b, a cubic between.
+// 0 for x below a, 1 for x above b, and a cubic in between.
 float smooth_step(float a, float b, float x);
 
-// Independent uniform numbers in [0, 1), keyed by (seed, index).
+// A uniform number in [0, 1). Numbers of different (seed, index) are independent.
 double uniform(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace axial::simulate

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled for AVX2 alone: nothing here may be shared with other translation units.
+// This file is compiled for AVX2. It must share no inline code with other translation units, which
+// run on older processors too.
 #include <immintrin.h>
 
 #include "simulate/noise_corners.h"
@@ -11,7 +12,7 @@ inline __m256i word(std::uint32_t value) {
   return _mm256_set1_epi32(static_cast<int>(value));
 }
 
-// `upper` at the corners whose number has the axis's bit set, `lower` at the others.
+// `upper` for the corners whose number has the bit of the axis set, `lower` for the others.
 inline __m256i by_corner(int axis, std::uint32_t lower, std::uint32_t upper) {
   const __m256i bits = _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0);
   const __m256i bit = _mm256_set1_epi32(1 << axis);

@@ -17,7 +17,7 @@ struct PortPath {
   Eigen::Vector3d in_water;
 };
 
-// Where a ray from inside a sphere leaves it.
+// The point where a ray that starts inside a sphere leaves it.
 Eigen::Vector3d leave_sphere(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                              const Eigen::Vector3d& centre, double radius) {
   const Eigen::Vector3d offset = from - centre;
@@ -53,7 +53,8 @@ std::optional<PortPath> pass_port(const Port& port, const Eigen::Vector3d& in_ai
   return PortPath{on_outer, *in_water};
 }
 
-// Foot, on the line through the origin along `axis`, of the shortest connection to the path's line.
+// The point of the line through the origin along `axis` that is nearest to the line of the ray in
+// water.
 Eigen::Vector3d foot_on_axis(const PortPath& path, const Eigen::Vector3d& axis) {
   const double c = axis.dot(path.in_water);
   const double sin2 = axis.cross(path.in_water).squaredNorm();
@@ -61,7 +62,8 @@ Eigen::Vector3d foot_on_axis(const PortPath& path, const Eigen::Vector3d& axis) 
   return axis * along;
 }
 
-// Unit, on the side where the light goes. Zero for a centred dome: all of its rays pass the centre.
+// The unit axis, on the side to which the light goes. Zero for a centred dome, where all rays pass
+// through the centre.
 Eigen::Vector3d axis_of(const Port& port, const Eigen::Vector3d& in_air) {
   if (!port.dome) return port.normal;
   if (port.dome->centre.norm() < 1e-9) return Eigen::Vector3d::Zero();
@@ -114,7 +116,7 @@ Port surface_port(double level, const View& view, double n_air, double n_water) 
 std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
                                        const Eigen::Vector3d& normal, double n_from, double n_to) {
   const double ratio = n_from / n_to;
-  // The part of the direction along the interface scales with the ratio of the indices.
+  // The component along the interface is scaled by the ratio of the indices.
   const Eigen::Vector3d along = ratio * (direction - direction.dot(normal) * normal);
   const double rest = 1.0 - along.squaredNorm();
   if (!(rest > 0)) return std::nullopt;
@@ -128,8 +130,8 @@ std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u
   if (!path) return std::nullopt;
   const Eigen::Vector3d axis = axis_of(*port, in_air);
   if (axis.isZero()) return SceneRay{path->exit, path->in_water, Eigen::Vector3d::Zero()};
-  // A ray along the axis meets it everywhere; its neighbours' crossing is the limit, reached with
-  // an error of the second order in the step.
+  // A ray along the axis meets it everywhere. The result is the limit for neighbouring rays,
+  // approximated by one of them; its error is of second order in the step.
   constexpr double kStep = 1e-4;
   if (path->in_water.cross(axis).norm() >= kStep)
     return SceneRay{path->exit, path->in_water, foot_on_axis(*path, axis)};

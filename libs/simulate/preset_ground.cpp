@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The presets "sand" and "transect": plain ground from above.
+// The presets "sand" and "transect": simple ground seen from above.
 #include <cmath>
 
 #include "simulate/preset_parts.h"
@@ -7,9 +7,9 @@
 namespace axial::simulate {
 namespace {
 
-constexpr double kHeight = 2.90;  // reef's
+constexpr double kHeight = 2.90;  // as in "reef"
 
-// How much of the ground, along the image's height, a view from `height` sees through the port.
+// The length of ground, along the image's height, that a view at `height` sees through the port.
 double length_seen(const Preset& preset, double height) {
   const double in_air = std::atan(0.5 * preset.lens.height / preset.lens.focal);
   const double in_water = std::asin(std::sin(in_air) * preset.port.n_air / preset.port.n_water);
@@ -39,7 +39,7 @@ void make_transect(Preset& preset, std::uint32_t seed, int views) {
   preset.texture = {seed + 6000u, 1.0};
   Draw draw(seed + 6000u);
   const double step = (1 - kOverlap) * length_seen(preset, kHeight);
-  // In air the fields of view are wider.
+  // Fields of view are wider in air, and images in air are rendered too.
   const double pixel_in_air = kHeight / preset.lens.focal;
   Terrain& terrain = preset.terrain;
   terrain.floor = {draw.seed(), 2.2, 0.22, 1, 2, 0};

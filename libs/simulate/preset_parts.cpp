@@ -90,7 +90,7 @@ void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double fr
     const double x = draw.between(-half.x(), half.x()), y = draw.between(-half.y(), half.y());
     const double t = draw.between(0, 1);
     if (std::hypot(x, y) < from) continue;
-    // Many small ones, few large ones.
+    // Many small boulders, few large ones.
     const double radius = radii.x() + (radii.y() - radii.x()) * t * t;
     terrain.blobs.push_back(boulder(terrain.floor, x, y, radius, draw));
     --count;
@@ -101,7 +101,7 @@ void add_two_rows(Preset& preset, int views, double height, Draw& draw) {
   const int columns = (views + 1) / 2;
   for (int i = 0; i < views; ++i) {
     const int row = i / columns;
-    // There along one row, back along the other.
+    // Forth along one row, back along the other.
     const int column = row == 0 ? i : 2 * columns - 1 - i;
     const Eigen::Vector3d centre(0.5 * (column - 0.5 * (columns - 1)) + draw.between(-0.06, 0.06),
                                  0.55 * (row - 0.5) + draw.between(-0.06, 0.06),

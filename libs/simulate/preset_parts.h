@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/simulate: what presets are made of.
+// Private to libs/simulate: parts from which presets are built.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace axial::simulate {
 
 inline constexpr double kRadians = std::numbers::pi / 180;
 
-// Numbers drawn one after the other.
+// A sequence of uniform random numbers, the same for the same seed.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : seed_(seed) {}
@@ -22,29 +22,33 @@ class Draw {
   std::uint64_t seed_, index_ = 0;
 };
 
-// Camera at `centre` that looks at `target`, image up as near world up (or +y) as can be.
+// A camera at `centre` that looks at `target`. `up` [world] points upwards in the image as far as
+// possible.
 View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
              const Eigen::Vector3d& up);
 
-// Turns the camera by up to `degrees` about each of its axes.
+// Rotates the camera by up to `degrees` about each of its axes.
 void shake(View& view, double degrees, Draw& draw);
 
-// A stalk and a cap that overhangs it all around.
+// Adds a stalk with a cap that overhangs it on all sides.
 void add_mushroom(Terrain& terrain, double x, double y, double size, Draw& draw);
 
 void add_arch(Terrain& terrain, double x, double y, double span_radius, Draw& draw);
 
-// Boulders spread over a rectangle, none nearer to the origin than `from`, `radii` from .. to.
+// Scatters `count` boulders over the rectangle |x| <= half.x, |y| <= half.y. No boulder is nearer
+// to the origin than `from`. Their radii are between radii.x and radii.y.
 void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double from,
              const Eigen::Vector2d& radii, Draw& draw);
 
-// Views from two rows, there along one and back along the other, `height` over the origin's level.
+// Adds views from above in two rows, along one row and back along the other, at a height of about
+// `height` [m].
 void add_two_rows(Preset& preset, int views, double height, Draw& draw);
 
-// Views all around the origin, two thirds in a ring and the others in a narrower one above it.
+// Adds views around the origin from a distance of about `range` [m]: two thirds in a lower ring,
+// the others in a narrower ring above it.
 void add_two_rings(Preset& preset, int views, double range, Draw& draw);
 
-// The presets of these names; `preset` has its lens. presets.h describes them.
+// Make the presets of these names (see presets.h). `preset` must have its lens.
 void make_thicket(Preset& preset, std::uint32_t seed, int views);
 void make_sand(Preset& preset, std::uint32_t seed, int views);
 void make_transect(Preset& preset, std::uint32_t seed, int views);

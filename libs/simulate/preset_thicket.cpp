@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The preset "thicket": what grows and hangs above a seabed, thin and thick.
+// The preset "thicket": thin and thick structures that grow or hang above a seabed.
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -8,9 +8,9 @@
 namespace axial::simulate {
 namespace {
 
-// Width of a pixel under water at 0.9 m, in views 1024 pixels and 80 degrees wide [m].
+// Width of a pixel under water at 0.9 m [m], for views 1024 pixels and 80 degrees wide.
 constexpr double kPixel = 0.0011;
-// What structures are thick [px].
+// Thickness of the structures [px].
 constexpr double kThickness[] = {1, 2, 4, 8, 16};
 
 Eigen::Vector3d any_direction(double least_z, Draw& draw) {
@@ -19,7 +19,8 @@ Eigen::Vector3d any_direction(double least_z, Draw& draw) {
   return {level * std::cos(around), level * std::sin(around), z};
 }
 
-// A branch and, at its end, two of half its thickness, down to a pixel's.
+// Adds a branch, and at its end two branches of half its thickness, recursively down to about a
+// pixel.
 void grow(Terrain& terrain, const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
           double length, double radius, Draw& draw) {
   constexpr int kPoints = 8;
@@ -47,7 +48,7 @@ void add_coral(Terrain& terrain, double x, double y, double thickness, Draw& dra
   grow(terrain, root, (any_direction(0.9, draw)), draw.between(0.075, 0.10), 0.5 * thickness, draw);
 }
 
-// Hangs between two posts or pieces of ground that are out of the views.
+// Adds a rope that sags between two supports, which are outside the views.
 void add_rope(Terrain& terrain, double thickness, Draw& draw) {
   const double turn = draw.between(0, 3.14), aside = draw.between(-0.28, 0.28);
   const double height = draw.between(0.08, 0.26), sag = draw.between(0.03, 0.10);
@@ -64,7 +65,7 @@ void add_rope(Terrain& terrain, double thickness, Draw& draw) {
   terrain.tubes.push_back(std::move(rope));
 }
 
-// Plates on one stalk, one above the other, that overhang the ground.
+// Adds plates on one stalk, one above the other, that overhang the ground.
 void add_plates(Terrain& terrain, double x, double y, double size, Draw& draw) {
   const double ground = terrain.floor.at(x, y);
   const auto add = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& radii, double tilt) {

@@ -34,7 +34,7 @@ void make_reef(Preset& preset, std::uint32_t seed, int views) {
   add_two_rows(preset, views, 2.90, draw);
 }
 
-// There along one row, back along the next, over a seabed that grows with the number of rows.
+// Forth along one row, back along the next. The seabed grows with the number of rows.
 void make_survey(Preset& preset, std::uint32_t seed, int views) {
   constexpr int kColumns = 10;
   constexpr double kStep = 0.9, kHeight = 2.9, kMargin = 2.6;
@@ -63,8 +63,8 @@ void make_survey(Preset& preset, std::uint32_t seed, int views) {
   }
 }
 
-// Bedded rock that stands out of the sediment, with blocks fallen off around it, photographed along
-// an uneven arc.
+// Bedded rock that rises from the sediment, with fallen blocks around it, photographed along an
+// uneven arc.
 void make_outcrop(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed + 3000u, 0.8};
@@ -114,7 +114,7 @@ void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   add_two_rings(preset, views, 0.81, draw);
 }
 
-// Leaves a seventh of the contrast.
+// This haze leaves a seventh of the contrast.
 constexpr double kHaze = 6.0 / 7;
 
 void scale_terrain(Terrain& terrain, double scale) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scenes the project is measured on: what is photographed, through what, from where.
+// The scenes for the project's measurements: terrain, texture, port and views.
 #pragma once
 
 #include <optional>
@@ -18,48 +18,56 @@ struct PresetOptions {
   int views = 0;  // 0: the preset's own number
   int width = 1024, height = 768;
   double horizontal_fov_degrees = 80;
-  // The whole scene and the views' distances times this; the port stays as it is.
+  // Factor of the whole scene and of the views' distances. The port is not scaled.
   double scale = 1;
-  // Heights of the scene times this; the views stay where they are.
+  // Factor of the scene's heights. The views are not moved.
   double relief = 1;
-  // Distance between the mesh's vertices times this.
+  // Factor of the distance between the mesh's vertices.
   double coarseness = 1;
 };
 
 struct Preset {
   Lens lens;
   Port port;
-  // Height in the world of a water surface in place of the port, of which n_air and n_water count.
+  // Height of a water surface in the world [m]. If it is set, the surface replaces the port, of
+  // which only n_air and n_water are used.
   std::optional<double> water_level;
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
-  double haze = 0;  // that the scene is photographed in, as add_haze
+  double haze = 0;  // strength of the haze in the photographs (see add_haze)
 };
 
-// "reef": a survey from above in two rows, seabed 2 to 3.5 m away, thin gap and thick glass.
-// "outcrop": ten views, as a hand would hold the camera, of a mound of bedded rock 2 to 3 m away,
-// through reef's port.
-// "closeup": views all around an object with overhangs, 0.5 to 0.9 m away, behind tilted acrylic.
-// "survey": rows of ten views from above, as many as it takes; what a view sees does not depend on
-// how many there are.
-// "thicket": branching coral, ropes, plates and overhangs above a seabed that views look down on
-// from about 0.9 m all around: structures 1 to 16 pixels thick in views 1024 pixels wide. "sand":
-// low ripples under reef's views and port, with a texture of about the noise's contrast.
-// "transect": one strip from reef's height, each view 55 % over the one before under water, so that
-// most of the ground is seen by exactly two.
-// Each of them also as "NAME-hazy", in haze that leaves a seventh of the contrast. Error for
-// another name, a number of views outside [0, 200], a scale, relief or coarseness outside [0.01,
-// 100], or what make_lens refuses.
+// Makes a preset:
+// - "reef": a survey from above in two rows. The seabed is 2 to 3.5 m away. Small air gap, thick
+//   glass.
+// - "outcrop": views of a mound of bedded rock, 2 to 3 m away, as with a hand-held camera, through
+//   the port of "reef".
+// - "closeup": views around an object with overhangs, 0.5 to 0.9 m away, through a tilted acrylic
+//   port.
+// - "survey": rows of ten views from above. The number of rows follows from the number of views;
+//   the content of a view does not depend on it.
+// - "thicket": branching coral, ropes, plates and overhangs above a seabed, seen from above and
+//   from all sides at about 0.9 m. The structures are 1 to 16 pixels thick in views 1024 pixels
+//   wide.
+// - "sand": low ripples with the views and the port of "reef". The contrast of the texture is about
+//   that of the image noise.
+// - "transect": one strip at the height of "reef". Successive views overlap by 55 % under water, so
+//   that most of the ground is seen by exactly two views.
+//
+// "NAME-hazy" is the same scene in haze that leaves a seventh of the contrast. Error for another
+// name, a number of views outside [0, 200], a scale, relief or coarseness outside [0.01, 100], or
+// values that make_lens refuses.
 Preset make_preset(const PresetOptions& options);
 
-// What `view` looks through: the preset's port, or the water's surface.
+// The port of `view`: the preset's port, or its water surface.
 Port port_of_view(const Preset& preset, const View& view);
 
-// Error that names the view and the value: a port that check_port refuses.
+// Error if check_port refuses the port of a view. It names the value, and the view if there is a
+// water surface.
 void check_ports(const Preset& preset);
 
-// Error if the mesh is not all below the preset's water surface.
+// Error unless the whole mesh is below the preset's water surface. No effect without one.
 void check_submerged(const Preset& preset, const TriangleMesh& mesh);
 
 }  // namespace axial::simulate

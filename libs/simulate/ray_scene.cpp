@@ -41,7 +41,7 @@ RTCRay make_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
 struct RayScene::State {
   Device device;
   EmbreeScene scene;
-  std::vector<Eigen::Vector3f> vertices;  // one more than used: Embree reads 16 bytes at a time
+  std::vector<Eigen::Vector3f> vertices;  // and a spare one: Embree reads 16 bytes at a time
   std::vector<Face> faces;
 };
 
@@ -94,7 +94,7 @@ std::optional<Hit> RayScene::first_hit(const Eigen::Vector3d& origin,
   const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
   const double slope = normal.dot(direction);
   Hit hit{query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v, normal};
-  // Seen edge-on, the plane says less about the distance than the float hit does.
+  // For a face seen nearly edge-on, the plane is less accurate than Embree's float distance.
   if (std::abs(slope) > 1e-3) hit.distance = normal.dot(a - origin) / slope;
   return hit;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ray casting against a triangle mesh (Embree), with hits refined in double precision.
+// Casts rays at a triangle mesh (Embree). Hits are refined in double precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,27 +12,27 @@
 namespace axial::simulate {
 
 struct Hit {
-  double distance = 0;  // along the unit direction, from the plane of the face in double
+  double distance = 0;  // along the unit direction, computed in double with the plane of the face
   std::uint32_t face = 0;
   float u = 0, v = 0;      // barycentric weights of the face's second and third corner
-  Eigen::Vector3d normal;  // unit, of the face, by the order of its corners
+  Eigen::Vector3d normal;  // unit normal of the face, by the order of its corners
 };
 
-// Immutable once built; all queries may run concurrently. The tree is built by one thread, so that
-// ties between faces fall the same way whatever the number of threads.
+// Immutable after construction. All queries may run concurrently. One thread builds the tree, so
+// that ties between faces have the same result for any number of threads.
 class RayScene {
  public:
-  // Keeps a copy of what it needs. Error for an empty mesh or a face index out of range.
+  // Copies the mesh. Error for a mesh without faces or a face index out of range.
   explicit RayScene(const TriangleMesh& mesh);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // The first face hit at a distance above 0.
+  // Returns the first face on the ray at a distance above 0. `direction` is of unit length.
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction) const;
 
-  // True if a face lies on the ray at a distance within [near, far].
+  // True if a face lies on the ray at a distance within [near, far]. `direction` is of unit length.
   bool blocked(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
                double far) const;
 

@@ -11,18 +11,18 @@
 namespace axial::simulate {
 namespace {
 
-// Sum of four uniform numbers: bell-shaped, variance 1 after scaling, and free of log and cos.
+// The sum of four uniform numbers, scaled to variance 1: bell-shaped, without log and cos.
 float bell(std::uint64_t bits) {
   float sum = 0;
   for (int i = 0; i < 4; ++i) sum += static_cast<float>((bits >> (16 * i)) & 0xFFFFu);
   return (sum / 65535.0f - 2.0f) * 1.7320508f;
 }
 
-// Width of one pixel, across the ray, after `distance` in the scene medium.
+// The width of one pixel, across the ray, at `distance` in the scene medium.
 double pixel_width(const Lens& lens, const Port* port, const SceneRay& in_camera, double distance) {
-  // A dome shows the water as air would.
+  // Behind a dome the magnification is about that in air.
   const double magnification = port && !port->dome ? port->n_water / port->n_air : 1.0;
-  // The gap of a housing is too short to count.
+  // The air gap of a housing is so short that it is neglected.
   const double in_air = port && port->is_surface ? in_camera.start.norm() : 0.0;
   return in_air / lens.focal + distance / (lens.focal * magnification);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Images and ground truth of a mesh seen by one camera, dry or through a port.
+// Renders images and ground truth of a mesh seen by one camera, dry or through a port.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,37 +12,37 @@
 
 namespace axial::simulate {
 
-// What a shader is told about the point it colours.
+// The surface point that a shader colours.
 struct SurfacePoint {
   Eigen::Vector3d position;  // world
   Hit hit;
-  double footprint = 0;  // width of one pixel there, across the ray [m]
+  double footprint = 0;  // width of a pixel at the point, across the ray [m]
 };
 
-// Linear colour (R G B, 0 to 1) of a surface point. Must not depend on the camera other than
+// Returns the linear colour (R G B, 0 to 1) of a surface point. It may depend on the camera only
 // through the footprint. Called concurrently.
 using Shader = std::function<Eigen::Vector3f(const SurfacePoint&)>;
 
-// Linear image, channel order B G R, black where nothing is hit. Each pixel is the mean of
-// `samples` x `samples` rays on a regular grid within it; rows are computed in parallel. Error
-// unless 1 <= samples <= 16.
+// Renders a linear image with the channel order B G R; black where nothing is hit. `port` is null
+// for a dry camera. Each pixel is the mean of `samples` x `samples` rays on a regular grid in the
+// pixel. Rows are computed in parallel. Error unless 1 <= samples <= 16.
 cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Lens& lens,
                           const Port* port, const View& view, int samples);
 
-// Light scattered into the line of sight replaces the share `haze` (0 to 1) of what comes from the
-// scene: all contrast shrinks to 1 - haze of what it was. The haze is grey (0.5).
+// Adds haze: a share `haze` (0 to 1) of the light from the scene is replaced by grey light (0.5)
+// that is scattered into the line of sight. All contrast is multiplied by 1 - haze.
 void add_haze(cv::Mat3f& radiance, double haze);
 
-// 8-bit image: 255 x radiance plus noise of standard deviation `noise` [grey levels], keyed by
-// (key, pixel, channel); rounded and clamped.
+// Returns the 8-bit image: 255 x radiance plus noise of standard deviation `noise` [grey levels],
+// clamped and rounded. The noise depends on (key, pixel, channel) only.
 cv::Mat3b develop(const cv::Mat3f& radiance, double noise, std::uint64_t key);
 
-// The `key` under which a scene's images are developed.
+// The `key` of develop() for the images of a scene.
 std::uint64_t noise_key(std::uint32_t seed, std::size_t view, bool water);
 
-// At the ray of each pixel's centre. `distance`: metres from the ray's meeting point with the
-// camera's axis (C_v; dry: from the centre) to the surface, 0 where nothing is hit. `normal`: of
-// the mesh face, world frame, components x y z; zero where nothing is hit.
+// Ground truth at the ray of each pixel's centre. `distance`: metres from the point where the ray
+// meets the camera's axis (C_v; dry: the centre) to the surface; 0 where nothing is hit. `normal`:
+// of the mesh face, in the world frame (x, y, z); zero where nothing is hit.
 struct Truth {
   cv::Mat1f distance;
   cv::Mat3f normal;

@@ -12,8 +12,8 @@
 namespace axial::simulate {
 namespace {
 
-// Brightness variations over all scales: `coarse` holds wavelengths from the largest patches down
-// to about a hundredth of them, `fine` the rest down to a pixel. Standard deviations about 0.4.
+// Brightness variations at all scales. `coarse` holds the wavelengths from the largest patches down
+// by five octaves, `fine` the shorter ones down to a pixel. Standard deviations are about 0.4.
 struct Detail {
   float coarse = 0;
   float fine = 0;
@@ -28,7 +28,7 @@ Detail detail(const Eigen::Vector3d& p, double footprint, const TextureOptions& 
   float coarse_weight = 1.0f;
   for (std::uint32_t k = 0; wavelength > footprint; ++k) {
     const std::uint32_t seed = options.seed + 0x51ed27u * (k + 1);
-    // An octave fades in between one and two pixels to its wavelength.
+    // An octave fades in where its wavelength grows from one to two pixels.
     const float fade = smooth_step(1.0f, 2.0f, static_cast<float>(wavelength / footprint));
     const float value = fade * gradient_noise(q, seed);
     if (k < kCoarseOctaves) {
@@ -50,7 +50,7 @@ struct Material {
 
 const Material kSediment{{0.60f, 0.54f, 0.42f}, 0.48f};
 
-// The material under a point: patches with ragged borders.
+// The material at a point: patches with ragged borders.
 Material material(const Eigen::Vector3d& p, float raggedness, const TextureOptions& options) {
   static const Material kRock{{0.37f, 0.37f, 0.34f}, 0.62f};
   static const Material kAlgae{{0.30f, 0.34f, 0.21f}, 0.66f};
@@ -70,7 +70,7 @@ Material material(const Eigen::Vector3d& p, float raggedness, const TextureOptio
   return m;
 }
 
-// Pebbles, shells and holes: light and dark blobs of three sizes.
+// Pebbles, shells and holes: light and dark spots of three sizes.
 float speckles(const Eigen::Vector3d& p, const TextureOptions& options) {
   float sum = 0;
   double wavelength = 0.09 * options.largest;
@@ -107,17 +107,17 @@ struct Seabed {
 
 Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
                               const TextureOptions& options) {
-  // Bending space hides the noise's lattice and makes patches flow.
+  // Warping the coordinates hides the lattice of the noise and gives patches flowing shapes.
   const Eigen::Vector3d r = p / (0.4 * options.largest);
   const Eigen::Vector3d bend(gradient_noise(r, options.seed + 11u),
                              gradient_noise(r, options.seed + 12u),
                              gradient_noise(r, options.seed + 13u));
-  // Detail is bent far less, or it would smear along the flow.
+  // Detail is warped much less; otherwise it would smear along the flow.
   const Eigen::Vector3d q = p + 0.03 * options.largest * bend;
   const Detail d = detail(q, footprint, options);
   const Material m = material(p + 0.2 * options.largest * bend, d.coarse, options);
   const float tone = 1.0f + 0.45f * d.coarse + m.roughness * d.fine + 0.28f * speckles(q, options);
-  // The same slow fields tint the materials.
+  // The slow warp fields also tint the materials.
   const Eigen::Vector3f tint = Eigen::Vector3f::Ones() + 0.10f * bend.cast<float>();
   const Eigen::Vector3f albedo = m.color.cwiseProduct(tint) * std::clamp(tone, 0.12f, 2.2f);
   if (options.contrast == 1) return albedo;
@@ -126,7 +126,7 @@ Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
 
 Shader seabed_shader(const TriangleMesh& mesh, const RayScene& scene,
                      const TextureOptions& options) {
-  // std::function copies what it holds: the normals are shared.
+  // std::function copies its target, so the normals are shared.
   const auto seabed =
       std::make_shared<const Seabed>(Seabed{mesh, scene, options, vertex_normals(mesh)});
   return [seabed](const SurfacePoint& point) { return (*seabed)(point); };

@@ -18,12 +18,12 @@ std::optional<Eigen::Vector2d> observe(const RayScene& scene, const Lens& lens, 
   const Eigen::Vector2d pixel = pixel_of(lens, in_camera);
   if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > lens.width - 1 || pixel.y() > lens.height - 1)
     return std::nullopt;
-  // What lies beyond a lens's field is imaged inside again, but not where it is.
+  // A point beyond the field of the lens can be projected into the image, but at a wrong pixel.
   if (lens.bend && direction_of(lens, pixel.x(), pixel.y()).dot(in_camera.normalized()) < 1 - 1e-9)
     return std::nullopt;
   const double range = in_camera.norm();
   const Eigen::Vector3d direction = (point - view.centre) / range;
-  // The point lies on the surface: leave out the last thousandth of the way.
+  // The point lies on the surface, so the last thousandth of the way is not tested.
   if (scene.blocked(view.centre, direction, 0, 0.999 * range)) return std::nullopt;
   return pixel;
 }

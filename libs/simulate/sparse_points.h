@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// True sparse points and where they are seen, in the in-air images.
+// True sparse points and their observations in the in-air images.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,9 @@ struct SparsePoint {
   std::vector<Observation> observations;  // by increasing view, at least two
 };
 
-// About `per_view` points on the surface each view sees, at jittered grid positions keyed by
-// `seed`, each with every view that sees it: inside the image and not occluded.
+// Places about `per_view` points on the surface that each view sees, at jittered grid positions
+// that depend on `seed`. A point is observed by every view in whose image it lies without being
+// occluded. Points with fewer than two observations are dropped.
 std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader, const Lens& lens,
                                      std::span<const View> views, int per_view, std::uint64_t seed);
 

@@ -10,8 +10,8 @@
 namespace axial::simulate {
 namespace {
 
-// Coordinates of grid lines: `cell` apart within [-half, half], then ever wider steps up to
-// half + skirt.
+// Coordinates of grid lines: about `cell` apart within [-half, half], then in growing steps up to
+// about half + skirt.
 std::vector<double> grid_lines(double half, double skirt, double cell) {
   const auto inside = static_cast<int>(std::ceil(half / cell));
   std::vector<double> positive;
@@ -30,13 +30,13 @@ std::vector<double> grid_lines(double half, double skirt, double cell) {
 TriangleMesh floor_mesh(const Terrain& terrain) {
   const auto xs = grid_lines(terrain.half_width, terrain.skirt, terrain.cell);
   const auto ys = grid_lines(terrain.half_height, terrain.skirt, terrain.cell);
-  // Rows along x and columns along y make the faces look up.
+  // Rows along x and columns along y make the faces point upwards.
   return grid_mesh(xs.size(), ys.size(), false, [&](std::size_t r, std::size_t c) {
     return Eigen::Vector3d(xs[r], ys[c], terrain.floor.at(xs[r], ys[c]));
   });
 }
 
-// Deeper than this below a surface nothing can be seen, faces being about a cell wide.
+// Nothing deeper than this below a surface can be visible, because faces are about a cell wide.
 double burial(const Terrain& terrain) {
   return 4 * terrain.cell;
 }
@@ -51,15 +51,15 @@ bool below_floor(const Terrain& terrain, const Eigen::Vector3d& p) {
   return p.z() < terrain.floor.at(p.x(), p.y()) - burial(terrain);
 }
 
-// The height above bedding planes `layer` apart, as a stair: most of a layer's thickness is gained
-// in the last part of its height.
+// Turns a height into stairs of step `layer`. Three quarters of each step are gained between 0.6
+// and 0.95 of it.
 double stair(double height, double layer) {
   const double steps = std::floor(height / layer);
   const auto within = static_cast<float>(height / layer - steps);
   return layer * (steps + 0.25 * within + 0.75 * smooth_step(0.6f, 0.95f, within));
 }
 
-// Crests that wander, above and below 0.
+// Ripples with wandering crests, around height 0.
 double ripples(const Floor& floor, double x, double y) {
   const Eigen::Vector3d p = Eigen::Vector3d(x, y, 0) / (6 * floor.ripple_length);
   const auto bend = static_cast<double>(fractal_noise(p, floor.seed + 31u, 2, 0.5f));

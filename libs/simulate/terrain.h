@@ -11,19 +11,19 @@
 
 namespace axial::simulate {
 
-// Height of the floor over (x, y): octaves of noise from `wavelength` down, halving in length and
-// in height, on a bowl that rises by `bowl_height` between `bowl_from` and `bowl_to` metres from
-// the world's origin. With layers it is bedded rock: ledges where layers end, which rise by `dip`
-// metres a metre along x and y.
+// The height of the floor [m]. It is a sum of noise octaves, which start at `wavelength` and halve
+// in length and height, and of a bowl that rises by `bowl_height` between `bowl_from` and `bowl_to`
+// metres from the world's origin. If `layer` is positive, the floor is bedded rock with a ledge at
+// the end of each layer; the layers rise by `dip` metres per metre along x and y.
 struct Floor {
   std::uint32_t seed = 1;
   double wavelength = 2.0;  // [m]
-  double height = 0.4;      // of the first octave [m]
+  double height = 0.4;      // height of the first octave [m]
   double bowl_from = 1, bowl_to = 2, bowl_height = 0;
-  double layer = 0;  // thickness of a layer [m]; 0: none
+  double layer = 0;  // thickness of a layer [m]; 0: no layers
   Eigen::Vector2d dip{0, 0};
-  double ripple_height = 0;    // of sand ripples, from trough to crest [m]
-  double ripple_length = 0.2;  // from crest to crest, along x for the most part [m]
+  double ripple_height = 0;    // height of sand ripples, from trough to crest [m]
+  double ripple_length = 0.2;  // distance of ripple crests, mostly along x [m]
 
   double at(double x, double y) const;
 };
@@ -32,15 +32,15 @@ struct Terrain {
   Floor floor;
   std::vector<Blob> blobs;
   std::vector<Arch> arches;
-  std::vector<Tube> tubes;  // thin: the mesh knows their thickness
+  std::vector<Tube> tubes;  // thin structures, for which the mesh stores a thickness
   double cell = 0.01;       // distance between vertices [m]
-  double half_width = 4;    // the part meshed at `cell`: |x| <= half_width, |y| <= half_height
+  double half_width = 4;    // area meshed at `cell`: |x| <= half_width, |y| <= half_height
   double half_height = 3;
-  double skirt = 10;  // how far coarser cells continue beyond that [m]
-  double relief = 1;  // all heights of the mesh times this
+  double skirt = 10;  // width of the border with coarser cells around that area [m]
+  double relief = 1;  // factor of all heights of the mesh
 };
 
-// The mesh of everything, without most of what is buried inside something else.
+// Returns the mesh of the whole terrain, without most of the parts that are buried in other parts.
 TriangleMesh terrain_mesh(const Terrain& terrain);
 
 }  // namespace axial::simulate

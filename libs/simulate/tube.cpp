@@ -11,7 +11,7 @@ namespace {
 
 // A cross section.
 struct Ring {
-  Eigen::Vector3d centre, across, up;  // the last two of unit length, square to the spine
+  Eigen::Vector3d centre, across, up;  // across and up: unit, square to the spine
   double radius = 0;
 };
 
@@ -24,7 +24,8 @@ Eigen::Vector3d square_to(const Eigen::Vector3d& along, const Eigen::Vector3d& w
   return (wish - wish.dot(along) * along).normalized();
 }
 
-// The first and the last ring close the tube: they are points, half a radius beyond its ends.
+// The rings of the tube. The first and the last ring close it: they are almost points, half a
+// radius beyond the ends.
 std::vector<Ring> rings_of(const Tube& tube) {
   std::vector<Ring> rings;
   const Eigen::Vector3d first = direction_at(tube.spine, 0);
@@ -33,10 +34,10 @@ std::vector<Ring> rings_of(const Tube& tube) {
   Eigen::Vector3d across = Eigen::Vector3d::Unit(least);
   for (std::size_t i = 0; i < tube.spine.size(); ++i) {
     const Eigen::Vector3d along = direction_at(tube.spine, i);
-    across = square_to(along, across);  // carried along without a twist
+    across = square_to(along, across);  // transported without twist
     rings.push_back({tube.spine[i], across, along.cross(across), tube.radii[i]});
   }
-  constexpr double kPoint = 1e-3;  // of the radius: faces keep an area
+  constexpr double kPoint = 1e-3;  // of the radius; not 0, so that faces keep an area
   const auto cap = [&](Ring ring, const Eigen::Vector3d& outward) {
     ring.centre += 0.5 * ring.radius * outward;
     ring.radius *= kPoint;
@@ -57,7 +58,7 @@ TriangleMesh tube_mesh(const Tube& tube, double cell) {
   TriangleMesh mesh =
       grid_mesh(rings.size(), columns, true, [&](std::size_t r, std::size_t c) -> Eigen::Vector3d {
         const Ring& ring = rings[r];
-        // Against the sense of rotation about the spine, so that faces look outward.
+        // Clockwise about the spine, so that faces point outwards.
         const double angle =
             -2 * std::numbers::pi * static_cast<double>(c) / static_cast<double>(columns);
         return ring.centre +

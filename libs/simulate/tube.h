@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ropes and the branches of corals: smooth round tubes, closed at both ends.
+// Smooth round tubes, closed at both ends: ropes and branches of coral.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,13 @@
 namespace axial::simulate {
 
 struct Tube {
-  std::vector<Eigen::Vector3d> spine;  // at least two points, each apart from the one before
-  std::vector<double> radii;           // one a point of the spine, above 0
+  std::vector<Eigen::Vector3d> spine;  // at least two points; successive points differ
+  std::vector<double> radii;           // one for each point of the spine, above 0
 };
 
-// About `cell` metres between vertices, fewer where the tube is thinner: at least eight around it.
-// Every vertex has the tube's diameter there as its thickness.
+// Makes the mesh of a tube. Vertices are about `cell` metres apart around the tube, and there are 8
+// to 48 of them in a ring. There is a ring at each point of the spine. The thickness of a vertex is
+// the tube's diameter there.
 TriangleMesh tube_mesh(const Tube& tube, double cell);
 
 }  // namespace axial::simulate

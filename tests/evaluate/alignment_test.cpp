@@ -25,7 +25,7 @@ TEST(FitSimilarity, RecoversExactOnes) {
     std::vector<Eigen::Vector3d> source, target;
     for (std::size_t i = 0; i < count; ++i) {
       source.push_back(random_vector(random, 2));
-      if (seed % 2) source.back().z() = 1;  // a survey at one height: coplanar centres
+      if (seed % 2) source.back().z() = 1;  // coplanar centres, as in a survey at one height
       target.push_back(truth(source.back()));
     }
     const Similarity found = fit_similarity(source, target);
@@ -50,7 +50,7 @@ TEST(FitSimilarity, IsTheBestInTheLeastSquaresSense) {
     return sum;
   };
   const Similarity best = fit_similarity(source, target);
-  for (int trial = 0; trial < 100; ++trial) {  // every small change makes it worse
+  for (int trial = 0; trial < 100; ++trial) {  // every small change makes the fit worse
     const Eigen::Vector3d turn = random_vector(random, 1e-3);
     Similarity other = best;
     other.scale *= 1 + random_vector(random, 1e-3).x();
@@ -101,7 +101,7 @@ TEST(AlignCentres, MatchesImagesByNameAndKeepsReprojections) {
   const Eigen::Vector3d point = model.points[0].position;
   const Similarity away = random_similarity(random);
   apply(away, model);
-  // Another order, an image that only one of them has.
+  // Another order, and an image that only one model has.
   std::reverse(model.images.begin(), model.images.end());
   model.images.front().name = "only_here.jpg";
   const Eigen::Matrix3d rotation = model.images.back().pose.rotation;
@@ -129,7 +129,8 @@ TEST(AlignCentres, ReportsResiduals) {
   poses[2].centre = {0, 1, 0};
   poses[3].centre = {1, 1, 0};
   const io::ColmapModel reference = model_of(poses);
-  // Alternately up and down by 0.1: no similarity can take that away, none is better than none.
+  // Centres alternate up and down by 0.1. No similarity can remove this, and the identity is the
+  // best one.
   poses[0].centre.z() = poses[3].centre.z() = 0.1;
   poses[1].centre.z() = poses[2].centre.z() = -0.1;
   const CentreAlignment alignment = align_centres(model_of(poses), reference);

@@ -26,7 +26,7 @@ TEST(EvaluateCloud, PointsAtAKnownOffsetFromASphere) {
   options.samples = 20000;
   options.tolerances = {0.002};
   const CloudEvaluation e = evaluate_cloud(points, truth, Surface(truth), {}, options);
-  const double facet = 6e-5;  // how far the facets stand off the sphere
+  const double facet = 6e-5;  // distance of the facets from the sphere
   EXPECT_NEAR(e.accuracy.mean, 0.003, facet);
   EXPECT_NEAR(e.accuracy.median, 0.004, facet);
   EXPECT_NEAR(e.accuracy.rms, std::sqrt(11e-6), facet);
@@ -50,10 +50,10 @@ TEST(EvaluateCloud, HalfCoveredPlaneIsHalfComplete) {
   options.tolerances = {0.02, 3};
   const CloudEvaluation e = evaluate_cloud(points, truth, Surface(truth), {}, options);
   EXPECT_LT(e.accuracy.max, 1e-9);
-  // About one sample falls in each of the truth's cells of 2 cm, so only the hundred cells along
-  // the border are left to chance: a standard error of 0.0005.
-  // Covered: x < 0, and the strip that the last column reaches, 2 cm less the half step it stands
-  // short of 0 (in all rows but for the corners between them).
+  // About one sample falls into each of the truth's cells of 2 cm, so only the hundred cells along
+  // the border are random: a standard error of 0.0005. Covered are x < 0 and the strip within reach
+  // of the last column of points. Its reach is 2 cm, and the column is half a step from x = 0, so
+  // the strip is 1.5 cm wide, less the corners between the rows.
   EXPECT_NEAR(e.scores[0].recall, 0.5 + 0.0145 / 2, 0.003);
   EXPECT_DOUBLE_EQ(e.scores[1].recall, 1);
   EXPECT_DOUBLE_EQ(e.scores[0].f_score, 2 * e.scores[0].recall / (1 + e.scores[0].recall));
@@ -68,7 +68,7 @@ TEST(EvaluateCloud, NearestPointsAgreeWithBruteForce) {
   for (std::size_t i = 0; i < queries.size(); ++i) {
     float best = std::numeric_limits<float>::infinity();
     for (const auto& p : points) best = std::min(best, (p - queries[i]).norm());
-    EXPECT_NEAR(distances[i], best, 1e-6f);  // two orders of float arithmetic
+    EXPECT_NEAR(distances[i], best, 1e-6f);  // float arithmetic in two different orders
   }
 }
 
@@ -80,7 +80,7 @@ TEST(EvaluateMesh, AMeshAgainstItselfIsPerfect) {
   std::vector<Eigen::Vector3f> sampled;
   const CloudEvaluation e = evaluate_mesh(truth, truth, Surface(truth), {}, options, sampled);
   EXPECT_EQ(sampled.size(), 5000u);
-  // Samples are float: off their triangle by rounding, far less than the spacing of samples.
+  // Samples are rounded to float. Their distance from their triangle is far below their spacing.
   EXPECT_LT(e.accuracy.max, 1e-6);
   EXPECT_LT(e.completeness.max, 1e-6);
   EXPECT_DOUBLE_EQ(e.scores[0].f_score, 1);
@@ -102,7 +102,7 @@ TEST(EvaluateCloud, RefusesWhatCannotBeEvaluated) {
   bad = options;
   bad.samples = 0;
   EXPECT_THROW(evaluate_cloud(one, truth, surface, {}, bad), Error);
-  View away;  // looks the other way: no sample is seen
+  View away;  // looks the other way, so no sample is seen
   away.camera = {100, 100, {100, 100, 50, 50}, {}};
   away.pose.centre = {0, 0, 1};
   const std::vector<View> views{away, away};

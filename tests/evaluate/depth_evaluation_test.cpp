@@ -12,7 +12,7 @@
 namespace axial::evaluate {
 namespace {
 
-// Range of the plane n.X = 1 from every pixel of a pinhole with half the width as focal length.
+// The range of the plane n.X = 1 at every pixel of a pinhole whose focal length is half the width.
 cv::Mat1f plane_range(int width, int height) {
   CameraModel model{400, 300, {200, 200, 199.5, 149.5}, {}};
   const refractive::PinholeCamera<double> camera(model.resized(width, height).lens);
@@ -49,8 +49,8 @@ TEST(EvaluateDepth, OfAPlaneWithAKnownError) {
   EXPECT_NEAR(e.error(0, 79), -0.001, rounding);
 }
 
-// An error of half a per mille a ring, added to walls at other distances: the walls must not show,
-// and each ring's median is that of the pixels counted one by one.
+// An error that grows by 0.0005 per ring is added to walls at different distances. The distances
+// must not matter, and each ring's median must be that of the pixels counted one by one.
 TEST(EvaluateDepth, RelativeRingsPoolMapsAndForgetTheDistance) {
   std::vector<DepthEvaluation> maps;
   for (const float distance : {0.5f, 2.0f, 4.0f}) {
@@ -61,7 +61,7 @@ TEST(EvaluateDepth, RelativeRingsPoolMapsAndForgetTheDistance) {
         const auto ring = std::floor(std::hypot(u - 59.5, v - 44.5) / 75 * 8);
         estimate(v, u) *= 1 + 0.0005f * static_cast<float>(ring);
       }
-    estimate(cv::Rect(0, 0, 120, 10)) = 0;  // no depth: must not count
+    estimate(cv::Rect(0, 0, 120, 10)) = 0;  // no depth, so it must not count
     maps.push_back(evaluate_depth(estimate, truth, {}));
   }
   const auto rings = relative_rings(maps, 8);
@@ -93,7 +93,7 @@ TEST(EvaluateDepth, RingsShowARadialError) {
   std::size_t pixels = 0;
   for (std::size_t k = 0; k < 8; ++k) {
     pixels += e.rings[k].count;
-    // Each ring is 2 mm of error wide.
+    // The error changes by 2 mm across each ring.
     EXPECT_LE(e.rings[k].signed_median, -0.002 * static_cast<double>(k) + 1e-6);
     EXPECT_GE(e.rings[k].signed_median, -0.002 * static_cast<double>(k + 1) - 1e-6);
     EXPECT_NEAR(e.rings[k].absolute_median, -e.rings[k].signed_median, 1e-9);
@@ -106,15 +106,15 @@ TEST(ResampleDistance, ReadsAPlaneOffBetweenPixels) {
     const cv::Mat1f truth = plane_range(width, height);
     const cv::Mat1f expected = plane_range(100, 75);
     const cv::Mat1f found = resample_distance(truth, {100, 75});
-    // 1/range is not quite linear between pixels; a quarter pixel of a slope of 1 % a pixel would
-    // show as 5e-3.
+    // 1/range is not exactly linear between pixels. For comparison, a shift by a quarter pixel on a
+    // slope of 1 % per pixel would give 5e-3.
     EXPECT_LT(cv::norm(found, expected, cv::NORM_INF), 1.2e-4 * 400 / width) << width;
   }
 }
 
 TEST(ResampleDistance, DoesNotMixAcrossEdgesOrHoles) {
   cv::Mat1f truth(60, 80, 1.0f);
-  truth(cv::Rect(41, 0, 39, 60)) = 2;  // an edge between pixels that one coarse pixel shares
+  truth(cv::Rect(41, 0, 39, 60)) = 2;  // an edge between pixels of one coarse pixel
   truth(cv::Rect(0, 0, 80, 11)) = 0;
   const cv::Mat1f half = resample_distance(truth, {40, 30});
   for (const float value : half) EXPECT_TRUE(value == 0 || value == 1 || value == 2) << value;

@@ -24,7 +24,7 @@ CameraModel behind_glass() {
   return model;
 }
 
-// How far along every ray the plane n.X = 1 is.
+// The distance of the plane n.X = 1 along every ray.
 cv::Mat1f distances_to(const Eigen::Vector3d& n, const CameraModel& camera) {
   cv::Mat1f distances(kHeight, kWidth);
   std::visit(
@@ -63,7 +63,7 @@ TEST(Places, AreEdgesWhereAWindowSeesTwoSurfaces) {
   EXPECT_EQ(places.at(20, 60), Place::open);
 }
 
-// A window that holds a jump in its outermost row alone.
+// Windows that contain a jump only in their outermost row.
 TEST(Places, AreEdgesByTheCornersOfWindowsToo) {
   cv::Mat1f truth = wall(3);
   truth(cv::Rect(0, 0, 60, 40)) *= 0.5f;  // its last row is 39, its last column 59
@@ -90,7 +90,7 @@ TEST(Places, ArePlainWithoutTextureAndNothingWithoutTruth) {
   EXPECT_EQ(places.at(100, 75), Place::open);
 }
 
-// At the image centre a plane's slant is the angle between its normal and the axis.
+// At the image centre the slant of a plane is the angle between its normal and the axis.
 TEST(Places, AreSteepWhereTheSurfaceTurnsAway) {
   for (const CameraModel& camera : {pinhole(), behind_glass()})
     for (const double degrees : {0.0, 55.0, 65.0}) {
@@ -131,7 +131,7 @@ TEST(ErrorsByPlace, AreThoseOfItsPixels) {
   EXPECT_EQ(places[0].truth_pixels, 0u);
   EXPECT_EQ(places[0].mean, 0);
   EXPECT_EQ(places[1].place, Place::plain);
-  // Windows that the noise does not reach: a band of 4 pixels is lost on every side.
+  // Counts the windows without noise: a band of 4 pixels on each side is lost.
   EXPECT_EQ(places[1].truth_pixels, 2u * 32 * 32);
   EXPECT_EQ(places[1].gross_pixels, 2u * 3);
   EXPECT_NEAR(places[1].mean, 0.005, 1e-6);
@@ -147,8 +147,8 @@ TEST(ErrorsByPlace, AreGrossBeyondTheStepOfAnEdge) {
   }
 }
 
-// Depths that are drawn towards a wave over the source's pixel, as finite differences say they
-// move.
+// Depths with a wave over the fraction of a source pixel. Finite differences give the motion in the
+// source image.
 class Phases : public testing::TestWithParam<bool> {
  protected:
   static constexpr double kWave = 0.05;  // [px]
@@ -157,15 +157,15 @@ class Phases : public testing::TestWithParam<bool> {
     for (const std::uint32_t id : {0u, 1u}) {
       DepthMap& map = maps_[id];
       map.camera = GetParam() ? behind_glass() : pinhole();
-      map.ids = {id, 7, 1 - id};  // a source without a map comes first
+      map.ids = {id, 7, 1 - id};  // the first source has no map
       map.pose.centre = {id * 0.35, id * 0.05, 0};
       truth_[id] = distances_to({0.02, 0.03, 0.5}, map.camera);
       map.depth = truth_[id].clone();
     }
-    truth_[1] = 0.0f;  // judged from the first map alone
+    truth_[1] = 0.0f;  // only the first map has a truth
   }
 
-  // Off the image where it is not seen.
+  // A position outside the image if the point is not visible.
   Eigen::Vector2d seen_by_source(int u, int v, double distance) const {
     return std::visit(
         [&](const auto& camera) -> Eigen::Vector2d {
@@ -196,7 +196,8 @@ class Phases : public testing::TestWithParam<bool> {
   std::array<cv::Mat1f, 2> truth_;
 };
 
-// All depths off by a thousandth: the shifts differ with the motion, but not over the pixel.
+// All depths are off by a thousandth. The shifts differ with the motion, but not over the fraction
+// of a pixel.
 TEST_P(Phases, ShowNoWaveWhereThereIsNone) {
   maps_[0].depth *= 1.001f;
   const auto bins = phases();
@@ -223,8 +224,8 @@ TEST_P(Phases, ShowTheWaveThatIsThere) {
   add_wave();
   for (const PhaseErrors& bin : phases()) {
     const double middle = (bin.begin + bin.end) / 2;
-    // The sine is monotonic in a bin: its median is near the one at the middle, as phases are
-    // nearly uniform.
+    // The sine is monotonic in a bin and the phases are nearly uniform, so the median is near the
+    // value at the middle.
     EXPECT_NEAR(bin.shift, kWave * std::sin(2 * std::numbers::pi * middle), 0.2 * kWave) << middle;
   }
 }

@@ -33,7 +33,7 @@ TEST(RefineRigid, RecoversASmallOffset) {
   const IcpResult result = refine_rigid(moved(points, small_offset()), surface);
   EXPECT_TRUE(result.converged);
   const Similarity left = result.transform.after(small_offset());
-  // The two meshes differ in their facets by some tenths of a millimetre, without bias to a side.
+  // The facets of the two meshes differ by some tenths of a millimetre, without bias.
   EXPECT_LT(left.translation.norm(), 3e-4);
   EXPECT_LT((left.rotation - Eigen::Matrix3d::Identity()).norm(), 3e-4);
   EXPECT_GT(result.median_before, 0.005);
@@ -46,7 +46,7 @@ TEST(RefineRigid, IsExactWhereTheSurfaceIs) {
   const auto points = sample_surface(mesh, 4000, 2);
   const IcpResult result = refine_rigid(moved(points, small_offset()), Surface(mesh));
   const Similarity left = result.transform.after(small_offset());
-  // Limited by the float coordinates of the moved points.
+  // The float coordinates of the moved points limit the accuracy.
   EXPECT_LT(left.translation.norm(), 1e-6);
   EXPECT_LT((left.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-6);
 }

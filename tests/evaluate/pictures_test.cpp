@@ -42,7 +42,7 @@ TEST(DrawCloud, ShowsPointsWhereTheCameraSeesThemNearestFirst) {
 
 TEST(PrincipalViewpoint, LooksAtThePlaneFromItsFront) {
   auto points = sample_surface(height_field(10, 2, ripples), 20000, 1);
-  for (auto& x : points) x.x() *= 1.5f;  // as long as the picture is wide
+  for (auto& x : points) x.x() *= 1.5f;  // the shape of the picture
   const std::vector<Eigen::Vector3f> normals(10, Eigen::Vector3f(0, 0, 1));
   const Viewpoint view = principal_viewpoint(points, normals, 300, 200);
   EXPECT_LT(view.pose.rotation(2, 2), -0.95);
@@ -51,7 +51,7 @@ TEST(PrincipalViewpoint, LooksAtThePlaneFromItsFront) {
   const cv::Mat3b picture = draw_cloud(points, black, view);
   cv::Mat1b dark;
   cv::inRange(picture, cv::Scalar::all(0), cv::Scalar::all(0), dark);
-  // It fills the picture but for the margin of 5 %.
+  // It fills the picture except for the margin of 5 %.
   EXPECT_NEAR(cv::countNonZero(dark), 300 * 200 * 0.95 * 0.95, 3000);
 }
 

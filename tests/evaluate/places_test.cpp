@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTolerance = 0.02;
 
-// Looks along +z from (x, 0, 0); sees 2 m in x and 1 m in y of what is 1 m away.
+// A camera at (x, 0, 0) that looks along +z. At a distance of 1 m it sees 2 m in x and 1 m in y.
 View camera_at(double x) {
   View view;
   view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
@@ -21,7 +21,7 @@ View camera_at(double x) {
   return view;
 }
 
-// A grid of points 1 cm apart over a part of the floor.
+// A grid of points 1 cm apart on a part of the floor.
 std::vector<Eigen::Vector3f> grid(double from, double to, double step = 0.01) {
   std::vector<Eigen::Vector3f> points;
   for (double x = from; x <= to; x += step)
@@ -41,8 +41,8 @@ CloudEvaluation evaluated(const std::vector<Eigen::Vector3f>& points, const Mesh
 
 TEST(RecallByViews, IsOfThePlacesThatExactlySoManySee) {
   const Mesh floor = height_field(1, 8, [](double, double) { return 1.0; });
-  // Along x, [-1, 0] is seen by one, [0, 0.5] by two, [0.5, 1] by three, [1, 2] by two and
-  // [2, 2.5] by one.
+  // Along x, one camera sees [-1, 0], two see [0, 0.5], three see [0.5, 1], two see [1, 2] and one
+  // sees [2, 2.5].
   const std::vector<View> views{camera_at(0), camera_at(1), camera_at(1.5)};
   const CloudEvaluation e = evaluated(grid(0, 0.75), floor, views);
   ASSERT_EQ(e.by_views.size(), 3u);
@@ -52,12 +52,12 @@ TEST(RecallByViews, IsOfThePlacesThatExactlySoManySee) {
   EXPECT_EQ(more.least, 4u);
   EXPECT_EQ(more.most, 0u);
   EXPECT_EQ(more.places, 0u);
-  // Some 25000 samples count: shares are known to a percent.
+  // About 25000 samples count, so shares are accurate to a percent.
   EXPECT_NEAR(static_cast<double>(two.places) / static_cast<double>(three.places), 3, 0.2);
   EXPECT_NEAR(two.recall[0], 0.5 / 1.5, 0.03);
   EXPECT_NEAR(three.recall[0], 0.25 / 0.5 + kTolerance / 0.5, 0.04);
   EXPECT_EQ(two.recall[1], 1) << "at the other tolerance";
-  // The classes are the whole.
+  // The classes together are the whole.
   const double both = (two.recall[0] * static_cast<double>(two.places) +
                        three.recall[0] * static_cast<double>(three.places)) /
                       static_cast<double>(two.places + three.places);
@@ -78,7 +78,8 @@ TEST(RecallByViews, BeginsWithTheLeastNumberThatCounts) {
 }
 
 TEST(RecallByThickness, CountsPixelsWhereTheViewsHaveThem) {
-  // Four patches 1 m away, where a pixel is 1 cm wide, of 0.8, 2, 16 and 0 (not thin) pixels.
+  // Four patches at 1 m, where a pixel is 1 cm wide. Their thickness is 0.8, 2, 16 and 0 (not thin)
+  // pixels.
   Mesh truth;
   std::vector<float> thickness;
   const std::vector<float> of_patches{0.008f, 0.02f, 0.16f, 0.0f};
@@ -92,7 +93,7 @@ TEST(RecallByThickness, CountsPixelsWhereTheViewsHaveThem) {
     thickness.insert(thickness.end(), patch.vertices.size(), of_patches[k]);
   }
   const std::vector<View> views{camera_at(-0.1), camera_at(0.1)};
-  // Found: the second patch, and half of the third.
+  // The reconstruction has the second patch and half of the third.
   auto points = grid(-0.3, -0.1);
   for (const auto& x : grid(0.1, 0.205)) points.push_back(x);
   const CloudEvaluation e = evaluated(points, truth, views);
@@ -104,7 +105,7 @@ TEST(RecallByThickness, CountsPixelsWhereTheViewsHaveThem) {
   std::size_t places = 0;
   for (const RecallOfThickness& one : classes) places += one.places;
   EXPECT_EQ(places, e.places.size());
-  // By class: about 1, 2, 4, 8, 16 px, above, not thin.
+  // The classes: about 1, 2, 4, 8, 16 px, thicker, not thin.
   const double quarter = static_cast<double>(places) / 4;
   for (const std::size_t k : {0u, 1u, 4u, 6u})
     EXPECT_NEAR(static_cast<double>(classes[k].places), quarter, 0.05 * quarter) << k;
@@ -126,17 +127,17 @@ TEST(Strip, TellsTheDensityOfItsEmptiestAndFullestPiece) {
   const Strip same = density_along_strip(points, even.places, views);
   EXPECT_NEAR(std::abs(same.direction.x()), 1, 1e-9);
   EXPECT_GT(same.direction.x(), 0) << "from the first view on";
-  // Two see from the second view's 1 m before it to the last but one's after it.
+  // Two cameras see the ground from 1 m before the second view to 1 m after the last but one.
   EXPECT_NEAR(static_cast<double>(same.pieces.size()), 5 * 4.4 / 0.8, 1.5);
   EXPECT_LT(same.most / same.least, 1.35) << "the chance of samples, a column of points in sixteen";
-  // A third of the points beyond x = 0.4.
+  // Two more copies of the points up to x = 0.4: beyond it the density is a third.
   for (const auto& x : grid(-3, 0.4)) {
     points.push_back(x);
     points.push_back(x);
   }
   const Strip uneven = density_along_strip(points, even.places, views);
   EXPECT_NEAR(uneven.most / uneven.least, 3, 0.9);
-  // A stripe without any.
+  // A stripe without points.
   const auto bare = [](const Eigen::Vector3f& x) { return x.x() > 0 && x.x() < 0.4f; };
   std::erase_if(points, bare);
   EXPECT_EQ(density_along_strip(points, even.places, views).least, 0);

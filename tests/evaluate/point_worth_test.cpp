@@ -34,8 +34,8 @@ struct Cloud {
   std::vector<float> distances;
 };
 
-// Errors drawn as they are expected; a tenth of the points ten times as far off, and known to be so
-// by their confidence.
+// Errors follow their expected distribution. A tenth of the points are off ten times as far, and
+// have a low confidence.
 Cloud honest_cloud() {
   Cloud cloud;
   std::mt19937 random(3);
@@ -56,7 +56,7 @@ TEST(Calibration, IsOneWhereErrorsAreAsExpected) {
   const auto calibration = calibration_of(cloud.worth, cloud.distances);
   ASSERT_TRUE(calibration);
   EXPECT_EQ(calibration->all.points, 100000u);
-  // Standard error of the RMS of n normal numbers: 1 / sqrt(2 n).
+  // The standard error of the RMS of n normal numbers is 1 / sqrt(2 n).
   EXPECT_NEAR(calibration->all.rms, 1, 0.01);
   EXPECT_NEAR(calibration->all.median, 0.6745, 0.01);
   EXPECT_NEAR(calibration->all.within[0], 0.6827, 0.01);
@@ -78,7 +78,8 @@ TEST(Calibration, TellsOfEveryConfidenceHowManyPointsDeserveIt) {
   EXPECT_EQ(calibration->reliability[5].points, 0u);
 }
 
-// Points of two maps with errors of half the size that is expected, points of more as expected.
+// Points of two maps have errors of half the expected size, points of more maps have errors as
+// expected.
 TEST(Calibration, TellsPointsOfTwoMapsFromTheRest) {
   Cloud cloud = honest_cloud();
   EXPECT_TRUE(calibration_of(cloud.worth, cloud.distances)->by_views.empty());

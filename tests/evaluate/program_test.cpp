@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// EvaluateReconstruction and AlignModel as their users meet them.
+// Tests EvaluateReconstruction and AlignModel from the command line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class Programs : public test::ProgramTest {
 
   nlohmann::json read_json(const std::string& name) const { return io::read_json(folder_ / name); }
 
-  // A rippled seabed, seen from above by four cameras, and a cloud 2 mm above all of it.
+  // A rippled seabed seen from above by four cameras, and a cloud 2 mm above the whole of it.
   void write_scene() const {
     Mesh truth = height_field(60, 2, ripples);
     io::write_mesh_ply(folder_ / "truth.ply", truth);
@@ -81,7 +81,7 @@ TEST_F(Programs, EvaluateACloud) {
   EXPECT_EQ(json["kind"], "cloud");
   EXPECT_EQ(json["views"], 4);
   EXPECT_LT(json["counted_samples"], json["samples"]);
-  // 2 mm up; along the slopes' normals a little less.
+  // The cloud is 2 mm higher. Measured along the normals of the slopes this is a little less.
   EXPECT_NEAR(json["accuracy"]["mean"].get<double>(), 0.0018, 0.0002);
   EXPECT_LE(json["accuracy"]["max"].get<double>(), 0.002001);
   EXPECT_EQ(json["scores"][1]["precision"], 1.0);
@@ -91,7 +91,7 @@ TEST_F(Programs, EvaluateACloud) {
   EXPECT_EQ(io::read_image_size(folder_ / "errors.png").width, 1024);
 }
 
-// Points with view lists and two numbers of what they are worth.
+// Points with view lists, errors and confidences.
 std::string cloud_with_worth(const PointCloud& cloud) {
   std::string text = fmt::format(
       "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
@@ -110,7 +110,7 @@ std::string cloud_with_worth(const PointCloud& cloud) {
 TEST_F(Programs, EvaluateByViewsThicknessAndExpectedErrors) {
   write_scene();
   const Mesh truth = io::read_mesh_ply(folder_ / "truth.ply");
-  // A pixel is some 5 mm wide: all of it is about 4 pixels thick.
+  // A pixel is about 5 mm wide, so everything is about 4 pixels thick.
   const std::vector<float> thickness(truth.vertices.size(), 0.02f);
   io::write_mesh_ply(folder_ / "thin.ply", truth, io::VertexProperty{"thickness", thickness});
   write_atomically(folder_ / "worth.ply",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small surfaces whose distances are known without computing them.
+// Small surfaces with known distances.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace axial::evaluate {
 
-// z = height(x, y) over [-size/2, size/2]^2, cells x cells squares of two triangles each.
+// z = height(x, y) over [-size/2, size/2]^2, as cells x cells squares of two triangles each.
 inline Mesh height_field(int cells, double size,
                          const std::function<double(double, double)>& height) {
   Mesh mesh;
@@ -41,7 +41,7 @@ inline double ripples(double x, double y) {
   return 0.08 * std::sin(5 * x + 1) * std::cos(4 * y) + 0.05 * std::sin(11 * y + 3 * x);
 }
 
-// Longitude-latitude sphere; with 300 steps its facets lie within 6e-5 of the radius.
+// A longitude-latitude sphere. With 300 steps its facets are within 6e-5 of the radius.
 inline Mesh sphere(double radius, int steps) {
   Mesh mesh;
   for (int j = 0; j <= steps; ++j)

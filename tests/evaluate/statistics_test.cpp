@@ -16,7 +16,7 @@ TEST(Statistics, OfFiveDistances) {
   EXPECT_DOUBLE_EQ(s.rms, std::sqrt(85.0 / 5));
   EXPECT_DOUBLE_EQ(s.variance, 8);  // 17 - 9
   EXPECT_DOUBLE_EQ(s.max, 8);
-  // 75 % lies on the fourth value, 90 % six tenths of the way to the last.
+  // The 75th percentile is the fourth value; the 90th is 0.6 of the way to the last value.
   EXPECT_DOUBLE_EQ(s.percentiles[1], 4);
   EXPECT_DOUBLE_EQ(s.percentiles[2], 4 + 0.6 * 4);
 }
@@ -36,7 +36,7 @@ TEST(Histogram, CountsEveryDistanceOnce) {
 }
 
 TEST(Score, ByHand) {
-  // 3 of 4 points are right, 1 of 2 samples is found: F = 2 * 3/4 * 1/2 / (5/4) = 0.6.
+  // 3 of 4 points are right and 1 of 2 samples is found: F = 2 * 3/4 * 1/2 / (5/4) = 0.6.
   const std::vector<float> to_truth{0, 0.25f, 0.5f, 0.75f}, to_reconstruction{0.5f, 0.51f};
   const Score s = score(to_truth, to_reconstruction, 0.5);
   EXPECT_DOUBLE_EQ(s.precision, 0.75);

@@ -16,8 +16,8 @@ namespace {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-// The nearest of a fine grid of points of the triangle: never nearer than the true distance, and
-// farther by at most the grid's step.
+// The distance to the nearest of a fine grid of points of the triangle. It is never below the true
+// distance, and exceeds it by at most the step of the grid.
 double gridded_distance(const Eigen::Vector3d& p, const Triangle& t, int steps) {
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= steps; ++i)
@@ -39,9 +39,9 @@ TEST(TriangleDistance, IsTheLeastOverAllPointsOfTheTriangle) {
     const double exact = (closest - p).norm();
     const double gridded = gridded_distance(p, t, 120);
     EXPECT_LE(exact, gridded + 1e-12) << trial;
-    // Sides are at most 2 sqrt(3) long; the grid point next to the closest one is within a step.
+    // Sides are at most 2 sqrt(3) long, and a grid point is within a step of the closest point.
     EXPECT_GE(exact, gridded - 2 * 3.47 / 120) << trial;
-    // It lies on the triangle itself: its own distance is nil.
+    // The closest point is on the triangle, so its own distance is 0.
     EXPECT_LT((closest_on_triangle(closest, t) - closest).norm(), 1e-12) << trial;
   }
 }
@@ -68,7 +68,7 @@ double brute_force(const Mesh& mesh, const Eigen::Vector3d& p) {
 }
 
 TEST(Surface, DistancesAgreeWithBruteForce) {
-  // Far from the origin too, where the hierarchy's float boxes are coarsest.
+  // Also far from the origin, where the hierarchy's float boxes are coarsest.
   for (const double offset : {0.0, 30.0}) {
     Mesh mesh = height_field(40, 2, ripples);
     for (auto& v : mesh.vertices) v += Eigen::Vector3f::Constant(static_cast<float>(offset));
@@ -79,7 +79,7 @@ TEST(Surface, DistancesAgreeWithBruteForce) {
       if (i % 4 == 0) p.z() = ripples(p.x(), p.y());  // close to the surface
       p += Eigen::Vector3d::Constant(offset);
       const ClosestPoint closest = surface.closest(p);
-      // The same arithmetic over the same triangles: only the pruning could differ.
+      // Both use the same arithmetic on the same triangles, so only the pruning can differ.
       EXPECT_NEAR(closest.distance, brute_force(mesh, p), 1e-12) << offset << " " << i;
       EXPECT_NEAR((closest.point - p).norm(), closest.distance, 1e-12);
     }
@@ -118,7 +118,8 @@ TEST(Surface, RefusesUnusableMeshes) {
 }
 
 TEST(Sampling, IsUniformByArea) {
-  // Two squares, one with a ninth of the other's area, cut into very different numbers of faces.
+  // Two squares, the smaller with a ninth of the area of the larger, with very different numbers of
+  // faces.
   Mesh mesh = height_field(30, 1, [](double, double) { return 0.0; });
   const Mesh large = flat_square(3, 5);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -136,10 +137,11 @@ TEST(Sampling, IsUniformByArea) {
     mean += x.cast<double>();
     spread += x.cast<double>().cwiseAbs2();
   }
-  EXPECT_NEAR(static_cast<double>(low), 1000, 1);  // stratified: the share is met to one sample
+  EXPECT_NEAR(static_cast<double>(low), 1000, 1);  // stratified: exact up to one sample
   mean /= 9000;
   spread /= 9000;
-  // Uniform on [-1.5, 1.5]: standard error of the mean 0.0091, of the mean square 0.0071.
+  // For a uniform distribution on [-1.5, 1.5] the standard error is 0.0091 for the mean and 0.0071
+  // for the mean square.
   EXPECT_NEAR(mean.x(), 0, 0.03);
   EXPECT_NEAR(mean.y(), 0, 0.03);
   EXPECT_NEAR(spread.x(), 0.75, 0.025);

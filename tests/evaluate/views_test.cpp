@@ -11,7 +11,7 @@
 namespace axial::evaluate {
 namespace {
 
-// Looks along +z from `centre`; 200 x 100 pixels, 90 degrees wide.
+// A camera at `centre` that looks along +z, with 200 x 100 pixels and a field 90 degrees wide.
 View camera_at(const Eigen::Vector3d& centre) {
   View view;
   view.camera = {200, 100, {100, 100, 99.5, 49.5}, {}};
@@ -46,7 +46,7 @@ TEST(CountViews, KeepsToTheImageRectangle) {
 
 TEST(CountViews, APlateHidesWhatLiesInItsShadow) {
   Mesh mesh = flat_square(6, 2);
-  const Mesh plate = flat_square(0.5, 1);  // half extent 0.25 at half way: shadow to 0.5
+  const Mesh plate = flat_square(0.5, 1);  // half extent 0.25, half way: its shadow reaches 0.5
   for (const auto& f : plate.faces) mesh.faces.push_back({f[0] + 4, f[1] + 4, f[2] + 4});
   mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());
   const Surface surface(mesh);
@@ -61,10 +61,10 @@ TEST(CountFrames, IsTheRectangleAloneInAirAndUnderWater) {
   View wet = camera_at({0, 0, 0});
   wet.camera.port = port();
   const std::vector<View> views{camera_at({0, 0, 0}), wet};
-  // Water halves neither; 0.7 m aside at 1 m is inside in air and outside under water (see below).
+  // At 1 m, a point 0.72 m aside is inside the image in air and outside under water.
   const std::vector<Eigen::Vector3f> points{{0, 0, 1}, {0, 0, 7}, {0.72f, 0, 1}, {1.1f, 0, 1}};
   EXPECT_THAT(count_frames(points, views), testing::ElementsAre(2u, 2u, 1u, 0u));
-  const Surface floor(flat_square(6, 1));  // hides the second point from both
+  const Surface floor(flat_square(6, 1));  // hides the second point from both cameras
   EXPECT_THAT(count_views(points, views, floor), testing::ElementsAre(2u, 0u, 1u, 0u));
 }
 
@@ -72,7 +72,7 @@ TEST(CountViews, WaterNarrowsTheFieldOfView) {
   const Surface floor(flat_square(6, 1));
   View wet = camera_at({0, 0, 0});
   wet.camera.port = port();
-  // The edge of the image: the ray of u = -0.5, v = 49.5 in closed form by Snell.
+  // The edge of the image: the ray of u = -0.5, v = 49.5 in closed form by Snell's law.
   const double s = 1.0;  // tan^2 of 45 degrees
   const double q_g = std::sqrt(1.49 * 1.49 + (1.49 * 1.49 - 1) * s);
   const double q_w = std::sqrt(1.333 * 1.333 + (1.333 * 1.333 - 1) * s);
@@ -84,8 +84,8 @@ TEST(CountViews, WaterNarrowsTheFieldOfView) {
 
 TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
   Mesh mesh = flat_square(6, 1);
-  // A small plate inside the housing, between the lens and the port, hides nothing; the same
-  // plate in front of the port does.
+  // A small plate between the lens and the port hides nothing. The same plate in front of the port
+  // hides the point.
   for (const double z : {0.02, 0.1}) {
     Mesh scene = mesh;
     const Mesh plate = flat_square(0.5, z);
@@ -99,13 +99,13 @@ TEST(CountViews, TheLineOfSightInWaterEndsAtThePort) {
 
 TEST(PixelWidths, AreDistanceOverFocalLengthInTheMeanOfTheViewsThatSee) {
   const Surface floor(flat_square(6, 2));
-  // From 2 m and 1 m above the floor, focal length 100 px.
+  // Cameras 2 m and 1 m above the floor, focal length 100 px.
   const std::vector<View> views{camera_at({0, 0, 0}), camera_at({0, 0, 1})};
   const std::vector<Eigen::Vector3f> points{{0, 0, 2}, {1.5f, 0, 2}, {2.9f, 0, 2}};
   const auto widths = pixel_widths(points, views, floor);
   EXPECT_NEAR(widths[0], 0.015, 1e-6) << "of both";
-  // Aside, 1 + x^2/z^2 = 1.25^2: a pixel of u is narrower across the ray than z/f by 1.25, one of v
-  // is not.
+  // Off the axis 1 + x^2/z^2 = 1.25^2: across the ray a pixel is narrower than z/f by the factor
+  // 1.25 in u, but not in v.
   EXPECT_NEAR(widths[1], 0.02 / std::sqrt(1.25), 1e-5) << "of the farther one alone";
   EXPECT_EQ(widths[2], 0.0f) << "of none";
 }

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Values of `bits` bits, the largest among them.
+// Random values of `bits` bits, including the largest.
 cv::Mat3w picture(int bits, unsigned seed) {
   std::mt19937 random(seed);
   cv::Mat3w pixels(9, 13);

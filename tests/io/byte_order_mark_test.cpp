@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text files with the mark that some editors put before UTF-8: read as without it.
+// Text files that start with the byte order mark, which some editors write, must be read as without
+// it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -56,8 +56,8 @@ TEST_F(Calibmar, ReadsAFlatPort) {
   EXPECT_EQ(port.n_water, 1.334);
 }
 
-// The other ways to write YAML's lists, keys in another order, a stereo camera's place, no newline
-// at the end.
+// Other notations of YAML lists, another order of keys, the pose of a stereo camera, no newline at
+// the end.
 TEST_F(Calibmar, ReadsADomeWrittenInOtherWords) {
   const ColmapCamera camera = read_calibmar(
       written("---\nheight: 768\nwidth: 1024\n"

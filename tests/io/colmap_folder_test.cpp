@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders with a COLMAP model's files in both forms, or in several places.
+// Folders with the files of a COLMAP model in both forms, or in several places.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -35,7 +35,7 @@ ColmapModel small_model() {
   return model;
 }
 
-// The model with a difference in the parts that `where` marks.
+// The model with a change in the parts that `where` marks.
 ColmapModel changed(const std::array<bool, 3>& where) {
   ColmapModel model = small_model();
   if (where[0]) model.cameras[0].params[0] += 0.01;
@@ -57,8 +57,8 @@ std::array<bool, 3> any_flags() {
   return {*rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>()};
 }
 
-// Any files of the two forms: the whole binary model is read, else the whole text model, and the
-// warning names the files of both forms that are there and differ, and no others.
+// Any combination of files. The complete binary model is read, otherwise the complete text model.
+// The warning names exactly the existing files that differ.
 RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
   const fs::path folder = test::empty_folder();
   const auto differs = any_flags(), text = any_flags(), binary = any_flags();
@@ -110,7 +110,7 @@ TEST_F(ColmapFolderTest, NamesBothFiles) {
                                            "and not cameras.txt, points3D.txt, which differ"));
 }
 
-// Order is no content, and neither are the bits that a quaternion's rounding changes.
+// The order of the elements and rounding in the quaternions do not count as differences.
 TEST_F(ColmapFolderTest, IsSilentAboutTheSameModelInAnotherOrder) {
   ColmapModel model = small_model();
   write_colmap_binary(folder_, model);
@@ -133,7 +133,7 @@ TEST_F(ColmapFolderTest, WarnsOfAFileThatCannotBeRead) {
               HasSubstr("images.bin is read, as COLMAP does, and not images.txt"));
 }
 
-// A lens's folder need not hold a model.
+// A folder with only a lens needs no complete model.
 TEST_F(ColmapFolderTest, CamerasAloneGoByTheSameOrder) {
   const auto focal = [&] { return read_colmap_cameras(folder_).at(0).params[0]; };
   write_colmap_text(folder_, changed({true, false, false}));
@@ -161,7 +161,7 @@ TEST_F(ColmapFolderTest, NamesModelsInOtherPlaces) {
     fs::create_directories(place);
     write_colmap_text(place, small_model());
   }
-  test::put(sparse / "cameras.txt", "stale");  // no whole model
+  test::put(sparse / "cameras.txt", "stale");  // not a complete model
   const auto said = [&] {
     const LogCapture log;
     const fs::path found = find_colmap_model(folder_);

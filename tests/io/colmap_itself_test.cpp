@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that are written for COLMAP, read by COLMAP itself.
+// COLMAP itself reads models that are written for COLMAP.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,8 +27,8 @@ ColmapCamera camera(std::uint32_t id, const std::string& model, std::vector<doub
   return {id, model, 1024, 768, std::move(params)};
 }
 
-// Two images that see three points, a lens of each kind that RefinePoses may be given, and ports,
-// of which COLMAP knows nothing.
+// Two images that see three points, with the lens models that RefinePoses accepts, and with ports,
+// which COLMAP does not know.
 ColmapModel small_model() {
   ColmapModel model;
   model.cameras = {camera(1, "OPENCV", {801.5, 800.25, 512, 384, 0.01, -0.02, 1e-3, -1e-3}),
@@ -71,7 +71,7 @@ void expect_same_images(const ColmapModel& found, const ColmapModel& written) {
     const ColmapImage& same = images.at(image.id);
     EXPECT_EQ(same.name, image.name);
     EXPECT_EQ(same.camera, image.camera);
-    // Through a quaternion and back.
+    // The rotation was converted to a quaternion and back.
     EXPECT_LT((same.pose.rotation - image.pose.rotation).norm(), 1e-12);
     EXPECT_LT((same.pose.centre - image.pose.centre).norm(), 1e-12);
     ASSERT_EQ(same.points.size(), image.points.size());
@@ -106,7 +106,7 @@ void expect_same(const ColmapModel& found, const ColmapModel& written) {
   }
 }
 
-// Written in one form; COLMAP makes the other one of it.
+// Writes the model in one form, lets COLMAP convert it to the other, and compares.
 void expect_colmap_reads(bool text) {
   const fs::path folder = test::empty_folder();
   const ColmapModel model = small_model();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lens models against OpenCV's own projection where it has them, and against the equation that
-// defines them where it has not.
+// Compares lens models with OpenCV's projection where OpenCV has the model, otherwise with the
+// defining equation.
 #include "io/colmap_lens.h"
 
 #include <gtest/gtest.h>
@@ -41,21 +41,21 @@ double within(double limit) {
   return limit * (static_cast<double>(*rc::gen::inRange(-1000000, 1000001)) / 1e6);
 }
 
-// The distorted point, without focal lengths and principal point.
+// The distorted point before focal lengths and principal point are applied.
 Vector2d distorted(const ColmapCamera& camera, double u, double v) {
   const Vector2d pixel = image_direction(camera, u, v);
   const bool one = camera.params.size() == 4 || camera.params.size() == 3;
   return {(pixel.x() - (kCx - 0.5)) / kFx, (pixel.y() - (kCy - 0.5)) / (one ? kFx : kFy)};
 }
 
-// Both sides evaluate the same polynomial in double: 1e-9 px is rounding.
+// Both sides evaluate the same polynomial in double, so 1e-9 px allows for rounding.
 constexpr double kRounding = 1e-9;
 
 RC_GTEST_PROP(ColmapLens, FullOpencvAgreesWithOpencv, ()) {
   const double u = within(1), v = within(1);
   std::vector<double> k;
   for (int i = 0; i < 8; ++i) k.push_back(within(i == 2 || i == 3 ? 0.01 : 0.1));
-  // Near the denominator's zero, where no lens images anything, rounding is not small.
+  // Rounding is large near a zero of the denominator, where the lens images nothing.
   const double r2 = u * u + v * v;
   RC_PRE(1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) > 0.1);
   std::vector<cv::Point2d> expected;
@@ -99,7 +99,8 @@ RC_GTEST_PROP(ColmapLens, DefiningEquationsHold, ()) {
   RC_ASSERT(std::abs(std::tan(fov.norm() * omega) / (2 * std::tan(omega / 2)) - r) < 1e-12);
   const double alpha = 0.5 + k;
   const Vector2d eucm = distorted(two_focal_camera("EUCM", {alpha, 1.0}), u, v);
-  // beta = 1 is the unified model: a sphere seen from xi behind its centre, xi = alpha/(1-alpha).
+  // beta = 1 is the unified model: a sphere whose projection centre is xi behind its centre, with
+  // xi = alpha/(1-alpha).
   const double xi = alpha / (1 - alpha), length = std::sqrt(r * r + 1);
   RC_ASSERT(std::abs(eucm.x() - (1 + xi) * (u / length) / (1 / length + xi)) < 1e-12);
   const double theta = std::atan(r);
@@ -134,11 +135,12 @@ RC_GTEST_PROP(ColmapLens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
   for (int y = 0; y < map.rows; ++y)
     for (int x = 0; x < map.cols; ++x) {
       const cv::Vec2f p = map(y, x);
-      // The border is checked at 64 positions a side: between them it may bulge a little.
+      // pinhole_inside checks 64 positions on each side; between them the border may bulge a
+      // little.
       RC_ASSERT(p[0] > -0.1f && p[1] > -0.1f && p[0] < 159.1f && p[1] < 119.1f);
       nearest = std::min<double>({nearest, p[0], p[1], 159 - p[0], 119 - p[1]});
     }
-  // Zoomed out as far as that allows: some pixel touches the border of the photograph.
+  // The pinhole is zoomed out as far as possible: some pixel touches the border of the photograph.
   RC_ASSERT(nearest < 0.1);
 }
 
@@ -164,8 +166,8 @@ RC_GTEST_PROP(ColmapLens, DirectionsAreFoundAgain, ()) {
   }
 }
 
-// How far the matcher's lens is from the model's own: where it images (u, v) [px], and what it
-// finds on the way back from there.
+// Differences between the matcher's lens and the model: the image of (u, v) [px], and the direction
+// found from that image.
 struct Misses {
   double pixel = 0, direction = 0;
 };
@@ -182,7 +184,7 @@ Misses misses_of_the_matcher(const ColmapCamera& camera, double u, double v) {
           (lens.tangents(pixel).point - Vector2d(u, v)).norm()};
 }
 
-// The matcher's formula against each model's own, which share no code.
+// The matcher's formula and the models share no code.
 RC_GTEST_PROP(ColmapLens, TheMatchersLensesImageTheSame, ()) {
   const std::vector<ColmapCamera> cameras{
       one_focal_camera("SIMPLE_RADIAL", {-0.1}),
@@ -204,8 +206,8 @@ RC_GTEST_PROP(ColmapLens, TheMatchersLensesImageTheSame, ()) {
   }
 }
 
-// A fit, right to 1e-4 px along both focal lengths. That is 1.5e-7 of a focal length, and a pixel
-// at the edge of these lenses shows up to three times as much as one in the middle.
+// The fit is accurate to 1e-4 px along both focal lengths, which is 1.5e-7 of a focal length. A
+// pixel at the edge of these lenses covers up to three times the angle of a central one.
 RC_GTEST_PROP(ColmapLens, TheMatcherFollowsLensesThatAreNoPolynomials, ()) {
   const std::vector<ColmapCamera> cameras{
       one_focal_camera("SIMPLE_DIVISION", {-0.2}), two_focal_camera("DIVISION", {-1}),
@@ -224,7 +226,7 @@ TEST(ColmapLens, TheMatcherHasNoLensForOtherModels) {
        {two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE", std::vector<double>(12, 0.001)),
         two_focal_camera("PINHOLE", {}), two_focal_camera("OPENCV", {0, 0, 0, 0}),
         two_focal_camera("FOV", {0}),
-        // Images nothing beyond half a focal length, where the image's corners are.
+        // This lens images nothing beyond half a focal length, where the image corners are.
         two_focal_camera("DIVISION", {4})})
     EXPECT_FALSE(lens_distortion(camera)) << camera.model;
 }
@@ -237,7 +239,7 @@ TEST(ColmapLens, AFitThatMissesIsNoLens) {
   EXPECT_FALSE(fitted_fisheye(with_a_kink, widest, tolerance));
 }
 
-// At the edge of a fisheye's view the plane of directions is far out.
+// At the edge of a fisheye's field, directions are far out on the plane z = 1.
 TEST(ColmapLens, DirectionsAtAFisheyesEdgeAreFound) {
   const ColmapCamera camera = two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0});
   for (const double degrees : {60.0, 80.0, 88.0}) {
@@ -249,7 +251,7 @@ TEST(ColmapLens, DirectionsAtAFisheyesEdgeAreFound) {
 }
 
 TEST(ColmapLens, NoDirectionIsFoundBeyondTheFold) {
-  // Images nothing between 0.6 and where the polynomial rises again.
+  // This lens images nothing between 0.6 and the radius where the polynomial rises again.
   const ColmapCamera camera = one_focal_camera("RADIAL", {-0.5, 0.1});
   const Vector2d centre = image_direction(camera, 0, 0);
   EXPECT_TRUE(direction_at(camera, centre + Vector2d(0.5 * kFx, 0)));
@@ -258,7 +260,8 @@ TEST(ColmapLens, NoDirectionIsFoundBeyondTheFold) {
 }
 
 TEST(ColmapLens, LensesThatFoldBackAreNotFollowedPastTheFold) {
-  // 1 - 0.5 r^2 folds at r = 0.816: a corner of an image with this focal length is beyond it.
+  // The lens folds back at r = 0.816, and the image corners of this focal length are beyond that
+  // radius.
   ColmapCamera camera{7, "SIMPLE_RADIAL", 640, 480, {300, 320, 240, -0.5}};
   const auto lens = pinhole_inside(camera, "model");
   EXPECT_LT(std::hypot(319.5 / lens.fx, 239.5 / lens.fy), 0.8165);
@@ -276,13 +279,13 @@ TEST(ColmapLens, WhatCannotBeUndistortedIsNamed) {
   EXPECT_EQ(message({3, "EQUIRECTANGULAR", 640, 320, {640, 320}}),
             "camera 3: model EQUIRECTANGULAR is not supported; undistort its images with COLMAP "
             "first");
-  // COLMAP-Underwater's, which COLMAP does not know.
+  // COLMAP-Underwater's model, which COLMAP does not know.
   EXPECT_EQ(message({3, "METASHAPE_FISHEYE", 640, 480, {700, 700, 320, 240, 0, 0, 0, 0, 0, 0}}),
             "camera 3: model METASHAPE_FISHEYE is not supported; undistort its images with the "
             "program that calibrated it first");
   EXPECT_NE(message({3, "OPENCV_FISHEYE", 640, 480, {700, 700, 900, 240, 0, 0, 0, 0}})
                 .find("camera 3 (OPENCV_FISHEYE) cannot be undistorted"),
-            std::string::npos);  // its principal point lies outside the image
+            std::string::npos);  // the principal point is outside the image
   EXPECT_EQ(message({3, "OPENCV", 640, 480, {700, 700, 320, 240}}),
             "camera 3: model OPENCV has 8 parameters, not 4");
 }

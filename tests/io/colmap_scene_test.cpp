@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 160, kHeight = 120;
 
-// A smooth picture: its value anywhere is known.
+// A smooth picture whose value is known everywhere.
 cv::Vec3d color_at(double x, double y) {
   return {128 + 100 * std::sin(x * 0.07), 128 + 100 * std::cos(y * 0.05), 40 + x * 0.5 + y * 0.5};
 }
@@ -75,7 +75,7 @@ TEST_F(ColmapScene, TakesImagesPosesAndPointsOver) {
   const Scene scene = import_colmap_scene(model_, import_);
   ASSERT_EQ(scene.images.size(), 3u);
   EXPECT_EQ(scene.images[0].path, (folder_ / "images" / "b.png").string());
-  EXPECT_EQ(scene.images[0].id, 3u);  // COLMAP's less one
+  EXPECT_EQ(scene.images[0].id, 3u);  // COLMAP's id minus one
   EXPECT_EQ(scene.images[1].id, 1u);
   EXPECT_EQ(scene.images[0].pose.centre.x(), 4);
   EXPECT_EQ(scene.images[0].camera.lens.cx, 79.5);  // centres at integers
@@ -110,7 +110,7 @@ TEST_F(ColmapScene, UndistortsImagesThatAreNoPinholes) {
       const cv::Vec3d expected = color_at(p.x(), p.y());
       for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(expected[c] - image(y, x)[c]));
     }
-  // Rounding twice, plus the interpolation's own ripple at the replicated border.
+  // Two roundings, and the ripple of the interpolation at the replicated border.
   EXPECT_LT(worst, 3.0);
 }
 
@@ -127,7 +127,7 @@ TEST_F(ColmapScene, KeepsImagesAndLensesAsTheyAre) {
   EXPECT_EQ(scene.images[2].camera.distortion->above[1], -0.1);
   EXPECT_EQ(scene.images[2].camera.lens.fx, 150);
   EXPECT_EQ(scene.images[2].camera.lens.cx, 79.5);
-  // A model that the matcher does not have.
+  // A model that the matcher does not support.
   EXPECT_EQ(scene.images[3].path, (import_.undistorted_folder / "d.png").string());
   EXPECT_FALSE(scene.images[3].camera.distortion);
 }
@@ -157,7 +157,7 @@ TEST_F(ColmapScene, UndistortedImagesStayInTheirFolder) {
   EXPECT_THAT(error(), HasSubstr("would be overwritten"));
 }
 
-// Any tracks: each image that is named counts once, and the rest is counted in one line.
+// For any track, each image counts once, and one line reports the repetitions.
 TEST_F(ColmapScene, ImagesCountOncePerPoint) {
   std::mt19937 random(3);
   model_.points.clear();
@@ -185,8 +185,7 @@ TEST_F(ColmapScene, ImagesCountOncePerPoint) {
   }
 }
 
-// Names that would be one file, on some file system at least, and how those that stay apart come
-// out.
+// Names that would be one file on some file system, and the names of the images that do not clash.
 TEST_F(ColmapScene, NoTwoImagesAreUndistortedToOneFile) {
   const std::string two = folder_.string() + "/sparse: the images ";
   model_.points.clear();
@@ -206,7 +205,7 @@ TEST_F(ColmapScene, NoTwoImagesAreUndistortedToOneFile) {
   EXPECT_EQ(error_of("left/f.png", "f.png"), "no error");
   EXPECT_TRUE(fs::exists(import_.undistorted_folder / "f.tif.png"));
   EXPECT_TRUE(fs::exists(import_.undistorted_folder / "f.bmp.png"));
-  // Images that stay as they are may be called what they like.
+  // Images that are not undistorted may have any name.
   model_.images.clear();
   add_image(1, 5, "g.tif");
   add_image(2, 5, "g.tif.png");
@@ -233,7 +232,7 @@ TEST_F(ColmapScene, PortsGoByTheUndistortedName) {
             (std::map<std::string, std::string>{{"a.tif.png", "main"}}));
 }
 
-// Images of cameras in any order, each resampled by its own camera's map: as with one image alone.
+// Images of several cameras in any order are resampled as if each were the only one.
 TEST_F(ColmapScene, EachImageIsUndistortedByItsOwnCamera) {
   model_.images.clear();
   model_.points.clear();
@@ -289,7 +288,7 @@ TEST_F(ColmapScene, HousingsAreResolvedToImages) {
               ::testing::ElementsAre("images.absent.png", "cameras.77"));
 }
 
-// Both a housing for names and what comes out for paths: "0000.png" is a tail of the others' names.
+// The housing by names gives the right ports by paths: "0000.png" is the end of other names.
 TEST_F(ColmapScene, ShortNamesOfOthersDoNotTakeTheDefaultAway) {
   fs::create_directories(folder_ / "images" / "wet");
   model_ = {};
@@ -332,7 +331,7 @@ TEST_F(ColmapScene, ImagesThatNamesCannotTellApartAreRefused) {
 }
 
 TEST_F(ColmapScene, MasksAreUndistortedWithTheirImages) {
-  // Labels that name their own column, so that every pixel of the result tells where it is from.
+  // Labels equal to the column, so that every pixel of the result tells its origin.
   cv::Mat1w mask(kHeight, kWidth);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) mask(y, x) = static_cast<std::uint16_t>(1000 + x);
@@ -379,7 +378,7 @@ TEST_F(ColmapScene, MasksOfAllNamesAreUndistorted) {
   }
 }
 
-// A camera of 12 bits stays one, however sharp its edges are.
+// Values of 12 bits need 12 bits afterwards too, even at sharp edges.
 TEST_F(ColmapScene, WideValuesStayWideWhereImagesAreUndistorted) {
   cv::Mat pixels(kHeight, kWidth, CV_16UC3, cv::Scalar::all(0));
   for (int x = 0; x < kWidth; x += 8) pixels.colRange(x, x + 4).setTo(cv::Scalar::all(4095));
@@ -395,7 +394,7 @@ TEST_F(ColmapScene, HiddenColorsStayHiddenWhereImagesAreUndistorted) {
   cv::Mat pixels(kHeight, kWidth, CV_8UC4, cv::Scalar(90, 90, 90, 255));
   pixels.colRange(0, kWidth / 2).setTo(cv::Scalar(255, 0, 255, 0));
   fs::remove(folder_ / "images" / "c.png");
-  write_png(folder_ / "images" / "c.jpg", pixels);  // a name is no format
+  write_png(folder_ / "images" / "c.jpg", pixels);  // a PNG file in spite of its name
   model_.images[2].name = "c.jpg";
   const Scene scene = import_colmap_scene(model_, import_);
   EXPECT_EQ(scene.images[2].path, (import_.undistorted_folder / "c.jpg.png").string());

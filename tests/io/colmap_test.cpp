@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-// Every camera model with its number of parameters, by its number in binary files.
+// All camera models with their numbers of parameters, in the order of their numbers in binary
+// files.
 const std::vector<std::pair<std::string, std::size_t>> kModels{
     {"SIMPLE_PINHOLE", 3},
     {"PINHOLE", 4},
@@ -54,7 +55,7 @@ ColmapModel small_model() {
   return model;
 }
 
-// Poses go through quaternions and a translation: equal to rounding.
+// Poses are stored as quaternion and translation, so they are equal up to rounding.
 void expect_equal(const ColmapModel& a, const ColmapModel& b) {
   ASSERT_EQ(a.cameras.size(), b.cameras.size());
   for (std::size_t i = 0; i < a.cameras.size(); ++i) {
@@ -135,7 +136,7 @@ TEST_F(ColmapTest, KnowsEveryCameraModelInBothForms) {
   for (const char* name : {"cameras.txt", "images.txt", "points3D.txt"}) fs::remove(folder_ / name);
   write_colmap_binary(folder_, model);
   expect_equal(read_colmap_model(folder_), model);
-  // Numbers in binary files as the format fixes them: the place in the list above.
+  // In binary files the number of a model is its place in the list above.
   const std::string bytes = read_file(folder_ / "cameras.bin");
   std::size_t at = 8;
   for (std::size_t i = 0; i < kModels.size(); ++i) {
@@ -145,7 +146,7 @@ TEST_F(ColmapTest, KnowsEveryCameraModelInBothForms) {
 }
 
 RC_GTEST_PROP(Colmap, KeepsAnyRotation, ()) {
-  const auto component = [] { return *rc::gen::inRange(-3, 4) / 3.0; };  // half turns among them
+  const auto component = [] { return *rc::gen::inRange(-3, 4) / 3.0; };  // includes half turns
   Eigen::Quaterniond q(component(), component(), component(), component());
   RC_PRE(q.norm() > 0.1);
   q.normalize();
@@ -160,7 +161,8 @@ RC_GTEST_PROP(Colmap, KeepsAnyRotation, ()) {
   RC_ASSERT((read.centre - model.images[0].pose.centre).norm() < 1e-14);
 }
 
-// As COLMAP writes it: comments, an empty second line, a name with blanks, -1 for "no point".
+// As COLMAP writes text files: comments, an empty second line, a name with blanks, -1 for "no
+// point".
 constexpr const char* kCameras = "# Camera list\n1 SIMPLE_PINHOLE 640 480 500 320 240\n";
 constexpr const char* kImages =
     "# Image list\n# two lines each\n5 1 0 0 0 -1 -2 -3 1 my photo.jpg\n"
@@ -179,7 +181,7 @@ TEST_F(ColmapTest, ReadsTextAsColmapWritesIt) {
   EXPECT_EQ(model.points[0].color, (Rgb{10, 20, 30}));
 }
 
-// The path is what an image is known by, however it is spelt.
+// An image is identified by its path, in any notation.
 TEST_F(ColmapTest, RefusesTwoImagesOfOneName) {
   ColmapModel model = small_model();
   for (const char* name : {"c.jpg", "./c.jpg", "left/../c.jpg", ".//c.jpg"}) {
@@ -194,7 +196,7 @@ TEST_F(ColmapTest, RefusesTwoImagesOfOneName) {
   }
 }
 
-// Blanks, '#', quotes and commas anywhere but at the ends.
+// Blanks (not at the ends), '#', quotes and commas anywhere.
 RC_GTEST_PROP(Colmap, KeepsAnyName, ()) {
   const auto name = *rc::gen::nonEmpty(
       rc::gen::container<std::string>(rc::gen::element('a', ' ', '#', '"', ',', '7', '\t')));
@@ -277,8 +279,8 @@ TEST_F(ColmapTest, RefusesToWriteWhatCannotBeRead) {
   EXPECT_THAT(error_of([&] { write_colmap_binary(folder_, model); }), HasSubstr("METASHAPE"));
 }
 
-// A text file has no count, so a prefix of whole records can be a smaller model. It must be refused
-// where other files of the model still refer to what is missing, and always within a line.
+// A text file has no count, so a prefix of complete records can be a smaller model. It must be
+// refused if other files of the model refer to missing elements, or if it ends within a line.
 TEST_F(ColmapTest, SurvivesWrongInput) {
   const auto read = [&](const fs::path&) { read_colmap_model(folder_); };
   const auto fails = [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras with ports, in COLMAP-Underwater's files, against files put together by hand.
+// Cameras with ports in COLMAP-Underwater's files, compared with hand-made files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-// Little-endian, as every machine the project runs on stores it.
+// Little-endian, like all machines on which the project runs.
 template <class T>
 void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
@@ -27,11 +27,11 @@ const std::vector<double> kDome{0.001, -0.002, 0.003, 0.05, 0.007, 1, 1.52, 1.34
 struct CameraBytes {
   std::int32_t model;
   std::vector<double> params;
-  std::int32_t port;  // -1: none
+  std::int32_t port;  // -1: no port
   std::vector<double> port_params;
 };
 
-// cameras.bin of the fork: upstream's record, then the port's number, then its eight numbers.
+// cameras.bin of COLMAP-Underwater: COLMAP's record, the number of the port, its eight numbers.
 std::string underwater_bytes(const std::vector<CameraBytes>& cameras) {
   std::string bytes;
   append(bytes, std::uint64_t{cameras.size()});
@@ -100,7 +100,7 @@ TEST_F(Underwater, ReadsBinaryTails) {
 }
 
 TEST_F(Underwater, TellsItsBinaryFilesFromColmaps) {
-  // One camera and several, with and without ports, of every length of parameters.
+  // One and several cameras, with and without ports, with every number of parameters.
   for (const auto& [model, count] :
        std::vector<std::pair<int, std::size_t>>{{0, 3}, {1, 4}, {2, 4}, {4, 8}, {6, 12}, {7, 5}}) {
     std::vector<double> params(count, 0.25);
@@ -126,7 +126,7 @@ TEST_F(Underwater, TellsItsBinaryFilesFromColmaps) {
   }
 }
 
-// Number 11 is another camera model in each of the two.
+// Number 11 is a different camera model in each of the two programs.
 TEST_F(Underwater, ResolvesNumberEleven) {
   std::vector<double> ten(10, 0.1), sixteen(16, 0.1);
   ten[0] = ten[1] = sixteen[0] = sixteen[1] = 500;
@@ -200,7 +200,7 @@ TEST_F(Underwater, RefusesWrongTails) {
     return error_of([&] { read_binary(bytes); });
   };
   const std::string good = underwater_bytes({{1, kPinhole, 0, kFlat}});
-  // Without the tail, to the byte, it is a file of COLMAP's.
+  // A prefix without the port is a valid file of COLMAP.
   const std::size_t colmaps = good.size() - 4 - 8 * 8;
   EXPECT_FALSE(read_binary(good.substr(0, colmaps)).at(0).port);
   for (std::size_t size = 0; size < good.size(); ++size)

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A slope from 1 m at the left to 3 m at the right that faces the camera, a hole in its middle.
+// A slope from 1 m (left) to 3 m (right), facing the camera, with a hole in its middle.
 DepthMap slope() {
   constexpr int kWidth = 21, kHeight = 5;
   DepthMap map;

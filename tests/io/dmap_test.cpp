@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 enum class Port { none, flat, dome };
 
-// A tilted thick port: the virtual centre lies centimetres off the camera's.
+// A tilted thick port. The virtual centre is centimetres away from the camera centre.
 refractive::FlatPort<double> flat_port() {
   return {Eigen::Vector3d(0.2, -0.1, 1).normalized(), 0.05, 0.02, 1, 1.49, 1.34};
 }
@@ -70,7 +70,7 @@ class DmapTest : public testing::Test {
   std::string error() {
     return error_of([&] { read_dmap(file_); });
   }
-  // The error of the .dmap, by itself, with the bytes at `offset` replaced.
+  // The error for the .dmap file without side file, with the bytes at `offset` replaced.
   template <class T>
   std::string error_with(std::size_t offset, T value) {
     write_dmap(file_, depth_map(folder_, Port::flat), "x");
@@ -87,7 +87,8 @@ class DmapTest : public testing::Test {
   fs::path folder_, file_, side_;
 };
 
-// Where the fields of depth_map()'s file lie: 30 bytes, "images/a.jpg", the ids, then K, R, C.
+// Offsets of the fields in the file of depth_map(): 30 bytes, "images/a.jpg", the ids, then K, R,
+// C.
 constexpr std::size_t kName = 30, kIds = kName + 12, kK = kIds + 4 + 3 * 4, kR = kK + 9 * 8,
                       kC = kR + 9 * 8, kDepth = kC + 3 * 8;
 
@@ -118,8 +119,8 @@ TEST_F(DmapTest, KeepsTheDistanceAlongTheRefractedRay) {
     EXPECT_EQ(cv::norm(stored.map.confidence, map.confidence, cv::NORM_INF), 0);
     for (int v = 0; v < 7; ++v)
       for (int u = 0; u < 9; ++u) {
-        // z is rounded to float once, lambda once more: at most 2 half units in the last place
-        // each, and z exceeds lambda d_z by no more than the port's few centimetres.
+        // z and lambda are each rounded to float once: an error of at most 2 half units in the last
+        // place for each. z exceeds lambda d_z by at most the few centimetres of the port.
         const float tolerance = 4e-7f * map.depth(v, u);
         EXPECT_NEAR(stored.map.depth(v, u), map.depth(v, u), tolerance) << u << ", " << v;
         EXPECT_EQ(stored.map.depth(v, u) == 0, map.depth(v, u) == 0);
@@ -140,8 +141,8 @@ TEST_F(DmapTest, KeepsTheLens) {
       EXPECT_NEAR(kept.depth(v, u), map.depth(v, u), 4e-7f * map.depth(v, u)) << u << ", " << v;
 }
 
-// The file's depth is z in the real camera's frame, found here without the conversion under test:
-// the pixel's ray is followed for lambda and its end point looked at.
+// The depth in the file is z in the frame of the real camera. The test computes it without the
+// conversion under test, from the end point of the pixel's ray after lambda.
 TEST_F(DmapTest, StoresZDepthOfTheRealCamera) {
   const DepthMap map = depth_map(folder_, Port::flat);
   write_dmap(file_, map, "");
@@ -193,7 +194,7 @@ TEST_F(DmapTest, CountsAsPinholeWithoutItsSideFile) {
   EXPECT_GE(stored.map.max_depth, 0.30f + 0.07f * 61);
 }
 
-// As OpenMVS may write it: half the image's resolution, depth only, and the views map.
+// A file as OpenMVS may write it: half the image's resolution, only depth, and the views map.
 TEST_F(DmapTest, ReadsMapsSmallerThanTheImageAndSkipsViews) {
   DepthMap map = depth_map(folder_, Port::none);
   map.normal.release();
@@ -207,7 +208,7 @@ TEST_F(DmapTest, ReadsMapsSmallerThanTheImageAndSkipsViews) {
   test::put(file_, bytes + std::string(4 * 63, '\1'));
   const DepthMap read = read_dmap(file_).map;
   EXPECT_EQ(read.camera.width, 9);
-  EXPECT_EQ(read.camera.lens.fx, 3);  // K is of the image, twice the size
+  EXPECT_EQ(read.camera.lens.fx, 3);  // K in the file is for the image, which is twice as large
   EXPECT_EQ(read.camera.lens.cx, (3.9 + 0.5) / 2 - 0.5);
   EXPECT_EQ(read.normal.size(), read.depth.size());
   EXPECT_EQ(cv::norm(read.normal), 0);
@@ -252,7 +253,7 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
 }
 
-// As far from the camera as no housing has its glass.
+// The distance is larger than that of the glass of any housing.
 TEST_F(DmapTest, KeepsTheWaterSurfaceUnderADrone) {
   DepthMap map = depth_map(folder_, Port::none);
   const refractive::FlatPort<double> surface{
@@ -262,7 +263,7 @@ TEST_F(DmapTest, KeepsTheWaterSurfaceUnderADrone) {
   write_dmap(file_, map, "x");
   const DepthMap kept = read_dmap(file_).map;
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(*kept.camera.port).distance, 30);
-  // Single precision, twice.
+  // Two roundings to single precision.
   EXPECT_LT(cv::norm(kept.depth, map.depth, cv::NORM_INF), 40 * 1e-6);
 }
 
@@ -333,13 +334,13 @@ TEST_F(DmapTest, ReadsTheHeaderAloneAsTheWholeMap) {
   }
 }
 
-// A map without its side file is another program's, and one of ours never is: not even after a
-// kill.
+// A map without a side file counts as another program's. Our own maps always have one, even if the
+// program is killed.
 TEST_F(DmapTest, LeavesNoMapBesideTheSideFileOfAnother) {
   write_dmap(file_, depth_map(folder_, Port::none), "first");
   const std::string before = read_file(file_);
   fs::remove(side_);
-  fs::create_directory(side_);  // the side file cannot take its name
+  fs::create_directory(side_);  // prevents the side file from being written
   EXPECT_THAT(error_of([&] { write_dmap(file_, depth_map(folder_, Port::none), "second"); }),
               HasSubstr("dmap"));
   EXPECT_FALSE(fs::exists(file_));

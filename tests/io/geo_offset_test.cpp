@@ -42,7 +42,7 @@ TEST_F(GeoOffset, IsReadAsItWasWritten) {
   write_geo_offset_beside(scene_, kFar);
   ASSERT_TRUE(fs::exists(file_));
   EXPECT_EQ(read_geo_offset_beside(scene_)->origin, kFar.origin);
-  write_geo_offset_beside(scene_, {});  // a scene near the origin takes an older one's place
+  write_geo_offset_beside(scene_, {});  // a scene near the origin replaces an older scene
   EXPECT_FALSE(fs::exists(file_));
   write_geo_offset_beside(scene_, {});
   EXPECT_FALSE(fs::exists(file_));

@@ -49,7 +49,7 @@ class HousingTest : public testing::Test {
     test::put(file_, text);
     return read_housing(file_);
   }
-  // The error of the example with `from` replaced.
+  // The error for the example with `from` replaced by `to`.
   std::string error(const std::string& from, const std::string& to) {
     const std::string message = error_of([&] { read(replaced(kExample, from, to)); });
     EXPECT_THAT(message, HasSubstr(file_.string()));
@@ -199,7 +199,7 @@ TEST_F(HousingTest, GivesEachImageItsPortThroughTheSurface) {
   Scene scene;
   scene.images = {looking_down("/x/low.jpg", 2), looking_down("/x/high.jpg", 30),
                   looking_down("/x/dry.jpg", -3), looking_down("/x/lost.jpg", -3)};
-  scene.images[3].calibrated = false;  // its pose means nothing
+  scene.images[3].calibrated = false;  // its pose is not defined
   attach_ports(scene, housing, "h.json");
   EXPECT_EQ(flat(*scene.images[0].camera.port).distance, 0.5);
   EXPECT_EQ(flat(*scene.images[1].camera.port).distance, 28.5);
@@ -219,7 +219,7 @@ TEST_F(HousingTest, GivesEachImageItsPortThroughTheSurface) {
               HasSubstr("/x/sky.jpg: its port 'lake': the camera looks away"));
 }
 
-// A drone over the lake and a diver in it: one scene, one file.
+// A drone above the lake and a diver in it: one scene and one housing file.
 TEST_F(HousingTest, GivesImagesTheSurfaceOrAPortFromOneFile) {
   const Housing housing = read(R"({ "version": 1, "default": "lake", "ports": {
     "lake": { "type": "water-surface", "normal": [0, 0, -1], "point_m": [0, 0, 1.5],
@@ -235,7 +235,7 @@ TEST_F(HousingTest, GivesImagesTheSurfaceOrAPortFromOneFile) {
     EXPECT_EQ(scene.images[above].port_name, "lake");
     const auto& port = flat(*scene.images[above].camera.port);
     EXPECT_EQ(port.normal, Eigen::Vector3d::UnitZ());
-    EXPECT_EQ(port.distance, above == 0 ? 5 : 8);  // the height over the surface
+    EXPECT_EQ(port.distance, above == 0 ? 5 : 8);  // height above the surface
     EXPECT_EQ(port.thickness, 0);
   }
   EXPECT_EQ(scene.images[1].port_name, "diver");
@@ -313,7 +313,7 @@ TEST_F(HousingTest, AttachesPortsByTheLongestMatchingName) {
   EXPECT_EQ(flat(*scene.images[0].camera.port).n_water, 1.49);
 }
 
-// Two cameras whose images have the same base names: an entry may be the end of one name only.
+// Images of two cameras have the same base names; an entry may be the end of one name only.
 TEST_F(HousingTest, RefusesEntriesThatSeveralImagesGoBy) {
   Housing housing = read(kExample);
   housing.cameras.clear();
@@ -332,7 +332,7 @@ TEST_F(HousingTest, RefusesEntriesThatSeveralImagesGoBy) {
       EXPECT_EQ(error_of([&] { attach_ports(scene, housing, "h.json"); }),
                 "h.json: housing.images.0.jpg could be /x/cam0/0.jpg or /x/cam1/0.jpg: write as "
                 "much of the path as tells them apart");
-      // All but one have an entry of their own.
+      // All images but one have an entry of their own.
       for (int folder = 1; folder < folders; ++folder)
         housing.images[fmt::format("cam{}/0.jpg", folder)] = "main";
       attach_ports(scene, housing, "h.json");

@@ -22,7 +22,7 @@ class ImageTest : public testing::Test {
   fs::path folder_;
 };
 
-// 37x23 pixels of a smooth gradient: JPEG keeps it nearly.
+// A smooth gradient of 37x23 pixels, which JPEG hardly changes.
 cv::Mat3b picture() {
   cv::Mat3b image(23, 37);
   for (int y = 0; y < image.rows; ++y)
@@ -41,7 +41,7 @@ TEST_F(ImageTest, ReadsBackWhatItWrites) {
   write_png(folder_ / "a.png", picture());
   EXPECT_EQ(max_difference(read_color_image(folder_ / "a.png"), picture()), 0);
   write_jpeg(folder_ / "a.jpg", picture(), 95);
-  // Chroma is stored at half the resolution.
+  // JPEG stores chroma at half the resolution.
   EXPECT_LT(max_difference(read_color_image(folder_ / "a.jpg"), picture()), 16);
   EXPECT_EQ(read_image_size(folder_ / "a.png"), cv::Size(37, 23));
   EXPECT_EQ(read_image_size(folder_ / "a.jpg"), cv::Size(37, 23));
@@ -52,7 +52,7 @@ TEST_F(ImageTest, GoesByContentsNotByName) {
   EXPECT_EQ(max_difference(read_color_image(folder_ / "a.jpg"), picture()), 0);
 }
 
-// An Exif segment that says "rotate by 90 degrees", behind the start-of-image marker.
+// Inserts an Exif segment with "rotate by 90 degrees" after the start-of-image marker.
 TEST_F(ImageTest, IgnoresExifRotation) {
   write_jpeg(folder_ / "a.jpg", picture(), 95);
   const std::string bytes = read_file(folder_ / "a.jpg");
@@ -125,7 +125,8 @@ TEST_F(ImageTest, SurvivesWrongInput) {
   test::expect_prefixes_refused(file, jpeg, color);
   test::expect_prefixes_refused(file, jpeg, size);
   test::expect_prefixes_refused(file, png, color);
-  // The last four bytes say that no second image follows; the first is whole without them.
+  // The last four bytes state that no second image follows. The first image is complete without
+  // them.
   test::expect_prefixes_refused(file, tiff, floats, tiff.size() - 4);
   test::expect_damage_survived(file, png, color);
   test::expect_damage_survived(file, tiff, floats);

@@ -51,7 +51,7 @@ class LensesTest : public ::testing::Test {
     scene_.images.push_back(image);
   }
 
-  // What the images get from the file beside the scene, their paths as they are.
+  // The lenses that the images get from the file beside the scene.
   std::vector<std::optional<Distortion>> read_again() {
     Scene again = scene_;
     for (SceneImage& image : again.images) image.camera.distortion = barrel();  // to be replaced
@@ -72,7 +72,7 @@ class LensesTest : public ::testing::Test {
   Scene scene_;
 };
 
-// Whatever folders images lie in, one lens for all or not: what is written is what is read.
+// For images in any folders and any assignment of lenses, reading returns what was written.
 TEST_F(LensesTest, AreFoundAgainForImagesOfOneBaseName) {
   const std::vector<std::optional<Distortion>> lenses{barrel(), fisheye(), std::nullopt};
   for (std::size_t seed = 0; seed < 27; ++seed) {
@@ -128,8 +128,8 @@ TEST_F(LensesTest, FollowsASceneThatIsMoved) {
   EXPECT_EQ(read_again(), (std::vector<std::optional<Distortion>>{fisheye(), barrel()}));
 }
 
-// Written are ends of paths, "left/a.jpg" for the second and "a.jpg" for the first, which is an end
-// of the second's, too.
+// Entries are ends of paths: "left/a.jpg" for the second image, and "a.jpg" for the first one,
+// which is also an end of the second path.
 TEST_F(LensesTest, RefusesImagesThatTheEndsOfTheirPathsDoNotTellApart) {
   add((folder_ / "a.jpg").string(), fisheye());
   add((folder_ / folder_.filename() / "a.jpg").string(), barrel());
@@ -185,7 +185,7 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   EXPECT_THAT(with("\"default\": \"main\"", "\"default\": \"other\""),
               HasSubstr("default is 'other'"));
   EXPECT_THAT(with("{ \"main\":", "{ \"none\":"), HasSubstr("'none' cannot be the name"));
-  // Folds back in the very centre.
+  // The lens folds back at its centre.
   EXPECT_THAT(with("-0.1]", "-0.1], \"tangential\": [999, 999], \"thin_prism\": [99, 0]"),
               HasSubstr("lenses.main: is no lens of b.jpg"));
 }

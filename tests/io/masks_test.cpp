@@ -47,7 +47,7 @@ class MasksTest : public testing::Test {
 
 TEST_F(MasksTest, AllUsualNamesAreFoundInTheirOrder) {
   const std::vector<std::string> order{"a.mask.png", "a.jpg.png", "a_mask.png", "a.png"};
-  // Every subset: the first of the order is used, and the others are told of.
+  // For every subset of candidates, the first one is used and the others are reported.
   for (unsigned subset = 0; subset < 16; ++subset)
     for (const bool beside : {false, true}) {
       fs::remove_all(masks_);
@@ -58,7 +58,7 @@ TEST_F(MasksTest, AllUsualNamesAreFoundInTheirOrder) {
       for (std::size_t i = 0; i < order.size(); ++i)
         if (subset >> i & 1) {
           const fs::path path = touch(beside ? image(order[i]) : masks_ / order[i]);
-          if (!beside || i < 3) expected.push_back(path);  // a.png is a picture beside a.jpg
+          if (!beside || i < 3) expected.push_back(path);  // beside a.jpg, a.png is a photograph
         }
       const FoundMask found = find({"a.jpg"}, beside ? fs::path() : masks_)[0];
       std::vector<fs::path> all = found.others;
@@ -70,8 +70,8 @@ TEST_F(MasksTest, AllUsualNamesAreFoundInTheirOrder) {
     }
 }
 
-// Random trees of images and masks: an image gets the mask whose path, less what names add, is the
-// longest end of its own that no other image has.
+// Random trees of images and masks. An image gets the mask whose path, without suffix, is the
+// longest end of the image's path that is an end of no other image's path.
 TEST_F(MasksTest, GoByTheLongestEndThatIsTheImagesOwn) {
   std::mt19937 random(7);
   for (int round = 0; round < 60; ++round) {
@@ -85,7 +85,7 @@ TEST_F(MasksTest, GoByTheLongestEndThatIsTheImagesOwn) {
       images.insert(name + std::to_string(random() % 3) + ".jpg");
     }
     const std::vector<std::string> names(images.begin(), images.end());
-    std::set<std::string> there;  // ends, without extension
+    std::set<std::string> there;  // path ends without extension
     for (const std::string& name : names) {
       std::string end = name.substr(0, name.size() - 4);
       for (auto cut = random() % 3; cut > 0 && end.find('/') != std::string::npos; --cut)
@@ -156,7 +156,7 @@ TEST_F(MasksTest, RivalsAreThoseWithOtherLabels) {
   write_png(image("a.mask.png"), labels);
   cv::Mat wide;
   labels.convertTo(wide, CV_16U);
-  write_png(image("a.jpg.png"), wide);  // other bytes
+  write_png(image("a.jpg.png"), wide);  // the same labels in other bytes
   EXPECT_EQ(rival_masks(find({"a.jpg"}, {})).count, 0u);
   labels(1, 1) = 4;
   write_png(image("a_mask.png"), labels);

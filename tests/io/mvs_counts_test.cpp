@@ -64,7 +64,7 @@ RC_GTEST_PROP(MvsCounts, AreThoseOfTheSceneThatWasWritten, (bool colors)) {
   fs::remove_all(folder);
 }
 
-// As long as the file is cut within what is counted; what follows does not matter here.
+// Only for files that are cut before the end of the counted part; the part after it is not read.
 TEST(MvsCounts, AreNoneOfAFileThatIsCutOrGarbage) {
   const fs::path folder = test::empty_folder(), file = folder / "scene.mvs";
   write_mvs(file, make_scene(3, 5, 3, 2, true), folder);
@@ -85,10 +85,10 @@ TEST(MvsCounts, AreNoneOfAFileThatIsCutOrGarbage) {
   fs::remove_all(folder);
 }
 
-// Large blocks are counted in pages.
+// The heap allocates large blocks in pages.
 constexpr std::uint64_t kPages = 1 << 16;
 
-// What is said beforehand is taken, and hardly less.
+// The estimate is an upper bound of the memory, and a tight one.
 TEST(MvsCounts, TellWhatTheSceneTakesInMemory) {
   const fs::path folder = test::empty_folder(), file = folder / "scene.mvs";
   struct Case {

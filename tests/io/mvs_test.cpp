@@ -21,7 +21,7 @@ using test::error_of;
 using testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Bytes in the order of the format's description, one primitive after the other.
+// Appends the primitives of a file in the order of the format's description.
 struct Bytes {
   std::string data;
 
@@ -44,20 +44,20 @@ struct Bytes {
   }
 };
 
-// A small scene of two images of one camera and one uncalibrated image, described freely enough to
-// be wrong in every way.
+// A small scene of two images of one camera and an uncalibrated image. Every field can be made
+// wrong.
 struct Description {
   unsigned version = 7;
   unsigned width = 640, height = 480;
   std::vector<double> k{500, 0, 320, 0, 510, 240, 0, 0, 1};
   std::vector<double> camera_r{1, 0, 0, 0, 1, 0, 0, 0, 1}, camera_c{0, 0, 0};
   std::vector<double> pose_r{0, 1, 0, -1, 0, 0, 0, 0, 1}, pose_c{1, 2, 3};
-  unsigned platform = 0, camera = 0, pose = 0;  // of the first image
+  unsigned platform = 0, camera = 0, pose = 0;  // ids of the first image
   unsigned first_id = 40, second_id = 7;
   std::string name = "images\\a.png";
   unsigned view_image = 1, score_image = 1;
   float x = 1, score = 5;
-  std::uint64_t vertices = 2, normals = 2, colors = 2;  // as counted in the file
+  std::uint64_t vertices = 2, normals = 2, colors = 2;  // counts in the file
   std::vector<double> box_min{0, 0, 0}, box_max{0, 0, 0};
   std::vector<double> box_r{1, 0, 0, 0, 1, 0, 0, 0, 1};
   bool third_image = true;
@@ -168,7 +168,7 @@ class MvsTest : public testing::Test {
     EXPECT_THAT(message, HasSubstr(file_.string()));
     return message;
   }
-  // The error of the description changed by `change`.
+  // The error for the description after `change`.
   std::string error(const std::function<void(Description&)>& change) {
     Description d;
     change(d);
@@ -190,7 +190,7 @@ TEST_F(MvsTest, ReadsEveryVersion) {
     EXPECT_EQ(a.path, (folder_ / "images/a.png").string());
     EXPECT_EQ(a.mask_path, version >= 5 ? (folder_ / "masks/a.png").string() : "");
     EXPECT_EQ(a.id, version >= 3 ? 40u : 0u);
-    EXPECT_EQ(scene.images[2].id, 2u);  // NO_ID: the index
+    EXPECT_EQ(scene.images[2].id, 2u);  // no id: the index is used
     EXPECT_TRUE(a.calibrated);
     EXPECT_FALSE(scene.images[2].calibrated);
     EXPECT_EQ(a.camera.width, 640);
@@ -222,21 +222,21 @@ TEST_F(MvsTest, ResolvesBothNormalisedConventions) {
   Description d;
   d.version = 3;
   d.width = d.height = 0;
-  // From the image's centre: c_n = (c_px + 0.5) / S - 0.5.
+  // Relative to the image centre: c_n = (c_px + 0.5) / S - 0.5.
   d.k = {500 / 640.0, 0, 320.5 / 640 - 0.5, 0, 510 / 640.0, 240.5 / 640 - 0.5, 0, 0, 1};
   EXPECT_NEAR(read(d).images[0].camera.lens.cx, 320, 1e-9);
   EXPECT_NEAR(read(d).images[0].camera.lens.cy, 240, 1e-9);
   EXPECT_NEAR(read(d).images[0].camera.lens.fx, 500, 1e-9);
-  // From its corner: c_n = c_px / S.
+  // Relative to the image corner: c_n = c_px / S.
   d.k[2] = 310 / 640.0;
   d.k[5] = 230 / 640.0;
   EXPECT_NEAR(read(d).images[0].camera.lens.cx, 310, 1e-9);
   EXPECT_NEAR(read(d).images[0].camera.lens.cy, 230, 1e-9);
-  // Both zero: the image centre.
+  // Both are zero: the image centre.
   d.k[2] = d.k[5] = 0;
   EXPECT_EQ(read(d).images[0].camera.lens.cx, 319.5);
   EXPECT_EQ(read(d).images[0].camera.lens.cy, 239.5);
-  // Nothing to take the resolution from.
+  // There is no file from which to read the resolution.
   fs::remove(folder_ / "images/b.png");
   EXPECT_THAT(error_of([&] { read(d); }), HasSubstr("b.png"));
 }
@@ -259,7 +259,7 @@ TEST_F(MvsTest, WritesNormalisedIntrinsicsThatAreReadBack) {
       EXPECT_NEAR(again.lens.cy, cy, 1e-9);
     }
   Description d;
-  d.k[2] = 500;  // would be read in the other convention
+  d.k[2] = 500;  // would be read with the other convention
   const Scene scene = read(d);
   EXPECT_THAT(error_of([&] { write_mvs(copy, scene, folder_, MvsIntrinsics::normalised); }),
               HasSubstr("(500, 240)"));
@@ -270,7 +270,7 @@ TEST_F(MvsTest, ComposesCameraOnPlatform) {
   d.camera_r = {1, 0, 0, 0, 0, 1, 0, -1, 0};
   d.camera_c = {0.1, 0.2, 0.3};
   const Pose pose = read(d).images[0].pose;
-  // Independently: a point goes through the platform's frame into the camera's.
+  // Independent check: a point is transformed to the platform's frame, then to the camera's.
   const Eigen::Vector3d x(4, -5, 6);
   Eigen::Matrix3d r_pose, r_cam;
   r_pose << 0, 1, 0, -1, 0, 0, 0, 0, 1;
@@ -287,9 +287,9 @@ TEST_F(MvsTest, ReadsTheRegionAsOpenMvsUsesIt) {
   d.box_max = {11, 22, 33};
   const auto region = read(d).region;
   ASSERT_TRUE(region);
-  EXPECT_EQ(region->centre, Eigen::Vector3d(10, 20, 30));  // a world point
+  EXPECT_EQ(region->centre, Eigen::Vector3d(10, 20, 30));  // a point in the world
   EXPECT_EQ(region->half_extent, Eigen::Vector3d(1, 2, 3));
-  EXPECT_TRUE(region->contains({11.9, 20, 30}));  // box axis y lies along world -x
+  EXPECT_TRUE(region->contains({11.9, 20, 30}));  // the y axis of the box is the world's -x axis
   EXPECT_FALSE(region->contains({10, 21.9, 30}));
   EXPECT_THAT(error([](Description& e) {
                 e.box_max = {1, 1, 1};
@@ -306,7 +306,7 @@ TEST_F(MvsTest, MakesRoundedRotationsOrthonormal) {
         std::round(r(static_cast<int>(i / 3), static_cast<int>(i % 3)) * 1e5f) * 1e-5f);
   const Eigen::Matrix3d read_r = read(d).images[0].pose.rotation;
   EXPECT_LT((read_r * read_r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-  EXPECT_LT((read_r - r.cast<double>()).norm(), 3e-5);  // rounded to 5 digits above
+  EXPECT_LT((read_r - r.cast<double>()).norm(), 3e-5);  // the values above have 5 digits
 }
 
 TEST_F(MvsTest, NamesWhatIsWrong) {
@@ -402,7 +402,7 @@ TEST_F(MvsTest, KeepsEverythingTheSceneHolds) {
   EXPECT_EQ(again.point_colors, scene.point_colors);
   ASSERT_TRUE(again.region);
   EXPECT_EQ(again.region->half_extent, scene.region->half_extent);
-  // A second copy is the same file: nothing depends on more than the scene.
+  // A second copy is identical: the bytes depend only on the scene.
   write_mvs(folder_ / "third.mvs", again, folder_);
   EXPECT_EQ(read_file(folder_ / "third.mvs"), read_file(copy));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs against pixels that the test stores itself, and against OpenCV where OpenCV is right.
+// Compares photographs with pixels that the test stores itself, and with OpenCV where OpenCV is
+// right.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tiffio.h>
@@ -51,7 +52,7 @@ struct TiffKind {
   bool separate = false, tiled = false, alpha = false;
 };
 
-// One plane or all of them from (x, y) on, as a TIFF's rows hold it.
+// One plane or all planes of `area`, in the layout of a TIFF's rows.
 std::vector<std::uint8_t> packed(const cv::Mat& samples, cv::Rect area, int plane, unsigned bits) {
   const int channels = samples.channels();
   std::vector<std::uint8_t> bytes;
@@ -76,7 +77,7 @@ std::vector<std::uint8_t> packed(const cv::Mat& samples, cv::Rect area, int plan
   return bytes;
 }
 
-// `samples` in the file's order: R G B A, or grey.
+// `samples` are in the file's order: R G B A, or grey.
 void write_tiff(const fs::path& path, const cv::Mat& samples, const TiffKind& kind) {
   TIFF* file = TIFFOpen(path.c_str(), "w");
   const int channels = samples.channels();
@@ -117,7 +118,7 @@ void write_tiff(const fs::path& path, const cv::Mat& samples, const TiffKind& ki
   TIFFClose(file);
 }
 
-// B G R of samples in a TIFF's order, and where alpha is not 0.
+// The expected photograph for samples in a TIFF's order: B G R, opaque where alpha is not 0.
 Photograph expected_of(const cv::Mat& samples, bool alpha) {
   Photograph expected;
   const int colors = samples.channels() > 2 ? 3 : 1;
@@ -145,7 +146,7 @@ TEST_F(PhotographTest, TiffPixelsAreThoseStored) {
     const cv::Size size(static_cast<int>(1 + random_() % 40), static_cast<int>(1 + random_() % 40));
     cv::Mat samples = random_pixels(size, CV_MAKETYPE(kind.bits == 8 ? CV_8U : CV_16U, channels),
                                     kind.bits, random_);
-    if (kind.alpha) {  // a quarter of the pixels is transparent
+    if (kind.alpha) {  // a quarter of the pixels is transparent here
       cv::Mat alpha;
       cv::extractChannel(samples, alpha, channels - 1);
       alpha.setTo(0, random_pixels(size, CV_8U, 8, random_) < 64);
@@ -246,7 +247,7 @@ TEST_F(PhotographTest, PalettesAreColorsInPhotographsAndLabelsInMasks) {
   const auto chunk = [&](const std::string& type, const std::string& data) {
     return number(static_cast<std::uint32_t>(data.size())) + type + data + number(crc(type + data));
   };
-  // One row: filter 0, then the bits 10. Stored without compression.
+  // One row with filter 0 and the bits 10, stored without compression.
   const std::string row = "\x78\x01\x01\x02\0\xFD\xFF\0\x80\0\x82\0\x81"s;
   const fs::path path = folder_ / "a.png";
   test::put(path, "\x89PNG\r\n\x1A\n"s + chunk("IHDR", number(2) + number(1) + "\x01\x03\0\0\0"s) +
@@ -271,7 +272,7 @@ TEST_F(PhotographTest, LabelsMayBeStoredAsGreyColors) {
   EXPECT_TRUE(equal(read_label_image(folder_ / "a.png"), wide));
 }
 
-// Entropy-coded data cut or overwritten before a correct end marker.
+// The entropy-coded data is truncated or overwritten, but the end marker is correct.
 TEST_F(PhotographTest, DamagedJpegIsRefused) {
   cv::Mat pixels = random_pixels({64, 48}, CV_8UC3, 8, random_);
   write_jpeg(folder_ / "a.jpg", pixels, 90);
@@ -284,7 +285,7 @@ TEST_F(PhotographTest, DamagedJpegIsRefused) {
     EXPECT_THAT(error_of([&] { read_photograph(path); }),
                 HasSubstr("b.jpg: cannot be decoded: Corrupt JPEG data"));
   }
-  // As some cameras write it.
+  // Some cameras write such padding.
   test::put(path, whole.substr(0, whole.size() - 2) + std::string(20, '\0') + "\xFF\xD9");
   EXPECT_TRUE(equal(read_photograph(path).pixels, read_photograph(folder_ / "a.jpg").pixels));
 }

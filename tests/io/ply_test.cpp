@@ -164,7 +164,7 @@ TEST_F(PlyTest, WritesErrorsBehindEverythingElse) {
               HasSubstr("2 confidences for 3 points"));
 }
 
-// The line that other programs look for has no padding, and the header no odd bytes.
+// Other programs search for the element line, so it has no padding.
 TEST_F(PlyTest, PutsTheNumberOfPointsIntoAPlainLine) {
   std::size_t length = 0;
   for (const int portions : {0, 1, 4, 40}) {
@@ -242,7 +242,7 @@ RC_GTEST_PROP(Ply, DoublesHoldWorldCoordinates, ()) {
   RC_ASSERT(of_mesh == in_frame);
   RC_ASSERT(!place.is_float);
   RC_ASSERT(place.first_vertex == kFar.origin + cloud.positions[0].cast<double>());
-  // What a double at this place can hold.
+  // The precision of a double at this distance.
   for (std::size_t i = 0; i < cloud.size(); ++i)
     RC_ASSERT((in_frame[i] - cloud.positions[i]).cwiseAbs().maxCoeff() <= 1e-9f);
 }
@@ -262,8 +262,8 @@ TEST_F(PlyTest, NamesAWrongOffset) {
   EXPECT_EQ(cloud(with_comment("comment\ncomment my geo_offset 1")).size(), 1u);
 }
 
-// Everything a reader may meet, in ascii: old and new type names, other order, elements and
-// properties nobody asked for, lists among them, comments, tabs and CRLF.
+// Everything that an ascii reader may meet: old and new type names, another order, unknown
+// elements, properties and lists, comments, tabs and CRLF.
 constexpr std::string_view kForeign =
     "ply\r\nformat ascii 1.0\r\ncomment made elsewhere\r\nobj_info 3\r\n"
     "element camera 1\r\nproperty list uchar int junk\r\nproperty double d\r\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values that no port has under water, told from those that ports have.
+// Distinguishes realistic port values from values that no port has under water.
 #include "io/port_values.h"
 
 #include <gmock/gmock.h>
@@ -100,7 +100,7 @@ TEST(PortValues, CamerasOfOnePortAreNamedOnce) {
   EXPECT_EQ(lines(log.text()), 1u);
 }
 
-// Three images on one line behind `port`, that look at points `distance` before them.
+// Warnings for three images on a line behind `port`, which see points at `distance`.
 std::string said_in_scene(const HousingPort& port, double distance, double outliers = 0) {
   Scene scene;
   const Housing housing = housing_with(port);
@@ -150,14 +150,15 @@ TEST(PortsInScene, SceneAboveTheWater) {
   surface.normal = {0, 0, 1};
   surface.point = {0, 0, 2};
   EXPECT_EQ(said_in_scene(surface, 3), "");
-  // Without the point's numbers, which are not those of the file where the scene has an offset.
+  // The warning does not print the point, because its numbers differ from the file's if the scene
+  // has an offset.
   EXPECT_THAT(
       said_in_scene(surface, 1),
       AllOf(HasSubstr("port.json: housing.ports.main.point_m or normal is wrong: 300 of 300"),
             Not(HasSubstr("[0, 0, 2]"))));
 }
 
-// Reading warns, each port once; not of a file that is only compared.
+// Reading a file warns once for each port, but not if the file is only compared.
 TEST(PortValues, HousingFilesAreChecked) {
   FlatPort<double> wrong = flat();
   wrong.n_water = 1;

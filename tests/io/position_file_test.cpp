@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using test::error_of;
 using testing::HasSubstr;
 
-// What a name may hold: no line ends, no blanks around it.
+// A random name without line ends and without blanks at its ends.
 std::string any_name() {
   const auto name = *rc::gen::nonEmpty(
       rc::gen::container<std::string>(rc::gen::element('a', ' ', '#', '"', ',', '7', '\t', '.')));
@@ -42,7 +42,7 @@ std::vector<NamedPosition> positions_in(const std::string& text,
   return positions;
 }
 
-// However it is written: names that the model has as they stand, all names in quotes.
+// Names that the model has need no quotes; every name can be quoted.
 RC_GTEST_PROP(Positions, KeepAnyName, (double x, double y, double z)) {
   RC_PRE(std::isfinite(x) && std::isfinite(y) && std::isfinite(z));
   const std::string name = any_name();
@@ -75,7 +75,7 @@ TEST(Lists, NameAnOpenQuote) {
   EXPECT_EQ(split_list("", ""), std::vector<std::string>{""});
 }
 
-// A '#' is part of a name only where the model says so.
+// A '#' belongs to a name only if the model has a name with it.
 TEST(Positions, CommentsAreNoNames) {
   const std::string text =
       "# name x y z\n#1.jpg 1 2 3\na.jpg 1 2 3 # 4 5 6\na.jpg 1 2 3 #b 4 5 6\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that other programs wrote, against values decoded from them by an independent reader.
+// Compares files of other programs with values decoded by an independent reader.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST(RealFiles, SceneOfVersion6) {
   EXPECT_EQ(read_image_size(image.path), cv::Size(640, 479));
 }
 
-// Ties the conventions together: nearly every stored observation must fall inside the image.
+// Checks all conventions together: nearly every stored observation must project into the image.
 TEST(RealFiles, SparsePointsProjectIntoTheirImages) {
   const fs::path folder = kData / "openmvs-files";
   if (!fs::exists(folder / "scene_v6.mvs")) GTEST_SKIP() << "no scene_v6.mvs here";
@@ -93,7 +93,8 @@ TEST(RealFiles, SceneOfVersion7) {
   EXPECT_FLOAT_EQ(best.area, 0.5234375f);
   EXPECT_FLOAT_EQ(best.score, 1035.9496f);
   EXPECT_EQ(image.neighbours[1].points, 1705u);
-  // That file has empty names and identity transform, as we write them: byte for byte the same.
+  // That file has empty names and an identity transform, as our files do, so the bytes are the
+  // same.
   const fs::path copy = test::empty_folder() / "copy.mvs";
   write_mvs(copy, scene, folder);
   EXPECT_TRUE(read_file(copy) == read_file(folder / "scene_dense_v7.mvs"));
@@ -109,8 +110,8 @@ TEST(RealFiles, ColmapModelOfTheFountain) {
   ASSERT_EQ(model.images.size(), 11u);
   EXPECT_EQ(model.images[0].name, "0010.jpg");
   EXPECT_EQ(model.points.size(), 14792u);
-  // Mean reprojection error over all tracks: below a pixel only if poses, centres and pixel
-  // conventions all fit together.
+  // The mean reprojection error over all tracks is below a pixel only if the conventions of poses,
+  // centres and pixels all fit together.
   std::map<std::uint32_t, const ColmapImage*> by_id;
   for (const ColmapImage& image : model.images) by_id[image.id] = &image;
   const auto& k = model.cameras[0].params;

@@ -23,7 +23,7 @@ ColmapModel two_cameras() {
   return model;
 }
 
-// Names of ports say nothing: what counts is what each image looks through.
+// Names of ports do not matter, only the ports themselves.
 TEST(OtherPort, IsFoundByWhatImagesLookThrough) {
   const ColmapModel model = two_cameras();
   Housing by_camera;
@@ -38,12 +38,12 @@ TEST(OtherPort, IsFoundByWhatImagesLookThrough) {
   EXPECT_EQ(image_with_other_port(by_image, by_camera, model), "left/b.jpg");
   by_image.images["b.jpg"] = "none";
   EXPECT_EQ(image_with_other_port(by_image, by_camera, model), "left/b.jpg");
-  // A camera without a port says nothing.
+  // A camera without a port makes no statement.
   by_camera.cameras.erase(1);
   EXPECT_EQ(image_with_other_port(by_image, by_camera, model), "");
 }
 
-// Every number of every kind counts, and one kind is not another.
+// Every number of every kind of port counts, and so does the kind.
 TEST(SamePort, ComparesEveryNumber) {
   const refractive::FlatPort<double> flat_port = flat(0.02);
   const refractive::DomePort<double> dome{{0, 0, 0.002}, 0.05, 0.007, 1, 1.52, 1.333};

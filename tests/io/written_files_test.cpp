@@ -44,10 +44,10 @@ std::set<std::string> names(const std::vector<fs::path>& files) {
 std::string random_name(std::mt19937& random) {
   std::string name(1, static_cast<char>('a' + random() % 3));
   while (random() % 2 == 0) name += std::string("/") + static_cast<char>('a' + random() % 3);
-  return name + ".x";  // no file has the name of a folder
+  return name + ".x";  // so that no file has the name of a folder
 }
 
-// Others change, remove and add files in any order.
+// Other programs change, remove and add files in any order.
 TEST_F(WrittenFilesTest, AreThoseThatNobodyChanged) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     fs::remove_all(folder_);

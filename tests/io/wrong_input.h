@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every reader must withstand: files cut anywhere, files with a byte changed, garbage, nothing
-// at all. The sanitized build turns a read out of bounds or an absurd allocation into a failure.
+// Wrong input that every reader must survive: truncated files, files with a changed byte, random
+// bytes, empty files. The sanitized build turns a read out of bounds or an absurd allocation into a
+// failure.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@
 namespace axial::test {
 
 inline void put(const std::filesystem::path& path, std::string_view bytes) {
-  std::filesystem::remove(path);  // some file systems wait for the disk when a file is rewritten
+  std::filesystem::remove(path);  // rewriting a file is slow on some file systems
   std::ofstream out(path, std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   ASSERT_TRUE(out.flush()) << path;
@@ -38,8 +39,8 @@ bool fails_naming(const std::filesystem::path& file, Run run) {
   return false;
 }
 
-// Every proper prefix of the valid file `bytes`, the empty one included, must be refused, save
-// those of a length in [first_valid, bytes.size()).
+// Every proper prefix of the valid file `bytes`, including the empty one, must be refused, except
+// prefixes with a length in [first_valid, bytes.size()).
 template <class Read>
 void expect_prefixes_refused(const std::filesystem::path& file, std::string_view bytes, Read read,
                              std::size_t first_valid = std::string_view::npos) {
@@ -51,8 +52,8 @@ void expect_prefixes_refused(const std::filesystem::path& file, std::string_view
   EXPECT_FALSE(fails_naming(file, [&] { read(file); })) << "the whole file";
 }
 
-// Files with one byte changed, and files of random bytes behind the first `kept` bytes of the valid
-// one: read or refused, nothing else. At least some must be refused.
+// Files with one changed byte, and files with random bytes after the first `kept` bytes of the
+// valid file, must be read or refused without a crash. At least some must be refused.
 template <class Read>
 void expect_damage_survived(const std::filesystem::path& file, const std::string& bytes, Read read,
                             std::size_t kept = 4, int rounds = 400) {

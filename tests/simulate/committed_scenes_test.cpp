@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scenes in data/synthetic are what today's program makes of their seeds.
+// The current program must reproduce the scenes in data/synthetic from their seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As the scenes' READMEs say.
+// The seed that the READMEs of the scenes name.
 constexpr std::uint32_t kSeed = 1;
 constexpr int kSamples = 3, kJpegQuality = 93;
 constexpr double kNoise = 1.2;
@@ -46,13 +46,13 @@ void expect_same_model(const Preset& preset, const io::ColmapModel& model) {
   EXPECT_NEAR(model.cameras[0].params[2], preset.lens.cx + 0.5, 1e-9);
   for (std::size_t i = 0; i < preset.views.size(); ++i) {
     const View& view = preset.views[i];
-    // Quaternions and translations are stored: a few roundings.
+    // Poses are stored as quaternions and translations: a few roundings.
     EXPECT_LT((model.images[i].pose.rotation - view.rotation).norm(), 1e-12);
     EXPECT_LT((model.images[i].pose.centre - view.centre).norm(), 1e-12);
   }
 }
 
-// The committed points are the committed truth: distances along rays must reproduce them.
+// The committed points are ground truth, so the distances along the rays must agree with them.
 void expect_same_distances(const Remade& remade, const io::ColmapModel& model, std::size_t image) {
   std::size_t off = 0, count = 0;
   for (const io::ColmapPoint2D& observation : model.images[image].points) {
@@ -69,7 +69,8 @@ void expect_same_distances(const Remade& remade, const io::ColmapModel& model, s
     if (std::abs(hit->distance - distance) > 1e-5 * distance) ++off;
   }
   EXPECT_GT(count, 200u);
-  // A point may be seen past an edge up to a thousandth of the distance in front of it.
+  // A point counts as visible if the surface in front of it is nearer by at most a thousandth of
+  // the distance.
   EXPECT_LE(1000 * off, 5 * count) << off << " of " << count;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Glowing dots on a plane, rendered through the port by ray tracing, must appear where the closed
-// form projects their centres.
+// Bright dots on a plane are rendered by tracing rays through the port. They must appear where the
+// closed form projects their centres.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPlane = 0.8;     // depth of the dots' plane [m]
-constexpr double kRadius = 0.006;  // of a dot: about three pixels
-constexpr int kWindow = 9;         // half the width of the window a centroid is taken over
+constexpr double kRadius = 0.006;  // radius of a dot: about three pixels
+constexpr int kWindow = 9;         // half the width of the window of a centroid
 
 TriangleMesh plane_mesh() {
   const auto z = static_cast<float>(kPlane);
@@ -25,7 +25,7 @@ TriangleMesh plane_mesh() {
   return {{{-a, -a, z}, {a, -a, z}, {a, a, z}, {-a, a, z}}, {{0, 2, 1}, {0, 3, 2}}};
 }
 
-// Soft edges: the centroid then hardly depends on how a pixel is sampled.
+// Soft edges, so that the centroid hardly depends on the sampling of pixels.
 Shader glow(const std::vector<Vector3d>& dots) {
   return [&dots](const SurfacePoint& point) -> Eigen::Vector3f {
     for (const Vector3d& dot : dots) {
@@ -51,7 +51,7 @@ Vector2d centroid(const cv::Mat3b& image, const Vector2d& near) {
   return weight > 0 ? Vector2d(sum / weight) : Vector2d(-1, -1);
 }
 
-// Pixels spread over the image, the corners among them, far enough in for a whole dot.
+// Pixels all over the image, also near the corners, far enough inside for a complete dot.
 std::vector<Vector2d> target_pixels(const Lens& lens) {
   std::vector<Vector2d> pixels;
   const double inset = kWindow + 2.3;
@@ -81,7 +81,8 @@ void compare(double tilt_degrees) {
     const auto projected = camera.project(dot);
     ASSERT_TRUE(projected.visible);
     const Vector2d seen = centroid(image, projected.pixel);
-    // The acceptance bound. What is left is the dot's size: projection bends over it.
+    // The required accuracy. The remaining error comes from the size of a dot, over which the
+    // projection is not linear.
     EXPECT_LT((seen - projected.pixel).norm(), 0.05)
         << "tilt " << tilt_degrees << ": projected " << projected.pixel.transpose() << ", seen "
         << seen.transpose();

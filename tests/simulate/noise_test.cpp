@@ -52,7 +52,7 @@ TEST(Noise, IsTheSameBytesOnEveryProcessor) {
       cell.hash[k] = static_cast<std::uint32_t>(0x1p32 * uniform(2, 6 * i + k));
       cell.offset[k] = static_cast<float>(uniform(2, 6 * i + 3 + k));
     }
-    // On a corner, too, where zeros have signs.
+    // Corners are included, where zeros have signs.
     if (i % 10 < 3) cell.offset[i % 10] = i % 20 < 10 ? 0.0f : 1.0f;
     using Bits = std::array<std::uint32_t, 8>;
     ASSERT_EQ(std::bit_cast<Bits>(detail::corners_scalar(cell)),
@@ -69,7 +69,7 @@ TEST(Noise, FieldsOfDifferentSeedsAreUnrelated) {
 }
 
 TEST(Noise, DoesNotRepeat) {
-  // Were the field periodic along an axis with one of these periods, the difference would vanish.
+  // If the field had one of these periods along an axis, the difference would vanish.
   for (const double period : {16.0, 64.0, 256.0, 289.0, 1024.0}) {
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d shift = period * Eigen::Vector3d::Unit(axis);

@@ -35,15 +35,17 @@ Lens any_lens() {
 }
 
 TEST(Optics, FollowsARayWorkedOutByHand) {
-  // tan 0.75 in air: a 3-4-5 triangle. Snell: sin in glass 0.6/1.52, in water 0.6/1.333.
+  // The tangent is 0.75 in air (a 3-4-5 triangle). By Snell's law the sine is 0.6/1.52 in glass and
+  // 0.6/1.333 in water.
   Lens lens = make_lens(1024, 768, 80);
   const auto ray = trace_pixel(lens, &kPaperPort, lens.cx + 0.75 * lens.focal, lens.cy);
   ASSERT_TRUE(ray);
-  // Radius 0.020 * 0.75 + 0.014 * 0.4296248625946536 where the light leaves the glass.
+  // The distance from the axis where the light leaves the glass is 0.020 * 0.75 + 0.014 *
+  // 0.4296248625946536.
   EXPECT_NEAR((ray->start - Vector3d(0.02101474807632515, 0, 0.034)).norm(), 0, 1e-15);
   const Vector3d in_water(0.450112528132033, 0, 0.8929718427915797);
   EXPECT_NEAR((ray->direction - in_water).norm(), 0, 1e-15);
-  // 0.034 - radius / tan in water: behind the camera.
+  // 0.034 - radius / tan(angle in water) is behind the camera.
   EXPECT_NEAR((ray->on_axis - Vector3d(0, 0, -0.007690859824306652)).norm(), 0, 1e-15);
 }
 
@@ -62,7 +64,8 @@ TEST(Optics, LimitOnTheAxisIsTheParaxialCentre) {
   const auto ray = trace_pixel(lens, &kPaperPort, lens.cx, lens.cy);
   ASSERT_TRUE(ray);
   const double paraxial = 0.020 * (1 - 1.333) + 0.014 * (1 - 1.333 / 1.52);
-  // The limit is taken a ten-thousandth off the axis, where the centre has moved by the square.
+  // The limit is computed from a ray 1e-4 off the axis. There the crossing has moved by the square
+  // of that.
   EXPECT_NEAR(ray->on_axis.z(), paraxial, 1e-8);
   EXPECT_NEAR(ray->direction.z(), 1, 1e-15);
 }
@@ -74,9 +77,9 @@ RC_GTEST_PROP(Optics, EveryWaterRayMeetsTheAxis, ()) {
   RC_ASSERT(bool(ray));
   RC_ASSERT(std::abs(ray->direction.norm() - 1) < 1e-14);
   RC_ASSERT(std::abs(ray->start.dot(port.normal) - port.distance - port.thickness) < 1e-14);
-  // The point is on the axis by construction: it must lie on the ray's line too. Within a
-  // thousandth of a radian around the axis the crossing is ill-conditioned, and further in the
-  // limit takes its place.
+  // The point is on the axis by construction and must also be on the ray's line. Within a
+  // thousandth of a radian of the axis the crossing is ill-conditioned, and still nearer to the
+  // axis the limit replaces it.
   const double slant = ray->direction.cross(port.normal).norm();
   const double tolerance = slant > 1e-3 ? 1e-14 : 1e-11;
   RC_ASSERT((ray->on_axis - ray->start).cross(ray->direction).norm() < tolerance);
@@ -132,7 +135,7 @@ View any_view_of_water(double level) {
   return view;
 }
 
-// Bent lenses are written down twice and solved in two ways.
+// The distortion is implemented twice, with two methods of inversion.
 RC_GTEST_PROP(Optics, AgreesWithTheClosedFormOfDistortedLenses, ()) {
   Lens lens = make_lens(1024, 768, between(50, 90));
   refractive::LensDistortion<double> distortion;
@@ -171,11 +174,11 @@ TEST(Optics, RefusesLensesThatDoNotFillTheImage) {
 
 TEST(Optics, RefusesLensesThatFoldBackBeforeTheCorners) {
   Lens lens = make_lens(640, 480, 80);
-  // a (1 - 0.9 a^2 + 0.35 a^4) rises to a = 0.79, falls to 0.96, and rises again to the corners:
-  // they have a direction, and so has every pixel before them.
+  // a (1 - 0.9 a^2 + 0.35 a^4) rises to a = 0.79, falls to 0.96, and rises again up to the corners.
+  // The corners have a direction, and so has every pixel before them.
   lens.bend = Bend{true, {-0.9, 0.35, 0, 0}};
   EXPECT_THROW(check_lens(lens), Error);
-  // Without a fall: 1 - 2.7 a^2 + 2 a^4 has no root.
+  // This polynomial does not fall: 1 - 2.7 a^2 + 2 a^4 has no root.
   lens.bend = Bend{true, {-0.9, 0.4, 0, 0}};
   EXPECT_NO_THROW(check_lens(lens));
 }
@@ -204,7 +207,7 @@ TEST(Optics, RefusesViewsThatAreNotAboveTheWater) {
   EXPECT_NO_THROW(check_port(surface_port(-20, view, 1, 1.333), lens));
   EXPECT_THROW(check_port(surface_port(2, view, 1, 1.333), lens), Error);
   EXPECT_THROW(check_port(surface_port(2.5, view, 1, 1.333), lens), Error);
-  view.rotation.setIdentity();  // up
+  view.rotation.setIdentity();  // looks up
   EXPECT_THROW(check_port(surface_port(0, view, 1, 1.333), lens), Error);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the presets promise of thickness, overlap and contrast, by rays and pixels.
+// Checks the thickness, overlap and contrast of presets with rays and pixels.
 #include "simulate/presets.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ TEST(Tube, IsClosedRoundAndKnowsItsThickness) {
   const TriangleMesh mesh = tube_mesh(tube, 0.001);
   ASSERT_EQ(mesh.thickness.size(), mesh.vertices.size());
   for (const float thickness : mesh.thickness) EXPECT_FLOAT_EQ(thickness, 0.008f);
-  // Divergence theorem: the signed volume is positive if all faces look outward.
+  // By the divergence theorem the signed volume is positive if all faces point outwards.
   double volume = 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& [a, b, c] : mesh.faces) {
@@ -36,7 +36,8 @@ TEST(Tube, IsClosedRoundAndKnowsItsThickness) {
   const double length = std::sqrt(0.0125) + std::sqrt(0.0125);
   const double expected = std::numbers::pi * 0.004 * 0.004 * length;
   EXPECT_NEAR(volume, expected, 0.05 * expected) << "the bend and the facets";
-  // But for the tips, holes a thousandth of the tube wide, each edge has a face on both sides.
+  // Each edge has a face on both sides, except at the tips, which have holes a thousandth of the
+  // tube wide.
   const auto alone = std::ranges::count_if(edges, [&](const auto& edge) {
     return edges.count({edge.first.second, edge.first.first}) == 0;
   });
@@ -57,9 +58,9 @@ TEST(Thicket, HasStructuresFromOneToSixteenPixels) {
   const Preset preset = small("thicket", 1024, 768, 4);
   const TriangleMesh mesh = terrain_mesh(preset.terrain);
   ASSERT_EQ(mesh.thickness.size(), mesh.vertices.size());
-  // By rays of every eighth pixel: what is thin, how thick, and how many pixels that is there.
+  // Traces every eighth pixel and counts the hits on thin structures by their thickness in pixels.
   const RayScene scene(mesh);
-  std::map<int, int> hits;  // by the logarithm of the thickness in pixels
+  std::map<int, int> hits;  // keyed by the logarithm of the thickness in pixels
   int all = 0, below = 0;
   for (const View& view : preset.views) {
     for (int y = 0; y < preset.lens.height; y += 8)
@@ -75,7 +76,7 @@ TEST(Thicket, HasStructuresFromOneToSixteenPixels) {
         if (!(thickness > 0)) continue;
         const double pixel = hit->distance / (preset.lens.focal * preset.port.n_water);
         ++hits[static_cast<int>(std::lround(std::log2(thickness / pixel)))];
-        // Above ground: behind it the ray goes on for a while.
+        // The structure stands above the ground if the ray continues for a while behind it.
         const Eigen::Vector3d behind =
             ray.start + (hit->distance + 1.2 * thickness) * ray.direction;
         const auto next = scene.first_hit(behind, ray.direction);
@@ -104,7 +105,7 @@ TEST(Thicket, WhatIsNotThinHasNoThickness) {
   }
 }
 
-// Squares of the ground, `cell` metres wide, and how many views have a ray that ends there.
+// Counts, for squares of the ground `cell` metres wide, the views with a ray that ends there.
 std::map<std::pair<int, int>, int> views_of_ground(const Preset& preset, const RayScene& scene,
                                                    double cell) {
   std::map<std::pair<int, int>, int> counts;
@@ -133,7 +134,7 @@ TEST(Transect, MostGroundIsSeenByExactlyTwo) {
     two += views == 2;
     more += views > 2;
   }
-  // Along the strip, 0.35 of a view's length has two of them for each 0.1 that has three.
+  // In each 0.45 of a view's length along the strip, 0.35 is seen by two views and 0.1 by three.
   EXPECT_NEAR(static_cast<double>(two) / (two + more), 0.35 / 0.45, 0.08);
 }
 
@@ -156,8 +157,8 @@ TEST(Transect, EveryViewOverlapsTheOneBeforeBy55Percent) {
   EXPECT_NEAR(overlaps / static_cast<double>(preset.views.size() - 1), 0.55, 0.04);
 }
 
-// Median of the standard deviation in windows of 9 x 9 pixels [grey levels], in the middle of an
-// image as large as the presets' own, without noise.
+// The median of the standard deviations in windows of 9 x 9 pixels [grey levels], in the middle of
+// a noise-free image of the presets' own size.
 double contrast_of(const Preset& preset) {
   const TriangleMesh mesh = terrain_mesh(preset.terrain);
   const RayScene scene(mesh);

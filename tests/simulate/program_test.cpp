@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SimulateUnderwater as its users meet it.
+// Tests the program SimulateUnderwater from the command line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -87,12 +87,13 @@ TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
       const cv::Mat3f normal = io::read_float3_tiff(base.string() + ".normal.tiff");
       EXPECT_GT(*std::min_element(distance.begin(), distance.end()), 0.3f);
       EXPECT_NEAR(cv::norm(normal(40, 40)), 1, 1e-5);
-      // x, y, z in this order: a floor looks up in the world on the whole.
+      // The channels are x, y, z: on average a floor points upwards in the world.
       EXPECT_GT(cv::mean(normal)[2], 0.5);
     }
   }
 
-  // The truth of one medium alone, with other threads: the same bytes, and nothing else.
+  // The truth of one medium only, with another number of threads: identical bytes and no other
+  // files.
   const Outcome again = run(kSmall + kPort + "-o b --max-threads 2 --truth-only --medium water");
   ASSERT_EQ(again.exit_code, 0) << again.output;
   std::size_t files = 0;

@@ -28,17 +28,18 @@ TEST(SparsePoints, LieOnTheSurfaceWhereTheyAreObserved) {
       ASSERT_TRUE(hit);
       const double distance = (point.position - view.centre).norm();
       ++observations;
-      // A surface up to a thousandth in front does not count as occluding.
+      // A surface that is nearer by at most a thousandth does not count as occluding.
       EXPECT_NEAR(hit->distance, distance, 1.01e-3 * distance);
       if (std::abs(hit->distance - distance) > 1e-6 * distance) ++hidden;
     }
   }
-  // Only points right beside an occluding edge may be off by more than rounding.
+  // Only points directly beside an occluding edge may be off by more than rounding.
   EXPECT_LT(100 * hidden, observations);
 }
 
 TEST(SparsePoints, AreNotSeenThroughWhatIsInFront) {
-  // A wall at 2 m, and a small plate at 1 m that hides its middle from the first view alone.
+  // A wall at 2 m, and a small plate at 1 m that hides the middle of the wall from the first view
+  // only.
   const TriangleMesh mesh{{{-9, -9, 2},
                            {9, -9, 2},
                            {9, 9, 2},

@@ -16,7 +16,7 @@
 namespace axial::simulate {
 namespace {
 
-// z-depths and world-upward parts of the normals of all views in one medium.
+// z-depths, and upward components of the normals in the world, of all views in one medium.
 struct Seen {
   std::size_t background = 0;
   std::vector<double> depths;
@@ -61,7 +61,7 @@ TEST(Terrain, ReefIsWhereTheSpecificationPutsIt) {
     EXPECT_EQ(seen.background, 0u);
     EXPECT_GT(seen.quantile(0.001), 2.0);
     EXPECT_LT(seen.quantile(0.999), 3.5);
-    // Relief of 30 to 50 % of the viewing distance.
+    // The relief is 30 to 50 % of the viewing distance.
     const double relief = (seen.quantile(0.999) - seen.quantile(0.001)) / seen.quantile(0.5);
     EXPECT_GT(relief, 0.3);
     EXPECT_LT(relief, 0.5);
@@ -75,10 +75,10 @@ TEST(Terrain, CloseupIsWhereTheSpecificationPutsIt) {
   EXPECT_GT(seen.quantile(0.02), 0.45);
   EXPECT_GT(seen.quantile(0.5), 0.70);
   EXPECT_LT(seen.quantile(0.5), 0.80);
-  // The views from the side look across the object to the far wall of its hollow.
+  // Views from the side see, beyond the object, the far wall of its hollow.
   EXPECT_LT(seen.quantile(0.8), 0.90);
   EXPECT_LT(seen.quantile(0.999), 1.1);
-  // Overhangs that are seen, not just present: more than a view's worth of pixels in a thousand.
+  // Overhangs must be visible: more than one pixel in a thousand.
   EXPECT_GT(1000 * seen.facing_down, seen.depths.size());
 }
 
@@ -92,7 +92,8 @@ TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
       const Truth truth = render_truth(scene, preset.lens, nullptr, preset.views[i]);
       for (const float distance : truth.distance) ASSERT_GT(distance, 1.5f);  // no background
     }
-    // Ten a row, 0.9 m apart but for 0.12 m of chance; the next row turns back above the last view.
+    // There are ten views in a row, 0.9 m apart up to a random 0.12 m. The next row starts above
+    // the last view and runs back.
     for (const std::size_t i : {0u, 8u, 9u, 10u}) {
       const double step = (preset.views[i + 1].centre - preset.views[i].centre).norm();
       EXPECT_NEAR(step, 0.9, 0.3) << i;
@@ -112,7 +113,7 @@ TEST(Terrain, OutcropFillsTheViewsAtAFewMetres) {
   }
 }
 
-// A slope of one half cut into layers of 10 cm that dip by a quarter, without relief of its own.
+// A slope of 0.5 without relief of its own, in layers of 10 cm that dip by 0.25.
 TEST(Terrain, LayersMakeLedges) {
   Floor floor{
       .seed = 3, .wavelength = 1, .height = 0, .bowl_from = 0, .bowl_to = 1, .bowl_height = 0};
@@ -122,7 +123,7 @@ TEST(Terrain, LayersMakeLedges) {
   double last = -1, steepest = 0, flattest = 1;
   for (int i = 0; i <= 4000; ++i) {
     const double x = 1e-3 * i;
-    // Above the bedding, which rises by a quarter downwards along x.
+    // The height above the bedding, which falls by 0.25 along x.
     const double height = floor.at(x, 0.7) + 0.25 * x;
     EXPECT_LE(std::abs(height - 0.25 * x), 0.1) << "a ledge is no higher than a layer";
     if (i > 0) {
@@ -194,7 +195,7 @@ TEST(TriangleMesh, SphereIsClosedAndFacesOutwards) {
   for (const auto& [a, b, c] : sphere.faces) {
     ++directed[{a, b}], ++directed[{b, c}], ++directed[{c, a}];
   }
-  // Closed and consistently turned: every edge once each way.
+  // The mesh is closed and consistently oriented: each edge occurs once in each direction.
   for (const auto& [edge, count] : directed) {
     EXPECT_EQ(count, 1);
     EXPECT_EQ(directed.count({edge.second, edge.first}), 1u);

@@ -32,10 +32,10 @@ TriangleMesh random_triangles(std::size_t count) {
 struct Brute {
   double distance = 1e30;
   Vector3d normal = Vector3d::Zero();
-  bool near_an_edge = false;  // of any triangle: float and double may then disagree
+  bool near_an_edge = false;  // near an edge of a triangle float and double may disagree
 };
 
-// Every triangle as a linear system, in double.
+// Solves a linear system for every triangle, in double.
 Brute brute_force(const TriangleMesh& mesh, const Vector3d& origin, const Vector3d& direction) {
   Brute nearest;
   for (const auto& [i, j, k] : mesh.faces) {
@@ -87,7 +87,7 @@ void compare_with_brute_force(const Port* port) {
       EXPECT_NEAR((normal - expected.normal).norm(), 0, 1e-6);
     }
   }
-  EXPECT_GT(hits, 500);  // the comparison is about something
+  EXPECT_GT(hits, 500);  // enough hits to compare
   EXPECT_GT(compared, 2000);
 }
 
@@ -106,7 +106,7 @@ TEST(Truth, AgreesWithBruteForceBehindADome) {
   compare_with_brute_force(&port);
 }
 
-// Everything a scene is made of, small.
+// A small scene with all its parts.
 struct SmallScene {
   TriangleMesh mesh;
   cv::Mat3b image;
