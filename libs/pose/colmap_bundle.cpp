@@ -92,9 +92,9 @@ bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& 
                        pinhole.fy * imaged->direction.y() + pinhole.cy};
   observation.to_photograph.col(0) = imaged->derivative.col(0) / pinhole.fx;
   observation.to_photograph.col(1) = imaged->derivative.col(1) / pinhole.fy;
-  // The pixel of the photograph stays the same, and its direction d(f) changes with the focal
-  // length f: d(direction)/d(log f) = -(d(pixel)/d(direction))^-1 (pixel - principal point), plus
-  // the direction for the focal length of the pinhole, which changes by the same factor.
+  // If the focal length f changes, the pixel of the photograph stays the same and its direction d
+  // changes: d(d)/d(log f) = -(d(pixel)/d(d))^-1 (pixel - principal point). The focal length of the
+  // pinhole has the same factor, which adds d.
   const refractive::PinholeLens<double> bare = io::undistorted_lens(lens);
   const Eigen::Vector2d from_centre(point.x - 0.5 - bare.cx, point.y - 0.5 - bare.cy);
   const Eigen::Vector2d by_focal = imaged->direction - imaged->derivative.inverse() * from_centre;
