@@ -140,8 +140,7 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration,
                                               const Limits& limits) {
   const pose::ColmapBundle bundle = believable(calibration);
   const std::vector<Eigen::Vector3d> corners = corners_of(bundle.bundle);
-  constexpr double kNoLess =
-      0.1;  // [px]: lower bound, since few photographs may fit better than corners are detected
+  constexpr double kNoLess = 0.1;  // [px]: few photographs may fit better than corners are detected
   const double noise = std::max(kNoLess, calibration.uncertainty.pixel_sigma);
   const Information known = total_information(bundle.bundle, calibration.adjust, noise);
   const auto boards = placed_boards(bundle, corners, 0.8 * nearest(bundle.bundle));

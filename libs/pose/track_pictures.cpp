@@ -19,9 +19,8 @@ namespace axial::pose {
 namespace {
 
 constexpr std::size_t kPairs = 3, kLeastPoints = 30, kPointsOfPair = 150;
-constexpr int kHalf = 6;  // patches have 13 x 13 samples
-constexpr double kPicture =
-    1200;  // samples are pixels of the photograph reduced to about this width [px]
+constexpr int kHalf = 6;           // patches have 13 x 13 samples
+constexpr double kPicture = 1200;  // samples: pixels of the photograph reduced to this width [px]
 
 using Cameras = std::vector<CameraVariant<double>>;
 
