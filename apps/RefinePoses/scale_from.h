@@ -7,8 +7,8 @@
 #include "base/unused_input.h"
 #include "pose/adjust.h"
 
-// Adds the known lengths of --scale-from to `adjust`, with the standard deviation `sigma` [m].
-// `scale_from` is empty or
+// Adds the known lengths that --scale-from names to `adjust`, each with the standard deviation
+// `sigma` [m]. An empty `scale_from` adds nothing.
 //
 //     images:NAME,NAME,METRES   the distance of two camera centres
 //     points:ID,ID,METRES       the distance of two points of the model

@@ -26,8 +26,7 @@ std::vector<PlacedBoard> placed_boards(const pose::ColmapBundle& bundle,
                                        std::span<const Eigen::Vector3d> corners,
                                        double least_distance);
 
-// "the board at the image's left edge, 0.30 m away, turned by 35 degrees so that its upper side is
-// nearer".
+// The placement in words: "the board at the image's left edge, 0.30 m away, facing the camera".
 std::string words_for(const PlacedBoard& placed);
 
 }  // namespace axial::calibrate

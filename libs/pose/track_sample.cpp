@@ -64,8 +64,8 @@ class SampledImages {
 
 void add_track(const io::ColmapPoint3D& from, std::size_t limit, SampledImages& images,
                std::vector<io::ColmapPoint3D>& points) {
-  std::vector<std::pair<std::size_t, io::ColmapPoint2D>>
-      seen;  // with the index of the image in the sample
+  // With the index of the image in the sample.
+  std::vector<std::pair<std::size_t, io::ColmapPoint2D>> seen;
   for (const io::ColmapTrackElement& element : from.track) {
     if (seen.size() == limit) break;
     const std::size_t place = images.take(element.image);
