@@ -11,5 +11,7 @@
 std::vector<std::string> report_lines(const axial::calibrate::Calibration& calibration,
                                       const std::string& port_name);
 
+// The same numbers as JSON, with the photographs that are left out, what the photographs lack, and
+// the next photograph to take.
 std::string report_json(const axial::calibrate::Calibration& calibration,
                         const axial::calibrate::Limits& limits);

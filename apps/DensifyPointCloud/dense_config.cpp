@@ -29,8 +29,8 @@ struct Setting {
   double low, high;
   std::function<double()> get;
   std::function<void(double)> set;
-  bool of_maps =
-      false;  // depth maps depend on it, and nothing else that they are made from shows it
+  // Depth maps depend on it, and it is in no other part of their fingerprint.
+  bool of_maps = false;
 };
 
 template <class T>

@@ -30,7 +30,8 @@ std::uint64_t cap_of(const Options& options) {
                                 : axial::available_memory() / 10 * 7;
 }
 
-// What a project holds for each image besides the scene: view, chosen neighbours, fingerprint.
+// The memory that a project holds for each image besides the scene: view, chosen neighbours,
+// fingerprint.
 std::uint64_t kept_of_images(std::uint64_t images) {
   constexpr std::uint64_t kChosen = 1024;
   return images * (sizeof(View) + kChosen);

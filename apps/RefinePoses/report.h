@@ -24,8 +24,8 @@ struct Results {
   const axial::pose::Bundle& bundle;
   std::vector<std::string> ports;  // one for each camera
   const axial::pose::AdjustOptions& options;
-  // What was given but not used, one entry for each line. `scale_lost`: the scale is among it. Then
-  // the scale counts as not known, even where refraction determines it.
+  // Input that was given but not used, one entry for each line. `scale_lost`: the known scale was
+  // not used. Then the scale counts as not known, even where refraction determines it.
   std::vector<std::string> unused;
   bool scale_lost = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the photographs of a calibration suffice, and what to photograph otherwise.
+// Whether the photographs of a calibration suffice, and which photograph to add if they do not.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Limits {
   double thickness = 0.002;  // [m]
 };
 
-// In words, what no photograph shows: corners near each edge of the image, a tilted board, boards
+// What the photographs lack, in words: corners near each edge of the image, a tilted board, boards
 // at two distances. Empty if nothing is missing.
 std::vector<std::string> gaps(const Calibration& calibration);
 

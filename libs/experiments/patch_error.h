@@ -90,12 +90,13 @@ struct StudyStatistics {
 // Statistics over every `step`-th centre in each direction.
 StudyStatistics study_statistics(const WarpStudy& study, int step);
 
-// e_BH of one warp for every centre from kPatchReach to size - 1 - kPatchReach, row by row; -1:
-// none.
+// e_BH [px] of one warp for every centre from kPatchReach to size - 1 - kPatchReach, row by row. -1
+// where errors() is empty.
 std::vector<double> patch_error_map(const WarpStudy& study, Warp warp);
 
-// e_H of every texel of every centre from `border` to size - 1 - border, patches side by side:
-// kPatchSide times as wide; -1: none.
+// e_H [px] of every texel of every centre from `border` to size - 1 - border. Patches lie side by
+// side, so that the map is kPatchSide times as wide as the range of centres. -1 where errors() is
+// empty.
 std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border = kPatchReach);
 
 }  // namespace axial::experiments

@@ -39,6 +39,8 @@ struct StereoSetup {
   double plane_degrees = 0;  // rotation of the plane about y
 };
 
+// The centre of the second camera, a point of the plane, and the plane's unit normal towards the
+// cameras; in the frame of the first camera [m].
 Vector3<double> source_centre(const StereoSetup& setup);
 Vector3<double> plane_point(const StereoSetup& setup);
 Vector3<double> plane_normal(const StereoSetup& setup);

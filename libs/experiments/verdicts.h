@@ -13,6 +13,7 @@ struct Verdict {
   bool met = false;
 };
 
+// A Markdown table with one row for each requirement.
 std::string verdict_table(const std::vector<Verdict>& verdicts);
 
 }  // namespace axial::experiments

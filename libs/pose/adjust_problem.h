@@ -36,6 +36,8 @@ class AdjustProblem {
   double* image_block(std::size_t image) { return poses_[image].data(); }
   double* change_block(std::size_t camera) { return changes_[camera].data(); }
 
+  // Writes the adjusted poses, points and changes to `bundle`, which is the bundle of the
+  // constructor or a copy of it.
   void write_back(Bundle& bundle) const;
 
  private:

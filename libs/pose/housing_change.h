@@ -21,6 +21,8 @@ inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 template <class T>
 using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
 
+// The measured port or lens changed by `change`. T is double or an automatic-differentiation
+// scalar.
 template <class T>
 refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
                               const HousingChange<T>& change) {

@@ -18,6 +18,7 @@ namespace axial::pose {
 inline constexpr int kPoseNumbers = 6;
 using PoseNumbers = std::array<double, kPoseNumbers>;
 
+// The numbers of `start` itself (w = 0), and the pose with `numbers` relative to `start`.
 PoseNumbers numbers_of(const Pose& start);
 Pose moved(const Pose& start, const PoseNumbers& numbers);
 

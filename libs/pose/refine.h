@@ -28,8 +28,8 @@ struct RefineReport {
   DropCounts dropped;        // dropped for other reasons
   std::size_t points_before = 0, points_after = 0;
   AdjustReport last;
-  // Not empty: what is known in metres no longer determines the scale, and refining ended early.
-  // The lines of lost_knowledge().
+  // The lines of lost_knowledge(). Not empty: refining ended early, because known lengths or
+  // positions can no longer be used.
   std::vector<std::string> lost;
 };
 

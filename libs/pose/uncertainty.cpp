@@ -179,7 +179,7 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) 
   const std::vector<double> errors = reprojection_errors(bundle);
   const double residuals = 2.0 * static_cast<double>(errors.size());
   const double free = std::max(1.0, residuals - static_cast<double>(unknowns_of(bundle, options)));
-  constexpr double kLeast = 1e-9;  // of errors that rounding makes
+  constexpr double kLeast = 1e-9;  // [px], size of rounding errors
   return std::max(kLeast, root_mean_square(errors) * std::sqrt(residuals / (2 * free)));
 }
 

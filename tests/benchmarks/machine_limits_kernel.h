@@ -24,8 +24,7 @@ class LimitKernel {
   using Floats = stdx::simd<float, Abi>;
   using Ints = stdx::rebind_simd_t<std::int32_t, Floats>;
   static constexpr std::size_t kWidth = Floats::size();
-  static constexpr std::size_t kChains =
-      6;  // of each kind: enough to hide latencies, few enough for the registers
+  static constexpr std::size_t kChains = 6;  // of each kind: hides latencies, fits the registers
   static constexpr std::size_t kRounds = 20000;
   static constexpr std::size_t kWords = 4096;  // 16 KiB
   static constexpr std::size_t kIndices = 1024;

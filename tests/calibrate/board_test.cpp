@@ -91,9 +91,8 @@ TEST(FindCorners, NoneInAnEmptyPhotograph) {
 // Boards of markers may be visible in part: every corner lies where the exact projection images the
 // corner with its number.
 struct Errors {
-  double rms = 0, largest = 0;  // [px]
-  Eigen::Vector2d mean =
-      Eigen::Vector2d::Zero();  // a common shift, which poses and ports would absorb
+  double rms = 0, largest = 0;                     // [px]
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // common shift: poses and ports absorb it
 };
 
 Errors errors_behind_port(const Board& board, const cv::Mat1b& print, double width, double height,

@@ -127,7 +127,8 @@ TEST(Calibrate, StandardDeviationsAreHonest) {
     sum2 += found.camera().change.cwiseAbs2();
     predicted2 += found.uncertainty.camera_sigmas[0].cwiseAbs2();
   }
-  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %; three times
+  // this is allowed.
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(sum2(k) / predicted2(k), 0.3) << k;
     EXPECT_LT(sum2(k) / predicted2(k), 1.9) << k;

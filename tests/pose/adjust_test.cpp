@@ -236,7 +236,8 @@ Scatter scatter_of_port(int runs, double loss_sigmas) {
 
 TEST(Uncertainty, OfThePortIsHonest) {
   const Scatter scatter = scatter_of_port(30, 100);
-  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %; three times
+  // this is allowed.
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(scatter.sum2(k) / scatter.predicted2(k), 0.3) << k;
     EXPECT_LT(scatter.sum2(k) / scatter.predicted2(k), 1.9) << k;
@@ -275,7 +276,7 @@ TEST(Uncertainty, OfTheScaleIsHonest) {
     sum2 += error * error;
     predicted2 += std::pow(uncertainty(bundle, options).scale_sigma, 2);
   }
-  EXPECT_GT(sum2 / predicted2, 0.3);  // limits as for the scatter of the port
+  EXPECT_GT(sum2 / predicted2, 0.3);  // the same limits as for the port
   EXPECT_LT(sum2 / predicted2, 1.9);
 }
 

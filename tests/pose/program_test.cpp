@@ -178,9 +178,8 @@ TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
-  const std::array<double, 3> truth{2, 0, 20};  // degrees, degrees, mm
-  const std::array<double, 3> wrong_by{1, 1,
-                                       5};  // initial errors: standard deviations must be smaller
+  const std::array<double, 3> truth{2, 0, 20};    // degrees, degrees, mm
+  const std::array<double, 3> wrong_by{1, 1, 5};  // initial errors: sigmas must be smaller
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double value = free.at(i)["value"].get<double>(), sigma = free[i]["sigma"].get<double>();
     EXPECT_NEAR(value, truth[i], 3 * sigma) << free[i]["name"];
