@@ -228,7 +228,7 @@ int run(int argc, char** argv) {
     io::warn_of_housing_beside(
         scene, options.scene_file, by_image,
         options.housing_file.empty() ? options.colmap_folder : options.housing_file);
-    // Ports that the model carries are named after the housing file that is written here.
+    // Messages about ports that the model carries name the housing file that is written here.
     const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
     io::attach_ports(scene, io::in_frame(frame, by_image), ports_from.string());
     io::write_housing(housing_file, by_image);

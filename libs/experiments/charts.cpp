@@ -128,7 +128,7 @@ cv::Mat3b colored(const MapPanel& panel, double highest) {
   cv::Mat3b bgr;
   cv::applyColorMap(scaled, bgr, cv::COLORMAP_VIRIDIS);
   bgr.setTo(cv::Scalar(190, 190, 190), values < 0);
-  // The map is enlarged to its size in the drawing: not every viewer keeps enlarged pixels square.
+  // Enlarges small maps: not every viewer draws enlarged pixels as squares.
   const int factor = width < 100 ? std::max(1, 200 / width) : 1;
   cv::resize(bgr, bgr, {}, factor, factor, cv::INTER_NEAREST);
   return bgr;

@@ -42,7 +42,7 @@ FlatPort<double> rough_flat_port() {
 
 class CalibrateWith : public ::testing::TestWithParam<io::ColmapCamera> {};
 
-// The remaining errors are the lens's inversion, good to 1e-9 px, and rounding.
+// The remaining errors are the lens's inversion, with a relative error of 1e-9, and rounding.
 TEST_P(CalibrateWith, FindsAFlatPortExactlyInPerfectPhotographs) {
   const auto taken = survey(GetParam(), flat_port());
   const Calibration found =

@@ -45,8 +45,7 @@ TEST_P(AdjustBehind, FindsPosesPointsAndScaleOfPerfectTracks) {
   EXPECT_LT(errors.largest_angle, 1e-5);
 }
 
-// The sum of squares is that of all residuals, two for each observation, minus one for each
-// unknown.
+// The expected sum of squares counts two residuals for each observation, minus one per unknown.
 TEST_P(AdjustBehind, LeavesAsMuchErrorAsTheNoise) {
   const Bundle truth = survey(camera_behind(GetParam().port), {.noise = 0.5});
   Bundle bundle = truth;
