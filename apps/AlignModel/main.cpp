@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings a COLMAP model to the scale and place of another one whose camera centres are known.
+// Brings a COLMAP model to the scale and place of a reference model with known centres.
 
 #include <algorithm>
 #include <numbers>

@@ -24,8 +24,8 @@ io::ColmapCamera load_lens(const fs::path& path) {
   return cameras.front();
 }
 
-// Whose port is calibrated: what --port says, else the camera's. A calibration.yaml does not say
-// which camera it is of.
+// The name of the port to calibrate: --port, or the port of the lens's camera. A calibration.yaml
+// does not tell the camera's id.
 std::string port_to_calibrate(const Options& options, const io::Housing& housing,
                               const io::ColmapCamera& lens) {
   if (!options.port.empty()) return options.port;
@@ -34,7 +34,7 @@ std::string port_to_calibrate(const Options& options, const io::Housing& housing
   return housing.port_of("", lens.id);
 }
 
-// The housing as far as it is known.
+// The housing before the calibration.
 io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   if (options.housing.empty()) {
     if (!lens.port) fail("--housing is missing: the port as far as it is known");
@@ -56,7 +56,7 @@ refractive::Port<double> known_port(const Options& options, const io::Housing& h
   return *port;
 }
 
-// Error for a limit that was given of a number that stays as it is, or that the port does not have.
+// Error for a limit of a number that is not adjusted, or that the port does not have.
 void check_limits(const Options& options, const refractive::Port<double>& port) {
   const auto& free = options.calibrate.adjust.free;
   const bool dome = std::holds_alternative<refractive::DomePort<double>>(port);
@@ -72,7 +72,7 @@ void check_limits(const Options& options, const refractive::Port<double>& port) 
            "--refine " + options.refine_list);
 }
 
-// What is unknown, into `options`.
+// Sets the unknowns of `options`.
 void set_unknown(Options& options, const refractive::Port<double>& port) {
   if (options.refine_list.empty()) options.refine_list = pose::place_words(port);
   pose::Bundle camera;
@@ -86,7 +86,7 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
     fail("--refine {}: the focal length stays as calibrated in air", options.refine_list);
 }
 
-// Before the work.
+// Called before the work.
 void check_outputs(const Options& options, std::vector<fs::path> inputs) {
   inputs.insert(inputs.end(), {options.lens, options.housing});
   const std::pair<const char*, const fs::path&> outputs[] = {{"--output-file", options.output},
@@ -115,7 +115,8 @@ std::vector<std::string> comments_for(const std::vector<std::string>& lines) {
   return comments;
 }
 
-// The report and the drawing in any case: they show what is missing. The port only if it is known.
+// Writes report and drawing always, since they show what is missing, and the port only if it is
+// precise enough.
 void write(const Options& options, const calibrate::Calibration& calibration, io::Housing housing,
            const std::string& port_name, const std::vector<std::string>& lines) {
   if (!options.report.empty())

@@ -11,13 +11,13 @@
 
 struct Options {
   axial::ParsedOptions parsed;
-  std::vector<std::filesystem::path> input;  // photographs, and folders of them
+  std::vector<std::filesystem::path> input;  // files of photographs, or folders of them
   std::filesystem::path lens;                // COLMAP cameras or calibration.yaml
-  std::filesystem::path housing;             // housing file or calibration.yaml; empty: the lens's
-  std::string port;                          // its name there; empty: the camera's
+  std::filesystem::path housing;  // housing file or calibration.yaml; empty: the port in `lens`
+  std::string port;               // name of the port in `housing`; empty: the port of the camera
   axial::calibrate::Board board;
-  int bit_depth = 0;        // of 16-bit photographs; 0: found
-  std::string refine_list;  // see pose/free_numbers.h; empty: what the kind of port has
+  int bit_depth = 0;        // of 16-bit photographs; 0: detected
+  std::string refine_list;  // see pose/free_numbers.h; empty: the words for the kind of port
   axial::pose::Sigmas sigmas;
   axial::calibrate::CalibrateOptions calibrate;
   axial::calibrate::Limits limits;
@@ -25,5 +25,5 @@ struct Options {
   std::filesystem::path calibmar, report, coverage;  // empty: not written
 };
 
-// Parses and checks the command line; what is left to do is in `parsed.run`.
+// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);

@@ -41,7 +41,7 @@ void check_size(const fs::path& photograph, cv::Size size, const io::ColmapCamer
          lens.width, lens.height);
 }
 
-// Transparent pixels are black: no corner is there.
+// Transparent pixels become black, so that no corners are found there.
 cv::Mat1b read_grey(const fs::path& path, int bits) {
   const io::Photograph photograph = io::read_photograph(path);
   cv::Mat1b grey;

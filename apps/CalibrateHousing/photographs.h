@@ -8,13 +8,14 @@
 #include "calibrate/board.h"
 #include "calibrate/board_bundle.h"
 
-// The photographs: files as they are, and of folders what is an image by its name, in the order of
-// names. Error for a path that does not exist, or where there is none at all.
+// The photographs: given files as they are, and of each folder the files with an image's extension,
+// in the order of names. Error for a path that does not exist, and for a folder without
+// photographs.
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
-// The board's corners in every photograph, in their order, without any where it is not found.
-// Error that names the first photograph which cannot be read, or is not of the lens's size.
-// `bit_depth`: of io::common_bit_depth.
+// The board's corners in every photograph, in the order of `photographs`; without corners where the
+// board is not found. Error that names the first photograph that cannot be read or whose size
+// differs from the lens's. `bit_depth`: as for io::common_bit_depth.
 std::vector<axial::calibrate::View> find_views(std::span<const std::filesystem::path> photographs,
                                                const axial::calibrate::Board& board,
                                                const axial::io::ColmapCamera& lens,

@@ -44,7 +44,7 @@ double rms_of(const Calibration& calibration) {
   return pose::root_mean_square(reprojection_errors(calibration.bundle.bundle));
 }
 
-// JSON has no infinity: null says that nothing tells the number.
+// JSON has no infinity: null means that no photograph determines the number.
 Json finite_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -89,6 +89,6 @@ std::string report_json(const Calibration& calibration, const calibrate::Limits&
   json["missing"] = calibrate::gaps(calibration);
   if (const auto next = calibrate::next_photograph(calibration, limits))
     json["next_photograph"] = calibrate::words_for(next->board);
-  // Names in another encoding than UTF-8 are not worth the loss of the report.
+  // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.
   return io::to_text(json, 1) + "\n";
 }

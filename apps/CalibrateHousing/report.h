@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a calibration came to, for people and for programs.
+// The result of a calibration, for the log and as JSON.
 #pragma once
 
 #include <string>
@@ -7,9 +7,11 @@
 
 #include "calibrate/advice.h"
 
-// Tables for the log: one line each.
+// The table of photographs and the calibrated numbers for the log, one entry for each line.
 std::vector<std::string> report_lines(const axial::calibrate::Calibration& calibration,
                                       const std::string& port_name);
 
+// The same numbers as JSON, with the photographs that are left out, what the photographs lack, and
+// the next photograph to take.
 std::string report_json(const axial::calibrate::Calibration& calibration,
                         const axial::calibrate::Limits& limits);

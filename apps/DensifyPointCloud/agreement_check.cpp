@@ -26,7 +26,7 @@ using axial::depth::Disagreement;
 using axial::depth::MapAgreement;
 using Maps = axial::SharedCache<axial::DepthMap>;
 
-// Every n-th of the references.
+// Evenly spaced references.
 std::vector<std::size_t> images_to_compare(const Project& project) {
   const std::size_t count = project.references.size(), taken = std::min(count, kImages);
   std::vector<std::size_t> images;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether port, lens, poses and photographs belong together, as far as depth maps tell.
+// Checks by the depth maps whether port, lens, poses and photographs belong together.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,15 @@
 
 namespace densify {
 
-// Maps that one image's comparison takes: its own and those of source views.
+// The number of maps in one image's comparison: its own map and maps of source views.
 inline constexpr std::size_t kMapsCompared = 4;
 
-// Compares the depth maps of up to 16 images, evenly spread over the scene, with its sparse points
-// and with the maps of up to three of their source views; a line with the numbers, which is a
-// warning if they disagree (AgreementLimits), and --report-file. `read_map`: the map of a reference
-// image; several at a time, as the plan allows. `photometric`: their confidences are scores of
-// matching alone, and a warning says where these are too low. Nothing else depends on the outcome.
+// Compares the depth maps of up to 16 images, evenly spread over the scene, with the sparse points
+// and with the maps of up to three source views each. Logs a line with the numbers, as a warning if
+// they disagree (AgreementLimits), and writes --report-file. `read_map` reads the map of a
+// reference image; it is called for several images at a time, as the plan allows. `photometric`:
+// the maps' confidences are scores of matching alone, and a warning tells if they are too low. The
+// result affects nothing else.
 void check_agreement(const Project& project, const Options& options, const MemoryPlan& plan,
                      bool photometric,
                      const std::function<axial::DepthMap(std::size_t image)>& read_map);

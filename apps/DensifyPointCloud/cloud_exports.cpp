@@ -39,7 +39,7 @@ std::size_t distinct_views(const axial::SparsePoint& point) {
   return count;
 }
 
-// The outputs of this name, which are no files that were read.
+// The output path with `suffix`. Error if it is a file that was read.
 fs::path checked_output(const Options& options, const std::string& suffix) {
   const fs::path path = beside_output(options, suffix);
   axial::require_not_an_input(path, scene_files(options), "--output-file");
@@ -74,7 +74,7 @@ void export_number_of_views(Project& project, const Options& options) {
   write(project, options, fmt::format("_{}views", least), options.export_number_views < 0);
 }
 
-// Positions, colours and normals where the scene has them, confidence and value.
+// Writes positions, colours and normals if the scene has them, confidence and value.
 void write_scales(const fs::path& ply, const axial::Scene& scene,
                   const std::vector<axial::cloud::PointScale>& scales,
                   const axial::io::PlyPlacement& placement) {

@@ -23,14 +23,14 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// One title that sets something here.
+// A title that has an effect here.
 struct Setting {
   const char* title;
   double low, high;
   std::function<double()> get;
   std::function<void(double)> set;
-  bool of_maps =
-      false;  // depth maps depend on it, and nothing else that they are made from shows it
+  // Depth maps depend on it, and it is in no other part of their fingerprint.
+  bool of_maps = false;
 };
 
 template <class T>
@@ -44,7 +44,7 @@ Setting setting(const char* title, T& target, double low, double high, double un
           of_maps};
 }
 
-// A standard deviation of grey levels in [0, 1], kept as its square.
+// A standard deviation of grey levels in [0, 1]. The target holds its square.
 Setting min_texture(float& target) {
   return {"Descriptor Min Magnitude Threshold",
           0,
@@ -54,7 +54,7 @@ Setting min_texture(float& target) {
           true};
 }
 
-// 0: the region does not count; 1: points outside it count less.
+// 0: the region has no effect; 1: points outside the region have less weight.
 Setting point_inside_region(double& weight) {
   constexpr double kOutside = 0.7;
   return {"Point Inside ROI", 0, 1, [&weight] { return weight < 1 ? 1.0 : 0.0; },
@@ -87,7 +87,7 @@ std::string shown(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-// Titles of OpenMVS whose values its options replace, even by their defaults.
+// Titles of OpenMVS whose values are replaced by its options, even by their defaults.
 const std::set<std::string, std::less<>>& titles_of_options() {
   static const std::set<std::string, std::less<>> titles{"Resolution Level",
                                                          "Max Resolution",
@@ -105,7 +105,7 @@ const std::set<std::string, std::less<>>& titles_of_options() {
   return titles;
 }
 
-// Titles of OpenMVS that are of no method here.
+// Titles of OpenMVS that have no counterpart here.
 const std::set<std::string, std::less<>>& titles_without_effect() {
   static const std::set<std::string, std::less<>> titles{
       "Min Views Filter",     "Min Views Filter Adjust",
@@ -126,7 +126,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// Whether the line holds nothing to set.
+// Whether the line sets nothing.
 bool is_decoration(std::string_view line) {
   return line.empty() || line.front() == '[' || line == "{" || line == "}";
 }
@@ -158,7 +158,7 @@ class ConfigFile {
     set(std::string(title_of(line.substr(0, sign))), trimmed(line.substr(sign + 1)));
   }
 
-  // OpenMVS's titles of angles have no unit, but its documentation does: "Min Angle (deg)".
+  // OpenMVS's titles of angles have no unit, but its documentation adds one: "Min Angle (deg)".
   static std::string_view title_of(std::string_view text) {
     text = trimmed(text);
     constexpr std::string_view kUnit = "(deg)";
@@ -176,7 +176,8 @@ class ConfigFile {
       if (!(*value >= setting.low && *value <= setting.high))
         axial::fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
                     setting.low, setting.high);
-      // A value that the file got from the one in use does not change its last bits.
+      // A value written by this program is rounded: it must not change the last bits of the current
+      // value.
       if (shown(*value) != shown(setting.get())) setting.set(*value);
       return;
     }

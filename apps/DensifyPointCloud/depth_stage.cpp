@@ -25,26 +25,26 @@ using axial::DepthMap;
 
 namespace {
 
-// From this -v on pictures of every stage's maps, too.
+// From this -v on, pictures of the maps of every stage are written, too.
 constexpr int kVerbosityOfStages = 5;
 
-// One round over all images. The files of a stage that is not the last carry its name and go once
-// the next stage is complete.
+// One round over all images. The files of a stage that is not the last have the stage's name in
+// their names, and are removed when the next stage is complete.
 struct Stage {
   std::string name;
   std::string title;
   std::function<DepthMap(std::size_t image)> make;
-  bool matches = true;  // needs only the depths of its source views' maps; else whole maps
+  bool matches = true;  // reads only the depths of its source views' maps; else whole maps
 };
 
-// Maps of the stage before, read from their files: never handed over in memory, because a resumed
-// run must see the same bytes.
+// Maps of the previous stage, always read from their files and never handed over in memory, because
+// a resumed run must see the same bytes.
 using MapCache = axial::SharedCache<DepthMap>;
 
-// What matching one image needs, kept alive while it runs.
+// The data for matching one image. They must live while it runs.
 struct Task {
-  std::vector<std::shared_ptr<const WorkImage>> pixels;  // the reference's, then the sources'
-  std::vector<axial::depth::MatchImage> views;           // as pixels
+  std::vector<std::shared_ptr<const WorkImage>> pixels;  // of the reference, then of the sources
+  std::vector<axial::depth::MatchImage> views;           // in the order of `pixels`
   std::vector<const axial::depth::MatchImage*> sources;
   std::vector<Eigen::Vector3f> points;
   axial::depth::MatchInput input;
@@ -64,8 +64,8 @@ class DepthMapRun {
       axial::log_info("All {} depth maps are there already", project_.references.size());
     if (first > 0) compare(first - 1);
     for (std::size_t s = first; s < stages_.size(); ++s) {
-      // Matching frees and takes large blocks all the time and holds few; afterwards it is the
-      // other way round.
+      // Matching often frees and allocates large blocks but holds few of them; later stages hold
+      // many.
       if (!stages_[s].matches) axial::map_large_blocks();
       run_stage(s);
       if (s == 0) compare(s);
@@ -86,7 +86,7 @@ class DepthMapRun {
     return project_.fingerprint + " " + stages_[stage].name;
   }
 
-  // Whether the file was there before this run: a stage asks before it writes.
+  // Whether the file existed before this run: a stage asks before it writes.
   bool finished(std::size_t stage, std::size_t image) const {
     if (stage + 1 == stages_.size())
       return existing_[image].origin == axial::io::DmapOrigin::ours &&
@@ -139,7 +139,7 @@ class DepthMapRun {
     return axial::io::read_dmap(path(stage, image)).map;
   }
 
-  // Before the hours that later stages may take.
+  // Called early, because later stages may take hours.
   void compare(std::size_t stage) const {
     check_agreement(project_, options_, plan_, stage == 0,
                     [this, stage](std::size_t image) { return read_map(stage, image); });
@@ -162,7 +162,7 @@ class DepthMapRun {
     }
   }
 
-  // The images of `list` that have depth maps themselves.
+  // The images of `list` that have depth maps of their own.
   std::vector<std::size_t> with_maps(const std::vector<axial::ViewScore>& list) const {
     std::vector<std::size_t> images;
     for (const axial::ViewScore& neighbour : list)
@@ -255,7 +255,7 @@ class DepthMapRun {
   const ExistingMaps& existing_;
   ImageStore& images_;
   std::vector<Stage> stages_;
-  std::size_t stage_ = 0;  // that is run
+  std::size_t stage_ = 0;  // the current stage
   std::unique_ptr<MapCache> previous_;
 };
 

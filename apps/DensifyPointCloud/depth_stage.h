@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth maps of all images, stage by stage, each map a file: a killed run goes on where it stopped.
+// Makes the depth maps of all images, stage by stage. Each map is a file, so that a run that was
+// stopped continues where it ended.
 #pragma once
 
 #include "existing_maps.h"
@@ -9,21 +10,22 @@
 
 namespace densify {
 
-// From this -v on pictures of the depth maps lie beside them, as in OpenMVS.
+// From this -v on, pictures of the depth maps are written beside them, as by OpenMVS.
 inline constexpr int kVerbosityOfPictures = 3;
 
-// depthNNNN.dmap in the working folder, NNNN the image's global id.
+// depthNNNN.dmap in the working folder, where NNNN is the image's global id.
 std::filesystem::path depth_map_path(const Project& project, const Options& options,
                                      std::size_t image);
 
-// Makes the final depth map of every reference image, in order:
-//   photometric matching, geometric passes, speckle and gap filters (after the last pass) and the
-//   adjust filter, as --postprocess-dmaps asks for them.
-// Every stage reads only complete files of the stage before, so that an interrupted run gives the
-// same bytes; a file counts only if its side file carries this run's fingerprint and stage.
-// The first stage's maps, or a resumed run's latest, are checked for agreement (agreement_check.h).
-// Several images at a time, as the plan allows. `existing`: the final maps before the run; others
-// than those of this run are overwritten (see check_overwriting).
+// Makes the final depth map of every reference image. Stages in this order: photometric matching,
+// geometric passes, speckle and gap filters (after the last pass), and the adjust filter; the
+// filters as --postprocess-dmaps asks for them.
+//
+// Every stage reads only complete files of the previous stage, so that a resumed run gives the same
+// bytes. A file is reused only if its side file has the fingerprint of this run and the stage's
+// name. The maps of the first stage, or the latest maps of a resumed run, are checked for agreement
+// (agreement_check.h). Several images are worked on at a time, as the plan allows. `existing`: the
+// final maps before the run; maps that are not of this run are overwritten (see check_overwriting).
 void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,
                      const ExistingMaps& existing, ImageStore& images);
 

@@ -22,7 +22,7 @@ bool is_plain_pinhole(const axial::CameraModel& camera) {
   return !camera.port && !camera.distortion;
 }
 
-// Points that the map's corners and centre show if the scene is in the middle of its depth range.
+// The points that the map's corners and centre see at the middle of its depth range.
 std::vector<Eigen::Vector3d> points_seen(const axial::DepthMap& map) {
   const double w = map.camera.width - 1, h = map.camera.height - 1;
   const auto near = static_cast<double>(map.min_depth), far = static_cast<double>(map.max_depth);
@@ -37,8 +37,8 @@ std::vector<Eigen::Vector3d> points_seen(const axial::DepthMap& map) {
   return points;
 }
 
-// How far apart the map's camera and the scene's, at the map's resolution, see the same points
-// [px].
+// The largest distance [px] between the images of the same points in the map's camera and in the
+// scene's camera, at the map's resolution.
 double largest_shift(const axial::DepthMap& map, const axial::CameraModel& model,
                      const axial::Pose& pose) {
   const std::vector<Eigen::Vector3d> points = points_seen(map);
@@ -60,7 +60,7 @@ double largest_shift(const axial::DepthMap& map, const axial::CameraModel& model
   return largest;
 }
 
-// The camera of the image at its map's resolution. Error unless the map is of this camera.
+// The image's camera at the resolution of its map. Error unless the map belongs to this camera.
 axial::CameraModel camera_of_map(const Project& project, const Options& options, std::size_t image,
                                  DmapOrigin origin) {
   const std::string file = depth_map_path(project, options, image).string();
@@ -101,7 +101,7 @@ axial::io::DmapSide side_to_read(DmapOrigin origin) {
 
 ExistingMaps find_existing_maps(const Project& project, const Options& options) {
   ExistingMaps maps(project.scene.images.size());
-  // One at a time: each is read whole, and the memory plan is still to be made.
+  // One map at a time: each is read completely, and the memory plan does not exist yet.
   for (const std::size_t image : project.references)
     maps[image] = axial::io::dmap_status(depth_map_path(project, options, image));
   return maps;
@@ -143,7 +143,7 @@ void check_overwriting(const Project& project, const Options& options, const Exi
 
 void keep_images_with_maps(Project& project, const Options& options, const ExistingMaps& maps) {
   std::vector<std::size_t> kept;
-  std::filesystem::path missing;  // the first
+  std::filesystem::path missing;  // the first missing map
   std::size_t foreign = 0;
   for (const std::size_t image : project.references) {
     const DmapOrigin origin = maps[image].origin;

@@ -71,7 +71,7 @@ class CloudRun {
   }
 
   axial::DepthMap load_map(std::size_t image) const {
-    // Fusion estimates the normals of maps that have none.
+    // A map without normals stays so: fusion estimates them.
     const cv::Mat1b mask = options_.make_maps ? cv::Mat1b() : images_.mask(image);
     return read_final_map(project_, options_, existing_, image, mask);
   }

@@ -9,14 +9,15 @@
 
 namespace densify {
 
-// Where the clouds of this run are: in the scene's frame, or by --output-precision double in the
-// world.
+// The frame and precision of this run's clouds: the scene's frame as float, or world coordinates
+// with --output-precision double.
 axial::io::PlyPlacement placement_of(const Project& project, const Options& options);
 
-// Writes the final depth maps as one cloud to `ply`, cropped, with colours and normals as the
-// options say; returns its number of points. The cloud goes to the file as it grows, unless its
-// colours or normals are estimated from the whole of it (1). A line, and "fusion" in --report-file,
-// say how many points rest on two depth maps.
+// Fuses the final depth maps to one cloud and writes it to `ply`, cropped to the region of
+// interest, with colours and normals as the options ask. Returns its number of points. The cloud is
+// written as it grows, unless its colours or normals are estimated from the whole cloud (option
+// value 1). A log line, and "fusion" in --report-file, tell how many points rest on only two depth
+// maps.
 std::size_t write_cloud(const Project& project, const Options& options, const MemoryPlan& plan,
                         const ExistingMaps& existing, ImageStore& images,
                         const std::filesystem::path& ply);

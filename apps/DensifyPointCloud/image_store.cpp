@@ -22,7 +22,7 @@ cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck* check) {
   return mask;
 }
 
-// Hidden colours are averaged into the pixels at the edge, too: these are left out.
+// Resampling mixes colours of transparent pixels into pixels at their edge: leaves these out, too.
 void leave_out_transparent(const cv::Mat1b& opaque, cv::Size size, cv::Mat1b& mask) {
   cv::Mat1b resized;
   cv::resize(opaque, resized, size, 0, 0, cv::INTER_AREA);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pixels of the images at their working resolution, read when somebody needs them.
+// The pixels of the images at their working resolution, read when they are needed.
 #pragma once
 
 #include <memory>
@@ -14,29 +14,30 @@ namespace densify {
 struct WorkImage {
   cv::Mat1b grey;
   cv::Mat3b color;  // B G R; empty if the options need no colours
-  cv::Mat1b mask;   // empty, or non-zero: match; of the labels and of the pixels' own alpha
+  cv::Mat1b mask;   // empty, or non-zero where pixels are matched: from labels and alpha
 };
 
-// WorkImage::mask of an image whose pixels' alpha is `opaque` (empty: none), at `view.camera`'s
-// size. `check` learns the labels (null: nobody does). Error for a mask of another shape.
+// The WorkImage::mask of an image, at the size of `view.camera`. `opaque`: non-zero where pixels
+// are opaque (empty: no alpha). `check` collects the labels; it may be null. Error for a mask whose
+// shape differs from the photograph's.
 cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
                        LabelCheck* check = nullptr);
 
-// Keeps the `capacity` images that were used last. Thread-safe; an image is read once however many
-// threads want it.
+// Keeps the `capacity` most recently used images. Thread-safe; several threads that ask for the
+// same image read it only once.
 class ImageStore {
  public:
   ImageStore(const Project& project, const Options& options, std::size_t capacity);
 
-  // Error for files that cannot be decoded, and for masks of another shape than their image.
+  // Error for files that cannot be decoded, and for masks whose shape differs from their image's.
   std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
 
-  // WorkImage::mask. Reads nothing for an image that has none.
+  // WorkImage::mask. Reads no file for an image without a mask.
   cv::Mat1b mask(std::size_t image);
 
   // Reads every calibrated image once, `at_once` at a time, so that errors show before hours of
-  // work: that of the first bad image in the scene. The first images stay, which are needed first.
-  // A warning if no mask has the label to leave out.
+  // work. Reports the error of the first bad image in the scene's order. Reads in reverse order:
+  // the images that are needed first stay in the cache. Warns if no mask has the label to ignore.
   void check_all(std::size_t at_once);
 
  private:

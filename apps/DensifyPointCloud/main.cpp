@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// --fusion-mode 1 leaves the sparse cloud under the dense one's name, as OpenMVS does.
+// With --fusion-mode 1 the sparse cloud gets the dense cloud's name, as in OpenMVS.
 std::size_t write_sparse_cloud(const densify::Project& project, const densify::Options& options,
                                const fs::path& ply) {
   axial::io::write_cloud_ply(ply, densify::cloud_of(project.scene), true,
@@ -41,13 +41,14 @@ void remove_depth_maps(const densify::Project& project, const densify::Options& 
   }
 }
 
-// As OpenMVS's programs do. What cannot be made, require_writable reports.
+// As in OpenMVS. If the folder cannot be made, require_writable reports it.
 void make_folder_of(const fs::path& file) {
   std::error_code ignored;
   fs::create_directories(file.parent_path(), ignored);
 }
 
-// OpenMVS's programs know neither ports nor distortion, and end well on scenes that have them.
+// OpenMVS's programs do not know ports or distortion, and report no error for scenes that have
+// them.
 void say_who_may_read(const densify::Project& project, const densify::Options& options) {
   if (densify::all_pinholes(project)) return;
   const fs::path name = options.output.filename();
@@ -108,7 +109,7 @@ int run(int argc, char** argv) {
   const std::size_t points =
       options.fuse ? densify::write_cloud(project, options, plan, existing, *images, ply)
                    : write_sparse_cloud(project, options, ply);
-  images.reset();  // the scene's bytes take its place
+  images.reset();  // its memory is needed to write the scene
   axial::return_freed_memory();
   densify::write_cameras_beside_output(project, options);
   axial::io::write_mvs(options.output, project.scene, options.parsed.common.working_folder);

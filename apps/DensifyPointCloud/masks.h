@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Masks of a run: which file goes with which image, and whether the label to leave out is in them.
+// The masks of a run: the mask file of each image, and a check that the label to ignore occurs.
 #pragma once
 
 #include <atomic>
@@ -11,18 +11,20 @@
 
 namespace densify {
 
-// Sets View::mask of all calibrated images, if masks are asked for. Warnings, in the order of the
-// scene, for images without a mask and where two files answer. Error where --mask-path has none.
+// Sets View::mask of all calibrated images, if masks are used. Warns, in the order of the scene, of
+// images without a mask and of images with two candidate files. Error if --mask-path has no mask
+// for an image.
 void choose_masks(Project& project, const Options& options);
 
-// Learns from the masks that are read whether any holds the label to leave out. Thread-safe.
+// Collects labels of masks to tell whether any mask has the label to ignore. Thread-safe.
 class LabelCheck {
  public:
   explicit LabelCheck(int label) : label_(label) {}
 
   void add(const cv::Mat1w& labels);
 
-  // Call it when all masks are read: a warning with the labels that there are, if that one is not.
+  // Call after all masks were read: warns with the labels found if the label to ignore is not among
+  // them.
   void warn_if_absent(const Project& project) const;
 
  private:

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostCached = 48;
 constexpr std::uint64_t kMegabyte = 1000 * 1000;
 
-// The program and its libraries, stacks, small blocks, and fusion's portions.
+// The program with its libraries, stacks, small blocks, and the portions of fusion.
 constexpr std::uint64_t kOnTop = 96 * kMegabyte;
 
 std::uint64_t cap_of(const Options& options) {
@@ -30,13 +30,14 @@ std::uint64_t cap_of(const Options& options) {
                                 : axial::available_memory() / 10 * 7;
 }
 
-// What a project keeps of each image besides the scene: its view, chosen neighbours, fingerprint.
+// The memory that a project holds for each image besides the scene: view, chosen neighbours,
+// fingerprint.
 std::uint64_t kept_of_images(std::uint64_t images) {
   constexpr std::uint64_t kChosen = 1024;
   return images * (sizeof(View) + kChosen);
 }
 
-// What becomes of the text of the housing and of the lenses, while it is read.
+// The memory for the text of the housing and of the lenses while it is read.
 std::uint64_t side_files(const Options& options) {
   constexpr std::uint64_t kPerByte = 12;
   std::uint64_t bytes = 0;
@@ -49,12 +50,12 @@ std::uint64_t side_files(const Options& options) {
   return kPerByte * bytes;
 }
 
-// What there is of a scene before its views are scored.
+// The memory of a scene before its views are scored.
 std::uint64_t kept_of(const axial::io::MvsCounts& counts, const Options& options) {
   return counts.scene_bytes() + side_files(options) + kept_of_images(counts.images);
 }
 
-// `bytes`: at the most while the scene is read and its views are scored.
+// `bytes`: the peak while the scene is read and its views are scored.
 void require_memory_for_scene(std::uint64_t bytes, const Options& options) {
   const std::uint64_t cap = cap_of(options), least = bytes + kOnTop;
   if (bytes > kOnTop && cap < least)
@@ -64,23 +65,23 @@ void require_memory_for_scene(std::uint64_t bytes, const Options& options) {
         options.max_memory, cap / kMegabyte, least / kMegabyte + 1);
 }
 
-// Bytes of the large things, for the largest image.
+// Memory [bytes] of the large data, for the largest image.
 struct Sizes {
   std::uint64_t scene;
-  std::uint64_t write_scene;  // besides it, while it is written
-  std::uint64_t decode;       // while an image is read: its file, that file's pixels, the result
+  std::uint64_t write_scene;  // besides `scene`, while it is written
+  std::uint64_t decode;       // while an image is read: its file, its pixels, the result
   std::uint64_t image;        // WorkImage
   std::uint64_t map;          // DepthMap: depth, normal, confidence
-  std::uint64_t depths;       // of it, the depths alone
-  std::uint64_t read_map;  // while one is read or written: the file's bytes, the depths converted
-  std::uint64_t match;     // matching, the results included
+  std::uint64_t depths;       // of a DepthMap, the depths alone
+  std::uint64_t read_map;     // while a map is read or written: the file's bytes, converted depths
+  std::uint64_t match;        // matching, with the results
   std::uint64_t adjust;
   std::uint64_t fused;     // FusionMap
   std::uint64_t taken;     // fusion's bits of all views
-  std::uint64_t exported;  // while an image is resampled, without images that are kept
+  std::uint64_t exported;  // while an image is resampled, without cached images
 };
 
-// Longest lists, an image itself included.
+// The lengths of the longest lists, each including the image itself.
 struct Counts {
   std::size_t images = 0, references = 0;
   std::size_t matched = 0, adjusted = 0, fused = 0;
@@ -124,12 +125,12 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.map = 20 * pixels;
   sizes.depths = 4 * pixels;
   sizes.read_map = 44 * pixels;
-  // Planes of this level and the one before, priors, the result and its filtered copies; a source's
-  // pixels twice as words of 2 x 2 neighbours, its depths.
+  // Planes of this level and the previous one, priors, the result and its filtered copies. For each
+  // source: its pixels twice as words of 2 x 2 neighbours, and its depths.
   constexpr std::uint64_t kPlane = sizeof(axial::depth::PlanePixel);
   sizes.match = (kPlane + kPlane / 4 + 8 + 60) * pixels +
                 sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
-  // Rays, the result; what a neighbour sees.
+  // Rays and the result; for each neighbour its surface on the pixels of the map.
   if (counts.adjusted > 0) sizes.adjust = (24 + 20 + (counts.adjusted - 1) * 12) * pixels;
   sizes.fused = (20 + colors) * pixels;
   sizes.taken = counts.references * pixels / 8;
@@ -148,21 +149,21 @@ std::uint64_t fusing(const Sizes& sizes, std::size_t maps, std::size_t loads) {
   return sizes.taken + maps * sizes.fused + loads * (sizes.decode + sizes.read_map + sizes.map);
 }
 
-// What a run takes that works on `in_flight` images at a time and keeps nothing that is not in use.
-// The image store outlives matching.
+// The memory of a run that works on `in_flight` images at a time and caches nothing. The image
+// store lives longer than matching.
 std::uint64_t least_for(const Sizes& sizes, const Counts& counts, std::size_t in_flight) {
   return std::max({matching(sizes, counts, in_flight), sizes.write_scene, sizes.exported,
                    in_flight * counts.matched * sizes.image + fusing(sizes, counts.fused, 1)});
 }
 
-// The most of up to `wanted` things whose `need` is within `bytes`, at least one.
+// The largest number up to `wanted` whose `need` is within `bytes`, but at least one.
 template <class Need>
 std::size_t most(std::size_t wanted, std::uint64_t bytes, const Need& need) {
   while (wanted > 1 && need(wanted) > bytes) --wanted;
   return std::max<std::size_t>(wanted, 1);
 }
 
-// `entries` and as many more as `spare` pays for, but not beyond kMostCached.
+// `entries`, and as many more as `spare` bytes allow, but not more than kMostCached.
 std::size_t enlarged(std::size_t entries, std::uint64_t each, std::uint64_t spare) {
   const std::size_t wanted = kMostCached - std::min(entries, kMostCached);
   return entries + std::min<std::size_t>(wanted, spare / each);
@@ -181,8 +182,8 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
       most(threads, room - kept, [&](std::size_t k) { return k * (sizes.decode + sizes.image); });
 
   const std::uint64_t more_images = (plan.cached_images - images) * sizes.image;
-  // Stages that need depths and stages that need whole maps come one after the other. Comparing
-  // maps (agreement_check.h) takes less memory than matching.
+  // The stages that cache depths and the stages that cache whole maps run one after the other.
+  // Comparing maps (agreement_check.h) takes less memory than matching.
   const std::uint64_t for_maps = room - matching(sizes, counts, plan.in_flight) - more_images;
   plan.cached_depths = enlarged((counts.matched - 1) * plan.in_flight, sizes.depths, for_maps);
   plan.cached_maps =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the memory that --max-memory grants is shared out. It decides how much happens at a time and
-// what is kept instead of read again, never what the result is.
+// Shares out the memory that --max-memory allows. The plan affects how much is done at a time and
+// how much is cached, but never the result.
 #pragma once
 
 #include <cstddef>
@@ -9,32 +9,31 @@
 
 namespace densify {
 
-// Error that names --max-memory, its value and what is needed at least if the scene of
-// options.input is too large to be read and its views scored: from its counts, before it is read. A
-// scene that takes less than the program itself does is let through, so that plan_memory can say
-// all that is needed.
+// Error that names --max-memory, its value and the least necessary value if the scene of
+// options.input is too large to be read and its views scored. The estimate uses the scene's counts,
+// before the scene is read. Small scenes that need less than the program itself pass here;
+// plan_memory then reports the whole need.
 void require_memory_to_read(const Options& options);
 
-// The same for a scene that has been read, with the lists of neighbours, before they are made.
+// The same for a scene that was read, including its lists of neighbours before they are made.
 void require_memory_to_score(const axial::Scene& scene, const Options& options);
 
 struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
   std::size_t decodes = 1;        // images that are decoded at the same time at the start
-  std::size_t cached_images = 0;  // in the ImageStore
-  std::size_t cached_depths = 0;  // of the stage before, for geometric consistency
-  std::size_t cached_maps = 0;    // the same, whole maps
+  std::size_t cached_images = 0;  // entries of the ImageStore
+  std::size_t cached_depths = 0;  // depths of the previous stage, for geometric consistency
+  std::size_t cached_maps = 0;    // whole maps of the previous stage
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
   std::size_t exports = 1;        // images resampled at the same time by --pinhole-export
 };
 
-// The plan for a project as load_project left it, the largest image and the longest lists of
-// sources and neighbours of the project. Caches grow to 48 entries at most: views are taken in the
-// order of the images, where more hardly help, and the memory of a run shall not grow with the
-// number of images. Error that names
-// --max-memory, its value and what is needed if not even one image at a time fits, or the scene
-// while it is written (when no images are kept any more).
+// The plan for a project as load_project returns it. It fits the project's largest image and
+// longest lists of sources and neighbours. Caches have at most 48 entries: images are processed in
+// order, where more entries hardly help, and the memory of a run must not grow with the number of
+// images. Error that names --max-memory, its value and the necessary value if not even one image at
+// a time fits, or if the scene does not fit while it is written (when no images are cached).
 MemoryPlan plan_memory(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -17,7 +17,7 @@ using axial::fail;
 
 namespace {
 
-// What the command line says, before it is checked and sorted into options structs.
+// The values of the command line before they are checked and converted.
 struct Raw {
   std::string input, output, housing, mask_path;
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
@@ -26,7 +26,7 @@ struct Raw {
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
 
-// An OpenMVS option that scripts pass and that is not built: accepted at these values only.
+// An OpenMVS option that scripts pass but that is not implemented: only these values are accepted.
 struct NotBuilt {
   const char* name;
   std::string value;
@@ -200,7 +200,7 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("tower-mode", raw.tower_mode, -4, 4);
 }
 
-// Options whose values are taken and change nothing.
+// Warns of valid options that have no effect.
 void warn_of_no_effect(const Options& options, const Raw& raw) {
   if (raw.tower_mode != 0)
     axial::log_warning(

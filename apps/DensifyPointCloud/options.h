@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DensifyPointCloud's options: OpenMVS's, of the same names and defaults but for --iters (2, there
-// 3), --postprocess-dmaps (3, there 7) and --tower-mode (0, there 4), and the refractive ones.
+// DensifyPointCloud's options: OpenMVS's options with the same names and defaults, except --iters
+// (2; OpenMVS: 3), --postprocess-dmaps (3; OpenMVS: 7) and --tower-mode (0; OpenMVS: 4), and the
+// options for refraction.
 #pragma once
 
 #include <cstdint>
@@ -33,11 +34,11 @@ struct Options {
   std::filesystem::path mask_folder;
   std::filesystem::path report;  // JSON; empty: none
   int ignore_mask_label = -1;    // below 0: no masks
-  int bit_depth = 0;             // of 16-bit images; 0: found
+  int bit_depth = 0;             // of 16-bit images; 0: detected
 
   CameraChoice camera = CameraChoice::automatic;
-  bool refractive = false;     // demand a housing
-  bool allow_missing = false;  // go on with a housing that gives no image a port
+  bool refractive = false;     // a housing is required
+  bool allow_missing = false;  // go on if the housing gives no image a port
   axial::ProjectionMethod projection = axial::ProjectionMethod::exact;
 
   axial::ResolutionOptions resolution;
@@ -45,13 +46,13 @@ struct Options {
   axial::depth::PatchMatchOptions matching;
   axial::depth::SpeckleOptions speckles;
   axial::depth::GapOptions gaps;
-  std::string map_settings;  // of --dense-config-file, as text: depth maps depend on them
+  std::string map_settings;  // settings of --dense-config-file that change depth maps, as text
   unsigned number_views = 0;
   int geometric_iterations = 2;
   unsigned postprocess = kSpeckles | kGaps;
 
   axial::cloud::FuseOptions fusion;
-  bool make_maps = true;  // --fusion-mode 0 and 1; otherwise those that exist are fused
+  bool make_maps = true;  // --fusion-mode 0 and 1; otherwise existing maps are fused
   bool fuse = true;       // --fusion-mode 0 and -1
   bool overwrite_dmaps = false;
   unsigned estimate_colors = 2;
@@ -60,12 +61,12 @@ struct Options {
   double roi_border = 0;
   bool crop_to_roi = true;
   bool remove_dmaps = false;
-  // What is done instead of densifying (cloud_exports.h).
+  // Exports instead of densifying (cloud_exports.h).
   int filter_point_cloud = 0, export_number_views = 0;
   double estimate_scale = 0;
   std::filesystem::path pinhole_export;  // empty: none
-  bool double_precision = false;         // of the cloud, which is then in world coordinates
-  std::uint64_t max_memory = 0;          // [MB of 10^6 bytes]; 0: 70 % of what is free
+  bool double_precision = false;         // cloud as double, in world coordinates
+  std::uint64_t max_memory = 0;          // [MB of 10^6 bytes]; 0: 70 % of the free memory
 };
 
 // Whether the cloud takes colours from the images.
@@ -73,8 +74,9 @@ inline bool needs_colors(const Options& options) {
   return options.fuse && options.estimate_colors > 0;
 }
 
-// Error for an unknown option, a value out of range, or an OpenMVS option that is not built yet and
-// has another than its default or "off" value.
+// Parses and checks the command line. Error for an unknown option, for a value out of range, and
+// for an OpenMVS option that is not implemented, unless it has its default or "off" value.
+// `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace densify

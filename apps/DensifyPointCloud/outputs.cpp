@@ -17,7 +17,7 @@ fs::path cloud_file(const Options& options) {
   return fs::path(options.output).replace_extension(".ply");
 }
 
-// The housing is not among them: it is not written where it is the one that was read.
+// The housing is not among these files: it is not written if it is the file that was read.
 std::vector<fs::path> cloud_outputs(const Options& options) {
   return {options.output, cloud_file(options), axial::io::lenses_beside(options.output)};
 }
@@ -34,7 +34,7 @@ std::vector<fs::path> depth_outputs(const Project& project, const Options& optio
   return files;
 }
 
-// Whether both name one file, which need not be there yet.
+// Whether both paths name the same file, which may not exist.
 bool is_one_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
@@ -42,8 +42,7 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
          fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
 }
 
-// Files that go beside the reconstruction are none of those that it reads, writes or takes up
-// again.
+// Error if the output is a file that the reconstruction reads, writes or resumes.
 void check_side_output(const char* option, const fs::path& output,
                        const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
   if (output.empty()) return;

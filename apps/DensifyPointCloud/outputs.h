@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files that a run writes: they can be written, and none of them is one that it reads.
+// Checks that a run can write its files, and that none of them is one of its inputs.
 #pragma once
 
 #include "project.h"
 
 namespace densify {
 
-// The files that make the scene: the scene itself, its housing, lenses and offset, the cloud and
-// the lists of neighbours that stand in for its own, and the file of settings.
+// The files of the input scene: the scene, its housing, lenses and offset, the cloud and the lists
+// of neighbours that replace its own, and the file of settings.
 std::vector<std::filesystem::path> scene_files(const Options& options);
 
-// Before the scene is read. What killed runs left half-written goes. Error that names the file that
-// cannot be written, or the option and both files where an output is one of scene_files().
+// Called before the scene is read. Also removes unfinished files of runs that were stopped. Error
+// that names a file that cannot be written, or the option and both files where an output is one of
+// scene_files().
 void check_outputs(const Options& options);
 
-// The same for the photographs and masks of the scene, and for depth maps and their pictures. Maps
-// of earlier runs are no inputs; but --report-file and --output-view-neighbors-file name neither
-// them nor another file of the reconstruction.
+// The same for the photographs and masks of the scene, and for the depth maps and their pictures.
+// Maps of earlier runs are not inputs. But --report-file and --output-view-neighbors-file must not
+// name a map or another output.
 void check_outputs(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -33,8 +33,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Exported {
-  axial::cloud::PinholeView view;  // at the photograph's resolution
-  double exact = 0;                // share of its pixels
+  axial::cloud::PinholeView view;  // at the resolution of the photograph
+  double exact = 0;                // share of pixels with the label kExact
 };
 
 class Export {
@@ -65,7 +65,7 @@ class Export {
   }
 
  private:
-  // Of the median image, so that the same lens behind the same port becomes the same pinhole.
+  // Takes the range of the median image, so that the same lens and port give the same pinhole.
   void find_range() {
     std::vector<float> near, far;
     for (const std::size_t image : project_.references) {
@@ -91,7 +91,7 @@ class Export {
     return read_final_map(project_, options_, existing_, image, mask);
   }
 
-  // The resolution at which OpenMVS, given this run's options, would work on the pinhole's image.
+  // The resolution at which OpenMVS, with this run's options, would work on the pinhole image.
   cv::Size map_size(const axial::CameraModel& pinhole, std::size_t image) const {
     if (options_.make_maps)
       return axial::working_size(pinhole.width, pinhole.height, options_.resolution);
@@ -112,7 +112,7 @@ class Export {
   std::string made_from() const { return project_.fingerprint + " as a pinhole's"; }
 
   void write_image(std::size_t image, const axial::cloud::PinholeImage& pinhole) {
-    constexpr int kQuality = 98;  // compressed a second time: lose next to nothing
+    constexpr int kQuality = 98;  // the image is compressed a second time: little loss
     const fs::path file = image_file(image);
     if (axial::is_jpeg_name(file))
       axial::io::write_jpeg(file, pinhole.color, kQuality);
@@ -159,7 +159,7 @@ class Export {
     error.rethrow();
   }
 
-  // Positions of float count from the scene's offset, as its poses do.
+  // Writes float positions in the scene's frame, in which its poses are.
   void export_cloud(const fs::path& ply) const {
     const fs::path file = folder_ / "scene.ply";
     if (options_.double_precision)
@@ -247,7 +247,7 @@ class Export {
   const ExistingMaps& existing_;
   fs::path photographs_, folder_;
   double near_ = 0, far_ = 0;       // lambda [m]
-  std::vector<Exported> exported_;  // one an image of the scene
+  std::vector<Exported> exported_;  // one for each image of the scene
   std::vector<bool> is_exported_;
 };
 
@@ -256,11 +256,11 @@ class Export {
 std::uint64_t bytes_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
   const std::uint64_t photograph = area(view.file.size);
-  // Photograph and opacity; of a pinhole at most 1.4 times as wide and as high: depth, colour,
-  // label, and colour once more while it is written. While it is read, what reading takes.
+  // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
+  // times as wide and as high. While the photograph is read, the memory for reading.
   const std::uint64_t images =
       std::max<std::uint64_t>(view.file.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
-  // The map, the pinhole's, and what writing it takes; depths, filled.
+  // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
   constexpr std::uint64_t kMaps = 20 + 2 * (20 + 44 + 8 + 8);
   return images + kMaps * area({view.camera.width, view.camera.height});
 }

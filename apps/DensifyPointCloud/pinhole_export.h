@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --pinhole-export: the finished reconstruction as OpenMVS's later programs can take it, with
-// every photograph and depth map resampled into a pinhole.
+// --pinhole-export: the finished reconstruction in a form for OpenMVS's later programs, with every
+// photograph and depth map resampled to a pinhole camera.
 #pragma once
 
 #include "existing_maps.h"
@@ -9,16 +9,16 @@
 
 namespace densify {
 
-// What an image takes in memory while it is resampled [bytes], at most.
+// An upper bound of the memory for resampling an image [bytes].
 std::uint64_t bytes_to_resample(const View& view);
 
-// Writes the folder, whole or not at all, in place of an earlier export:
+// Writes the export folder atomically, in place of an earlier export:
 //   images/NAME, images/NAME.mask.png   for every image with a depth map; labels of PinholeImage
-//   depthNNNN.dmap                      as the pinhole's
-//   scene.mvs                           images under their indices, those without a map
-//   uncalibrated scene.ply                           the cloud `ply`, as float in the scene's frame
-//   pinhole_export.json                 what was resampled, and which files of the folder are ours
-// Takes the sparse points out of the project's scene. Nothing without the option.
+//   depthNNNN.dmap                      depth maps of the pinhole cameras
+//   scene.mvs                           images with their indices; without a map: uncalibrated
+//   scene.ply                           the cloud `ply`, as float in the scene's frame
+//   pinhole_export.json                 facts about the resampling, and the list of written files
+// Moves the sparse points out of the project's scene. Does nothing without the option.
 void export_pinholes(Project& project, const Options& options, const MemoryPlan& plan,
                      const ExistingMaps& existing, const std::filesystem::path& ply);
 

@@ -47,7 +47,7 @@ void check_folder(const Project& project, const Options& options) {
   if (!fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error))
     fail("--pinhole-export {}: is a file, not a folder", folder.string());
-  // Folders that inputs lie in, at any depth.
+  // The folders that contain inputs, at any depth.
   std::set<fs::path> inputs;
   const auto add = [&](fs::path above) {
     for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The folder of --pinhole-export: whether it may be written, and what files in it are called.
+// The folder of --pinhole-export: checks, names of files, and removal of an earlier export.
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,23 @@
 
 namespace densify {
 
-// The file that says that a folder is an export, and lists its other files.
+// The file that marks a folder as an export and lists its other files.
 inline constexpr const char* kPinholeMarker = "pinhole_export.json";
 
-// An image's name below images/: the way from `photographs`, the deepest folder of all. JPEGs and
-// PNGs keep their names.
+// The name of an exported image below images/: its path relative to `photographs`, the deepest
+// common folder of all photographs. Other formats than JPEG and PNG get the extension .png.
 std::filesystem::path exported_name(const axial::SceneImage& image,
                                     const std::filesystem::path& photographs);
 
-// Of the export that `folder` holds, removes the files that `staging` has no successor of and that
-// are as they were written. Warnings for those that somebody changed, and for an export that lists
-// no files: they stay.
+// Removes files of the earlier export in `folder` that `staging` does not replace and that have not
+// been changed since. Warns of files that were changed, and of an earlier export that lists no
+// files; these files stay.
 void remove_earlier_export(const std::filesystem::path& folder,
                            const std::filesystem::path& staging);
 
-// Before hours of work: Error if all cameras are pinholes already, if the folder holds files of
-// others or is one that inputs lie in, if it cannot be written, or if two images would get one
-// name. Nothing without the option.
+// Called before the work. Error if all cameras are pinholes already, if the folder contains other
+// files or inputs of this run, if it cannot be written, or if two images would get the same name.
+// Does nothing without the option.
 void check_pinhole_export(const Project& project, const Options& options);
 
 }  // namespace densify

@@ -30,8 +30,8 @@ using axial::fail;
 
 namespace {
 
-// Image paths in a scene count from the working folder; a scene that was moved whole is found
-// beside its own file.
+// Image paths in a scene count from the working folder. If a scene was moved with its images, they
+// are found relative to its file.
 void find_images(axial::Scene& scene, const Options& options) {
   const auto find = [&](std::string& path) {
     std::error_code error;
@@ -132,7 +132,7 @@ void check_ids(const Project& project) {
            project.scene.images[i].path, project.views[i].id);
 }
 
-// An image whose neighbours are given needs points of its own for its depth range only.
+// Images with given neighbours need points of their own only for their depth range.
 void use_neighbour_lists(Project& project, const Options& options) {
   const std::vector<bool> named = read_neighbour_lists(options.neighbour_lists, project.scene);
   for (std::size_t i = 0; i < named.size(); ++i) {
@@ -228,10 +228,11 @@ std::vector<std::string> content_of_files(const Project& project) {
   return prints;
 }
 
-// Everything the depth maps depend on; not what only fusion uses, nor the number of threads.
+// A fingerprint of everything that the depth maps depend on. Options that only fusion uses, and the
+// number of threads, are not part of it.
 std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
-  print.add("AxialMVS depth maps 11");  // the number: of the matching method
+  print.add("AxialMVS depth maps 11");  // the number is the version of the matching method
   add_options(print, options);
   if (!options.map_settings.empty()) print.add(options.map_settings);
   const std::vector<std::string> contents = content_of_files(project);

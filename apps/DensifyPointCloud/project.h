@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The input of one run: the scene with its ports, neighbours, masks and working resolution, and the
-// fingerprint of everything that the depth maps depend on.
+// The input of one run: the scene with its ports, neighbours, masks and working resolution, and a
+// fingerprint of all data that the depth maps depend on.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@
 
 namespace densify {
 
-// One image of the scene at the resolution that it is worked on at; ImageStore has the pixels.
-// Images without calibration have an empty camera.
+// One image of the scene at its working resolution. ImageStore has its pixels. Images without
+// calibration have an empty camera.
 struct View {
   std::uint32_t id = 0;  // global id
   axial::CameraModel camera;
@@ -29,42 +29,43 @@ struct View {
   axial::io::ImageHeader file;
   std::filesystem::path mask;  // empty: none
 
-  // Whether WorkImage::mask may be there.
+  // Whether WorkImage::mask may be non-empty.
   bool masked() const { return !mask.empty() || file.alpha; }
 };
 
 struct Project {
   axial::Scene scene;                         // in `frame`, with ports and neighbour scores
-  axial::LocalFrame frame;                    // that the scene's coordinates count from
-  std::optional<axial::io::Housing> housing;  // that the ports come from; in the world
-  axial::io::Lenses lenses;                   // to be written beside the output
+  axial::LocalFrame frame;                    // the frame of the scene's coordinates
+  std::optional<axial::io::Housing> housing;  // the source of the ports; in world coordinates
+  axial::io::Lenses lenses;                   // to write beside the output
   std::vector<axial::ViewPreparation> preparations;
-  std::vector<View> views;                                // one an image of the scene
+  std::vector<View> views;                                // one for each image of the scene
   std::vector<std::vector<axial::ViewScore>> neighbours;  // filtered
   std::vector<std::vector<axial::ViewScore>> sources;     // chosen for matching
   std::vector<std::size_t> references;                    // images that get a depth map
-  int bit_depth = 16;                                     // that the values of 16-bit images use
+  int bit_depth = 16;  // number of bits that the values of 16-bit images use
   std::string fingerprint;
 };
 
-// The scene with its ports and lenses, and the points of -p: all that needs no image files. Error
-// for anything wrong with these files.
+// Loads the scene with its ports and lenses, and the points of -p. Needs no image files. Error for
+// any fault of these files.
 Project load_scene(const Options& options);
 
-// Reads the scene and the bytes of its images and masks, but keeps no pixels. Error for anything
-// wrong with the scene or its housing, for files that are missing or cut, and for images of another
-// shape than their camera; ImageStore::check_all finds the rest.
+// Loads the scene, reads the headers and bytes of its images and masks (without keeping pixels),
+// and selects views. Error for a fault of the scene or its housing, for files that are missing or
+// truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds
+// other faults of images.
 Project load_project(const Options& options);
 
-// Whether every calibrated image is a pinhole's.
+// Whether no camera has a port or a distorted lens.
 bool all_pinholes(const Project& project);
 
-// Where the housing is read from, if there is one.
+// The path of the housing file, which may not exist.
 std::filesystem::path housing_file(const Options& options);
 
-// Leaves the housing, the lenses and the offset beside the output scene, where every later program
-// finds them. A scene without ports, distorted lenses or an offset gets none, and an older one of
-// the same name goes; the housing that --housing names stays as it is.
+// Writes housing, lenses and offset beside the output scene, where later programs look for them.
+// Removes such a file of the same name if the scene has no ports, distorted lenses or offset. The
+// file that --housing names is never changed.
 void write_cameras_beside_output(const Project& project, const Options& options);
 
 }  // namespace densify

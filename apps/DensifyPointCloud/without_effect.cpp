@@ -23,7 +23,7 @@ constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolutio
                         "mask-path",        "ignore-mask-label",  "bit-depth",      "estimate-roi",
                         "roi-border",       "view-neighbors-file"};
 
-// Those of `names` that were given, as "--a, --b".
+// The options of `names` that were given, as "--a, --b".
 std::string given_of(const Options& options, Names names) {
   std::string listed;
   for (const char* name : names)
@@ -37,7 +37,7 @@ void warn_of(const Options& options, Names names, const std::string& cause) {
     axial::log_warning("{}: without effect {}", listed, cause);
 }
 
-// The first of the exports is made, and the others are not.
+// If several exports are asked for, the first one is made.
 std::string export_that_is_made(const Options& options) {
   if (options.filter_point_cloud < 0) return "filter-point-cloud";
   return options.export_number_views != 0 ? "export-number-views" : "estimate-scale";

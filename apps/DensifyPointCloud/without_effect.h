@@ -5,14 +5,14 @@
 
 namespace densify {
 
-// A warning, in one line for each cause, of the options that were given and that change nothing
-// with the others that were given. Options of OpenMVS that change nothing here say so elsewhere.
+// Warns, in one line for each cause, of given options that have no effect because of other given
+// options. OpenMVS's options that never have an effect here are reported in options.cpp.
 void warn_of_options_without_effect(const Options& options);
 
-// The same for options that a scene without ports leaves without effect. `project` has its ports.
+// The same for options that have no effect on this project, for example in air.
 void warn_of_options_without_effect(const Project& project, const Options& options);
 
-// The same for --estimate-roi where the scene has a region of interest of its own.
+// The same for --estimate-roi if the scene has its own region of interest.
 void warn_of_region_of_scene(const Options& options);
 
 }  // namespace densify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is told of a cloud or mesh beside its evaluation as a whole, where the files know enough.
+// Further parts of the evaluation of a cloud or mesh, where the files have the necessary data.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,8 +9,8 @@
 #include "options.h"
 #include "scene/point_cloud.h"
 
-// Of the cloud in `path`: numbers of views from its view lists, and the vertex properties `error`
-// and `confidence`.
+// The properties of the points of the cloud in `path`: numbers of views from its view lists, and
+// the vertex properties `error` and `confidence`.
 axial::evaluate::PointWorth read_worth(const std::filesystem::path& path,
                                        const axial::PointCloud& cloud);
 
@@ -24,6 +24,6 @@ struct Evaluated {
 };
 
 // Prints the tables and returns them for the JSON file: recall by the truth's vertex property
-// `thickness`, errors by the points' numbers of views, whether expected errors are right, density
-// along the strip.
+// `thickness`, errors by the points' numbers of views, a comparison of expected and actual errors,
+// density along the strip of cameras.
 nlohmann::ordered_json report_parts(const Options& options, const Evaluated& evaluated);

@@ -28,7 +28,7 @@ using evaluate::Similarity;
 
 namespace {
 
-// Errors of the stages do not know files.
+// Adds the file's name to errors of `action`, which does not know the file.
 template <class Action>
 auto naming(const fs::path& file, Action action) {
   try {
@@ -55,16 +55,16 @@ struct Input {
   }
 };
 
-// What coordinates count from while they are float: those of the truth and its cameras, and those
-// of the input before it is aligned.
+// The local frames that float coordinates refer to: of the truth and its cameras, and of the input
+// before alignment.
 struct Frames {
   LocalFrame truth, input;
 };
 
-// Where the file's vertices are. A warning for floats that are far from what they count from: they
-// have lost digits before they came here.
+// A frame near the file's vertices. Warns of float coordinates far from their origin: they had lost
+// digits when the file was written.
 LocalFrame checked_frame(const fs::path& path) {
-  constexpr double kFar = 1e4;  // float tells 1 mm apart there
+  constexpr double kFar = 1e4;  // [m]: here, float has a resolution of 1 mm
   const io::PlyPlace place = io::ply_place(path);
   const double far = place.frame.to_local(place.first_vertex).cwiseAbs().maxCoeff();
   if (place.is_float && far > kFar)
@@ -75,7 +75,7 @@ LocalFrame checked_frame(const fs::path& path) {
   return frame_near(place.first_vertex);
 }
 
-// The models that are given, and the frame of each: the reference's is the truth's, too.
+// The given models, and their frames. The reference model has the truth's frame.
 struct Models {
   io::ColmapModel reference, estimated;
   Frames frames;
@@ -159,8 +159,8 @@ Similarity align_by_icp(const Options& options, const Input& input,
   return result.transform;
 }
 
-// Of two places that have nothing to do with each other nothing can be said, and that slowly: no
-// part of a search tree is nearer than the others.
+// Distant clouds cannot be compared, and the search would be slow: no part of a search tree is
+// nearer than the others.
 void refuse_if_far(const Options& options, const Input& input, const Mesh& truth) {
   constexpr float kFar = 1e5;
   const auto is_far = [&](const Eigen::Vector3f& x) {
@@ -172,7 +172,7 @@ void refuse_if_far(const Options& options, const Input& input, const Mesh& truth
          options.input.string(), kFar / 1000, options.truth.string());
 }
 
-// The input goes from its own frame to the truth's.
+// Moves the input from its own frame to the truth's frame.
 nlohmann::ordered_json align(const Options& options, Input& input, const evaluate::Surface& surface,
                              const Models& models) {
   const Frames& frames = models.frames;
@@ -193,7 +193,7 @@ nlohmann::ordered_json align(const Options& options, Input& input, const evaluat
   return report;
 }
 
-// Leaves the elements whose `keep` is true, of an array that may be empty.
+// Keeps the elements whose `keep` is true. The array may be empty.
 template <class T>
 void keep_only(std::vector<T>& all, const std::vector<bool>& keep) {
   std::size_t kept = 0;
@@ -202,7 +202,8 @@ void keep_only(std::vector<T>& all, const std::vector<bool>& keep) {
   all.resize(kept);
 }
 
-// The points (and normals) that count; their worth is left in `input`.
+// The points (and normals) that are evaluated. Removes the properties of the other points from
+// `input`.
 PointCloud counted_points(const Options& options, Input& input,
                           std::span<const evaluate::View> views) {
   PointCloud counted;
@@ -253,7 +254,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
-  // Only known centres bring together what lies that far apart.
+  // Only an alignment by known centres brings together input and truth that are far apart.
   if (options.align != "centres") refuse_if_far(options, input, truth);
   report["align"] = align(options, input, surface, models);
   if (options.align == "centres") refuse_if_far(options, input, truth);

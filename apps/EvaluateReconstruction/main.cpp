@@ -23,7 +23,7 @@ std::vector<fs::path> inputs_of(const Options& options) {
   return inputs;
 }
 
-// Before the work.
+// Called before the work.
 void check_outputs(const Options& options) {
   const std::vector<fs::path> inputs = inputs_of(options);
   const std::pair<const char*, const fs::path&> outputs[] = {
@@ -39,7 +39,7 @@ void check_outputs(const Options& options) {
   }
 }
 
-// Once, because it says which of several models is read.
+// Called once, because it logs which of several models is read.
 void find_models(Options& options) {
   if (!options.cameras.empty()) options.cameras_model = io::find_colmap_model(options.cameras);
   if (!options.estimated.empty())

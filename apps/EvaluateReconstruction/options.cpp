@@ -101,7 +101,7 @@ void check(const Options& options) {
     fail("--picture-camera needs --cameras");
 }
 
-// Options whose values are taken and change nothing.
+// Warns of valid options that have no effect.
 void warn_of_no_effect(const Options& options) {
   const auto warn = [&](bool without_effect, const char* name, const char* cause) {
     if (without_effect && axial::given(options.parsed, name))

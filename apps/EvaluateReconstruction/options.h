@@ -13,24 +13,24 @@ struct Options {
   std::filesystem::path input, truth;
   std::vector<double> tolerances;   // [m], at least one
   std::string align = "none";       // none, centres, icp
-  bool allow_missing = false;       // go on with a housing that gives no image a port
+  bool allow_missing = false;       // go on if the housing gives no image a port
   std::filesystem::path cameras;    // true COLMAP model; empty: none
   std::filesystem::path housing;    // ports of `cameras`; empty: dry
   std::filesystem::path estimated;  // estimated COLMAP model; empty: none
-  // The folders in these two that hold the models; filled by the program.
+  // The folders with the models of `cameras` and `estimated`; filled by the program.
   std::filesystem::path cameras_model, estimated_model;
   std::size_t samples = 200000;
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;
   bool framed_only = false;
   double gross = 0;      // [m]; 0: four times the first tolerance
-  bool strip = false;    // the density along the strip of cameras
+  bool strip = false;    // evaluate the density along the strip of cameras
   double color_max = 0;  // [m]
   int picture_width = 1024;
-  std::string picture_camera;  // image name; empty: the first
+  std::string picture_camera;  // image name; empty: the first image
   // Outputs; empty: not written.
   std::filesystem::path json, error_cloud, picture, aligned, transform;
 };
 
-// Parses and checks the command line; what is left to do is in `parsed.run`.
+// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);

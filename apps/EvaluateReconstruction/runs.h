@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two things the program evaluates. Both print their table, write what the options ask for and
-// return what goes into the JSON file.
+// The evaluation of a cloud or mesh, and of a depth map. Both print their table, write the files
+// that the options name, and return the content of the JSON file.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

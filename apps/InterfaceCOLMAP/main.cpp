@@ -40,9 +40,9 @@ std::size_t count_distorted(const Scene& scene) {
   return count;
 }
 
-// Of the file, or else what the model's cameras carry. COLMAP-Underwater writes ports into models
-// whose poses it solved without refraction, too, and the files do not say so: the tracks do.
-// `warned`: that they tell so.
+// The housing file, or the ports that the model's cameras carry. COLMAP-Underwater also writes
+// ports into models whose poses it computed without refraction. The files do not tell this, but the
+// tracks do; then this function warns and sets `warned`.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned) {
   const io::Housing carried = io::housing_of(model.cameras);
   if (!options.housing_file.empty()) {
@@ -68,7 +68,7 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model, b
   return carried;
 }
 
-// All that a COLMAP model's folder may hold of it.
+// All files that a COLMAP model may have in its folder.
 std::vector<fs::path> model_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const char* part : {"cameras", "images", "points3D", "rigs", "frames"})
@@ -77,7 +77,7 @@ std::vector<fs::path> model_files(const fs::path& folder) {
   return files;
 }
 
-// Neither the model nor the photographs nor the housing file is written over.
+// Error if the output would replace the model, a photograph or the housing file.
 void check_outputs(const Options& options, const fs::path& model_folder,
                    const io::ColmapModel& model) {
   std::vector<fs::path> inputs = model_files(model_folder);
@@ -89,7 +89,7 @@ void check_outputs(const Options& options, const fs::path& model_folder,
   require_no_inputs(outputs, inputs, "--output-file");
 }
 
-// One line where the images could as well be those of another folder.
+// Logs the image folder, and another folder that also has images of these names.
 void say_image_folder(const Options& options, const io::ColmapModel& model) {
   std::error_code error;
   const fs::path& other = options.other_image_folder;
@@ -100,7 +100,7 @@ void say_image_folder(const Options& options, const io::ColmapModel& model) {
            rival ? ", not in " + other.string() + ", which holds images of these names, too" : "");
 }
 
-// Few cameras are ready at once, and no line tells so.
+// Few cameras take no time: shows no progress for them.
 ProgressSink progress_of_many(const std::string& title) {
   constexpr std::size_t kMany = 100;
   return [show = console_progress(title)](std::size_t done, std::size_t total) {
@@ -108,10 +108,10 @@ ProgressSink progress_of_many(const std::string& title) {
   };
 }
 
-// Marks a model as exported: the next export may take its place.
+// Marks a model as exported: the next export may replace it.
 constexpr const char* kExportMarker = "export.json";
 
-// A kill while an export takes its place may leave the marker with the files that did not.
+// If an export was stopped while it replaced files, the marker may be left in its staging folder.
 bool is_export(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / kExportMarker, error)) return true;
@@ -122,8 +122,8 @@ bool is_export(const fs::path& folder) {
   return false;
 }
 
-// The model that a scene was made from usually lies where exports go, too. Binary files are none of
-// an export, and COLMAP would read them instead of it.
+// Exports often go where the model lies that the scene was made from: that model is not
+// overwritten. An export has no binary files, and COLMAP would read them instead of the export.
 void check_export_folder(const fs::path& folder) {
   std::error_code error;
   const bool exported = is_export(folder);
@@ -136,8 +136,8 @@ void check_export_folder(const fs::path& folder) {
           file.string());
 }
 
-// What a line says behind the folder that images are named from. A scene's paths count from the
-// working folder, which may not be the one they were written for.
+// The part of the log line about images that do not exist. A scene's paths count from the working
+// folder, which may differ from the folder that they were written for.
 std::string say_missing(const Scene& scene, const Options& options) {
   std::error_code error;
   const auto missing = std::ranges::count_if(scene.images, [&](const SceneImage& image) {
@@ -150,7 +150,7 @@ std::string say_missing(const Scene& scene, const Options& options) {
       missing, fs::weakly_canonical(options.parsed.common.working_folder, error).string());
 }
 
-// A scene with ports goes to COLMAP-Underwater, whose files have a place for them.
+// A scene with ports is written for COLMAP-Underwater, whose files can hold ports.
 int export_scene(const Options& options) {
   Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
   const LocalFrame frame = io::enter_local_frame(scene, options.scene_file);
@@ -217,7 +217,7 @@ int run(int argc, char** argv) {
                                         progress_of_many("Prepared cameras"));
 
   const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
-  // The housing goes first: a scene without the one it was made with would count as dry.
+  // The housing is written first: a scene without its housing would be read as dry.
   if (options.housing_file.empty() && housing.ports.empty()) {
     if (behind_ports)
       log_warning("{}: is left as it is, and goes with this scene", housing_file.string());
@@ -228,7 +228,7 @@ int run(int argc, char** argv) {
     io::warn_of_housing_beside(
         scene, options.scene_file, by_image,
         options.housing_file.empty() ? options.colmap_folder : options.housing_file);
-    // Ports that the model carries are found in the file that is written here.
+    // Messages about ports that the model carries name the housing file that is written here.
     const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
     io::attach_ports(scene, io::in_frame(frame, by_image), ports_from.string());
     io::write_housing(housing_file, by_image);
@@ -248,7 +248,7 @@ int run(int argc, char** argv) {
                 options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
-  // The ports of a housing that is left beside the scene are not at hand here.
+  // The ports of an existing housing file beside the scene are not known here.
   if (warned || (housing.ports.empty() && behind_ports)) return 0;
   const io::Housing ports = io::in_frame(frame, housing);
   if (const auto line = pose::import_warning(model, ports, options.image_folder))

@@ -12,7 +12,7 @@ using axial::fail;
 
 namespace {
 
-// A scene is exported to a folder: a name of a file, such as an import's, is a slip.
+// The output of an export is a folder. A file name, as for an import, is a mistake.
 void refuse_file_name(const std::string& output) {
   for (const char* extension : {".mvs", ".ply", ".txt", ".bin", ".json"})
     if (fs::path(output).extension() == extension)
@@ -20,8 +20,8 @@ void refuse_file_name(const std::string& output) {
            output);
 }
 
-// A folder that was asked for counts from the working folder, as in OpenMVS. The default belongs to
-// the COLMAP folder: whatever images/ the program is started beside must not win over the model's.
+// A given folder counts from the working folder, as in OpenMVS. The default belongs to the COLMAP
+// folder: another images/ in the working folder must not be used instead of the model's.
 void find_image_folder(const std::string& name, Options& options) {
   const axial::ParsedOptions& parsed = options.parsed;
   fs::path candidates[] = {axial::in_working_folder(parsed.common, name),

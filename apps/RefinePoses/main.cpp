@@ -31,7 +31,7 @@ namespace {
 
 using Lenses = std::vector<io::ColmapCamera>;
 
-// In air: of the file, or else the model's, where these carry ports.
+// The lenses in air: from the file, or from the model if its cameras carry ports.
 Lenses load_lenses(const Options& options, const io::ColmapModel& model) {
   if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
     fail("--lens is missing: the lens as calibrated in air");
@@ -50,9 +50,9 @@ pose::ColmapBundle load(const Options& options, const io::ColmapModel& model, co
   }
 }
 
-// What the lenses, or else the model's cameras, carry.
+// The ports of the lenses' file, and of the model's cameras where the lenses have none.
 io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) {
-  // One lens is that of all cameras, whatever their ids.
+  // A single lens applies to all cameras, whatever its id.
   if (lenses.size() == 1 && lenses.front().port)
     return io::housing_with(io::to_housing_port(*lenses.front().port));
   io::Housing carried = io::housing_of(lenses);
@@ -62,7 +62,8 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
   return carried;
 }
 
-// Of the file, or else what is carried. A warning where what is passed over differs.
+// The housing file, or the carried ports without one. Warns if carried ports that are not used
+// differ.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
                          const Lenses& lenses) {
   const io::Housing carried = carried_housing(model, lenses);
@@ -79,7 +80,7 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model,
   return carried;
 }
 
-// The files that are read, as far as the model's folder is not their only place.
+// The input files: an output must not replace one.
 std::vector<fs::path> inputs_of(const Options& options, const fs::path& model) {
   std::vector<fs::path> inputs{options.housing};
   constexpr std::string_view kPositions = "positions:";
@@ -108,7 +109,8 @@ bool same_lens(const io::ColmapCamera& a, const io::ColmapCamera& b) {
          });
 }
 
-// A model's camera behind a port has its lens in air, too.
+// A model's camera with a port has its lens in air, too. Warns if that lens is not used and
+// differs.
 void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
                           const Lenses& lenses) {
   for (const io::ColmapCamera& camera : model.cameras) {
@@ -123,7 +125,7 @@ void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
   }
 }
 
-// Before the work: that the output can be written, and is not the input.
+// Called before the work: checks that the output can be written and does not replace the input.
 void check_output(const Options& options, const fs::path& model) {
   std::error_code error;
   if (fs::equivalent(options.output / "sparse", model, error) ||
@@ -134,7 +136,7 @@ void check_output(const Options& options, const fs::path& model) {
   require_writable_folder(options.output);
 }
 
-// Known positions place the model: it then counts from near them, whatever it counted from before.
+// Known positions place the model, so its local frame must be near them.
 LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
   std::vector<Eigen::Vector3d> centres;
   for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
@@ -144,8 +146,8 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
   return frame;
 }
 
-// What the options say is known and unknown of the bundle, into `options.refine.adjust`. Returns
-// the frame that the bundle will be in; it is in `frame_of_model`.
+// Sets the known and unknown numbers of `options.refine.adjust`. `frame_of_model`: the frame of
+// `bundle`. Returns the frame that the bundle will be in.
 LocalFrame set_known(Options& options, const pose::Bundle& bundle, LocalFrame frame_of_model,
                      UnusedInput& unused) {
   pose::AdjustOptions& adjust = options.refine.adjust;
@@ -157,7 +159,7 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, LocalFrame fr
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 
-// The bundle where refining began, and what came of it.
+// The bundle before refining, and the report of refining.
 struct Refined {
   pose::Bundle before;
   pose::RefineReport report;
@@ -175,7 +177,8 @@ Refined refine(Options& options, pose::ColmapBundle& refined, const io::ColmapMo
   return {std::move(before), std::move(report)};
 }
 
-// What is left of `images`, said where it is not all.
+// Warns about images, positions and observations that were dropped, and if adjustment did not
+// converge.
 void warn(const pose::RefineReport& report, const pose::Bundle& bundle,
           const pose::RefineOptions& options, std::vector<std::string>& unused) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
@@ -208,7 +211,7 @@ void write_model(const Options& options, const fs::path& folder, const io::Colma
   io::write_colmap_text(folder / "sparse", model);
 }
 
-// All files or none; the report a second time once standard deviations are known.
+// Writes all files or none; then the report again with the standard deviations.
 void write(const Options& options, const pose::ColmapBundle& refined, const io::ColmapModel& model,
            const LocalFrame& frame, const io::Housing& housing, const Results& results) {
   io::ColmapModel result = to_model(refined, model);
@@ -234,8 +237,8 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   const fs::path folder = io::find_colmap_model(options.model);
   io::ColmapModel model = io::read_colmap_model(folder);
-  // Adjusting in the world, the solver would take steps for small that are not, against coordinates
-  // of millions.
+  // In world coordinates of millions of metres the solver would stop too early, because its steps
+  // are small relative to the coordinates.
   const LocalFrame frame_of_model = io::enter_local_frame(model);
   const Lenses lenses = load_lenses(options, model);
   warn_of_other_lenses(options, model, lenses);

@@ -16,13 +16,13 @@ struct Options {
   std::filesystem::path output;   // folder
   bool underwater = false;        // also write the model for COLMAP-Underwater
   std::string poses = "adjust";   // "adjust" or "known"
-  bool allow_missing = false;     // go on without a scale that cannot be used
-  std::string scale_from;         // see scale_from.h; empty: refraction alone tells the scale
+  bool allow_missing = false;     // go on without a known scale that cannot be used
+  std::string scale_from;         // see scale_from.h; empty: refraction alone determines the scale
   double scale_sigma = 0.001;     // [m]
   std::string refine_list;        // see pose/free_numbers.h
   axial::pose::Sigmas sigmas;
   axial::pose::RefineOptions refine;
 };
 
-// Parses and checks the command line; what is left to do is in `parsed.run`.
+// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);

@@ -31,12 +31,12 @@ double scale_sigma(const Results& results, double sigma) {
   return results.scale_lost ? std::numeric_limits<double>::infinity() : sigma;
 }
 
-// JSON has no infinity: null says that nothing tells the number.
+// JSON has no infinity: null means that nothing determines the number.
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-// What is known before standard deviations are: the noise.
+// The uncertainty before standard deviations are computed: only the noise is known.
 pose::Uncertainty not_computed(const Results& results) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   pose::Uncertainty none;
@@ -117,6 +117,6 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
                                 {"sigma", finite_or_null(value.sigma)}});
     json["cameras"].push_back(camera);
   }
-  // Names in another encoding than UTF-8 are not worth the loss of the report.
+  // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.
   return io::to_text(json, 1) + "\n";
 }

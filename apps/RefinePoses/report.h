@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a refinement came to, for people and for programs.
+// The result of a refinement, for the log and as JSON.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "pose/refine.h"
 
-// The errors of one image [px], before and after.
+// The RMS errors of one image [px], before and after.
 struct ImageErrors {
   std::string name;
   std::size_t observations = 0;
@@ -17,25 +17,26 @@ struct ImageErrors {
 std::vector<ImageErrors> errors_by_image(const axial::pose::Bundle& before,
                                          const axial::pose::Bundle& after);
 
-// What a refinement came to, without how well it is known.
+// The result of a refinement without its standard deviations.
 struct Results {
   const axial::pose::RefineReport& report;
   std::vector<ImageErrors> images;
   const axial::pose::Bundle& bundle;
-  std::vector<std::string> ports;  // one a camera
+  std::vector<std::string> ports;  // one for each camera
   const axial::pose::AdjustOptions& options;
-  // What was given and is not used, a line each, and whether the scale is among it: then it counts
-  // as not known, whatever refraction tells of it.
+  // Input that was given but not used, one entry for each line. `scale_lost`: the known scale was
+  // not used. Then the scale counts as not known, even where refraction determines it.
   std::vector<std::string> unused;
   bool scale_lost = false;
 };
 
-// The table of errors for the log: one line each.
+// The table of errors for the log, one entry for each line.
 std::vector<std::string> error_lines(const Results& results);
 
-// How well the numbers and lengths are known, one line each.
+// The standard deviations of numbers and lengths, one entry for each line.
 std::vector<std::string> uncertainty_lines(const Results& results,
                                            const axial::pose::Uncertainty& known);
 
-// null for what is not known. Without `known`, standard deviations are null and said to be missing.
+// Numbers that are not known are null. Without `known` all standard deviations are null, and the
+// report says that they are missing.
 std::string report_json(const Results& results, const axial::pose::Uncertainty* known);

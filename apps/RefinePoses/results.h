@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The folder that is written: the refined model first, then how well it is known.
+// Writes the output folder: the refined model first, then its standard deviations.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 #include "report.h"
 
-// Writes `folder` whole: what `write_model` leaves in the staging folder whose name it gets, and a
-// report.json that says that the standard deviations are missing. Then computes these by `compute`,
-// writes them into report.json, and returns them. If that fails, for want of memory, say, the
-// folder stays, and an Error says that they alone are missing.
+// Writes `folder` atomically: the files that `write_model` writes into the staging folder, and a
+// report.json without standard deviations. Then calls `compute` for the standard deviations, writes
+// them into report.json, and returns them. If `compute` fails, for example for lack of memory, the
+// folder stays, and an Error says that only the standard deviations are missing.
 axial::pose::Uncertainty write_results(
     const std::filesystem::path& folder,
     const std::function<void(const std::filesystem::path& staging)>& write_model,

@@ -22,7 +22,7 @@ using pose::KnownDistance;
 
 const std::string kOption = "--scale-from ";
 
-// What was given is right, and of no use with this model.
+// The input is valid, but cannot be used with this model.
 class NoUse : public Error {
  public:
   using Error::Error;
@@ -57,7 +57,7 @@ std::size_t image_named(const pose::Bundle& bundle, const std::string& name,
   return *image;
 }
 
-// NAME, NAME, METRES of a list that commas in the names have split further.
+// NAME, NAME, METRES of a list whose names contain commas.
 std::vector<std::string> names_with_commas(const std::vector<std::string>& words,
                                            const pose::Bundle& bundle, const std::string& where) {
   const auto joined = [&](std::size_t begin, std::size_t end) {
@@ -130,8 +130,7 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
            file.string());
 }
 
-// A survey's list names photographs that COLMAP found no pose for, too: they are said and passed
-// over.
+// A survey's list may name photographs that COLMAP found no pose for: skips them with a warning.
 std::vector<pose::KnownPosition> read_positions(const std::filesystem::path& file, double sigma,
                                                 const pose::Bundle& bundle) {
   std::vector<pose::KnownPosition> positions;

@@ -78,7 +78,7 @@ void extract_and_match(const Chain& chain, const fs::path& folder, const fs::pat
   run_subprocess(matches, folder / "matches.log");
 }
 
-// Where COLMAP's mapper finds no poses it fails and says so: that is a result, and no error.
+// If COLMAP's mapper finds no poses it fails with this message: a result, not an error.
 void map(const Chain& chain, const fs::path& folder, const fs::path& images, bool refine) {
   const std::string flag = refine ? "1" : "0";
   run_unless_excused(
@@ -163,7 +163,7 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
   });
   const fs::path model = largest_model(folder / "models");
   if (model.empty() || io::read_colmap_model(model).images.size() < 3) return {};
-  // A step of its own: other programs of ours are no reason to ask COLMAP again.
+  // A step of its own, so that changes of the project's programs do not run COLMAP again.
   step(metric, {content_of(model), content_of_programs({"AlignModel"})}, [&] {
     run_sibling(
         chain, "AlignModel",
@@ -185,7 +185,7 @@ fs::path densified(const Chain& chain, const std::string& name, const SimulatedS
                "-o",
                (folder / "scene.mvs").string()};
   const Words densify = densify_words(folder, options);
-  // Files of the same name may hold other poses or another port.
+  // The file names are not enough: the files may hold other poses or another port.
   Words contents{content_of(model)};
   if (!options.housing.empty()) {
     import += {"--housing", options.housing.string()};

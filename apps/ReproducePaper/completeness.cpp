@@ -35,7 +35,7 @@ SceneOptions scene_of(const CompletenessOptions& options, int seed) {
   SceneOptions scene;
   scene.preset = options.preset;
   scene.seed = seed;
-  scene.views = 0;  // the preset's
+  scene.views = 0;  // 0: number of the preset
   scene.samples = 3;
   scene.truth = false;
   scene.medium = options.poses == "colmap" ? "both" : options.medium;
@@ -61,7 +61,7 @@ fs::path model_of(const Chain& chain, const CompletenessOptions& options,
   return poses.model;
 }
 
-// All that EvaluateReconstruction writes but histograms, and the CPU time of DensifyPointCloud.
+// The report of EvaluateReconstruction without histograms, and the CPU time of DensifyPointCloud.
 Json measured(const Chain& chain, const CompletenessOptions& options, int seed) {
   const SimulatedScene scene = simulated(chain, scene_of(options, seed));
   DenseOptions dense_options;
@@ -85,9 +85,7 @@ std::string part_name(int seed) {
   return fmt::format("seed{}", seed);
 }
 
-// Rows.
-
-// A number of a seed's result; not a number where there is none.
+// A number of a seed's result; NaN if the result does not have it.
 using Value = std::function<double(const Json& result)>;
 
 double number(const Json& value) {
@@ -105,7 +103,7 @@ Value of_score(const char* field) {
   return [=](const Json& result) { return number(result.at("scores").at(0).at(field)); };
 }
 
-// The recall of a class of `list`; its "least" names it.
+// The recall of the k-th class in `list`.
 Value of_class(const char* list, std::size_t k) {
   return [=](const Json& result) { return number(result.at(list).at(k).at("recall").at(0)); };
 }
@@ -140,7 +138,7 @@ std::vector<Column> columns_for(const Json& any) {
   return columns;
 }
 
-// One a class of thickness.
+// One column for each class of thickness.
 std::vector<Column> thickness_columns(const Json& any) {
   std::vector<Column> columns;
   const Json& classes = any.at("by_thickness");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How complete clouds are by the number of cameras that see a place: scenes of one preset
-// simulated, reconstructed and measured in one command.
+// Completeness of clouds by the number of cameras that see a place: simulates, reconstructs and
+// measures scenes of one preset in one command.
 #pragma once
 
 #include <vector>
@@ -11,20 +11,22 @@
 namespace axial {
 
 struct CompletenessOptions {
-  std::string preset = "closeup", medium = "water", poses = "true";  // "colmap": of photos in air
+  // Poses "colmap": computed from photographs in air.
+  std::string preset = "closeup", medium = "water", poses = "true";
   std::vector<int> seeds{11, 12, 13};
-  double tolerance = 0;  // [m]; 0: 5 mm, and 2 mm for what is seen from less than a metre
+  double tolerance = 0;  // [m]; 0: 2 mm for the presets closeup and thicket, else 5 mm
   Words scene, dense;    // more options of SimulateUnderwater and of DensifyPointCloud
 };
 
-// Error that names the option: a medium, poses or a tolerance that there are not, no seed, or one
-// seed twice.
+// Error that names the option for an unknown medium, unknown poses, an invalid tolerance, and for
+// seeds that are missing or occur twice.
 void check(const CompletenessOptions& options);
 
 // "completeness_closeup_water_true".
 std::string completeness_name(const CompletenessOptions& options);
 
-// One part a seed. Documents: one, completeness_....md, of a row a seed and one of their medians.
+// One part for each seed. One document, completeness_....md: one row for each seed, and a row of
+// medians.
 experiments::Experiment completeness(const Chain& chain, const CompletenessOptions& options);
 
 }  // namespace axial

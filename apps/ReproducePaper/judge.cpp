@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is measured of a chain's clouds and maps.
+// Measures the clouds and depth maps of a chain.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Small enough to be kept among the numbers.
+// The picture reduced to `width`, small enough to store with the numbers.
 std::string small_picture(const fs::path& file, int width) {
   cv::Mat picture = io::read_color_image(file);
   const double factor = std::min(1.0, static_cast<double>(width) / picture.cols);
@@ -32,7 +32,7 @@ fs::path truth_of(const SimulatedScene& scene, const std::string& medium, const 
   return scene.images(medium) / (image.stem().string() + ".distance.tiff");
 }
 
-// What EvaluateReconstruction says of a cloud that leaves nothing to measure.
+// EvaluateReconstruction's messages for a cloud with nothing to measure.
 Words nothing_to_measure() {
   return {"the cloud has no points", "no point lies in enough of the images",
           "too few to align a cloud", "the cloud has no extent to align by"};
@@ -50,7 +50,7 @@ Words evaluation_arguments(const fs::path& cloud, const SimulatedScene& scene,
   return words;
 }
 
-// The view's photograph as it was matched.
+// The view's photograph at the resolution of its depth map.
 cv::Mat1b grey_of(const SimulatedScene& scene, const std::string& medium, const DepthMap& map) {
   const fs::path file = scene.images(medium) / fs::path(map.image_path).filename();
   cv::Mat1b grey = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
@@ -106,7 +106,7 @@ Json rings_of(std::span<const evaluate::DepthEvaluation> maps) {
   return rings;
 }
 
-// All pixels of all maps as one.
+// The errors of all pixels of all maps together.
 Json errors_of(std::span<const evaluate::DepthEvaluation> maps, double tolerance) {
   evaluate::Magnitudes errors;
   std::size_t truths = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repeats the paper's experiments: numbers as JSON, and from these its figures and tables.
+// Repeats the paper's experiments: writes their numbers as JSON, and figures and tables made from
+// them.
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"

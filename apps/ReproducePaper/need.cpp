@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When is a refractive model needed at all? What people do today, a lens that COLMAP calibrates
-// from the photographs under water and a pinhole engine that believes it, beside a known port.
+// Shows when a refractive model is needed: compares a known port with common practice, where COLMAP
+// calibrates a lens from the underwater photographs and a pinhole engine uses it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,8 +30,8 @@ Calibration calibration(const Chain& chain, const Case& one, const SimulatedScen
   return calibration_of(poses.model);
 }
 
-// Of whatever COLMAP makes of the images: cameras that have little to do with the true ones may
-// leave nothing to match or to measure.
+// Evaluation of the clouds from COLMAP's poses. If the poses are far from the true ones there may
+// be nothing to match or to measure.
 Json clouds_of_today(const Chain& chain, const SimulatedScene& scene,
                      const std::filesystem::path& model, EvaluationOptions evaluation) {
   Json clouds{{"as_it_lies", nullptr}, {"moved", nullptr}};
@@ -93,8 +93,6 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   return all;
 }
 
-// What the reader sees.
-
 double number(const Json& result, const char* field) {
   return result.at(field).get<double>();
 }
@@ -133,7 +131,7 @@ std::string table(const Json& results, bool quick) {
   return experiments::markdown_table(rows);
 }
 
-// One panel a series: the mean distance over what `x` says of a case.
+// One panel for each series: the mean distance over the value `x` of each case.
 experiments::LinePanel panel(const Json& results, const std::vector<Case>& shown,
                              const std::string& title,
                              const std::function<double(const Case&, const Json&)>& x) {

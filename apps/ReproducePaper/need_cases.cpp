@@ -36,7 +36,7 @@ SceneOptions with_fov(double degrees) {
   return scene;
 }
 
-// `preset` at the usual distance.
+// The preset, scaled to the usual distance.
 SceneOptions with_relief(const std::string& preset, double relief) {
   SceneOptions scene = usual_scene();
   scene.preset = preset;
@@ -53,7 +53,7 @@ SceneOptions as_it_comes(const std::string& preset) {
   return scene;
 }
 
-// Other ground, at another distance.
+// A survey of other ground, with the distance multiplied by `factor`.
 SceneOptions second_survey(double factor) {
   SceneOptions scene = with_scale(usual_scene().scale * factor);
   scene.seed = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of the map of where a refractive model is needed.
+// The rows of the table that shows where a refractive model is needed.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 namespace axial {
 
 struct Case {
-  std::string name;    // of the part
-  std::string series;  // what is varied
+  std::string name;    // name of the part
+  std::string series;  // name of the varied parameter
   double value;
   SceneOptions scene;
-  // The lens was calibrated in this scene, before, and is not calibrated again.
+  // Set if the lens was calibrated in this other scene and is not calibrated again.
   std::optional<SceneOptions> calibrated_in;
 
   bool is_usual() const { return name == "usual"; }
 };
 
-// Quick: the usual case, one that is worse, and one second survey, all small.
+// `quick`: the usual case, a worse case and one second survey, all with small images.
 std::vector<Case> need_cases(bool quick);
 
-// For the reader: "tilt 6 degrees".
+// A title for the table, such as "tilt 6 degrees".
 std::string title_of(const Case& one);
 
 }  // namespace axial

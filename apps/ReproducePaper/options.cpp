@@ -22,7 +22,7 @@ constexpr const char* kCompleteness = "completeness";
 constexpr Chained kChained[] = {
     {"reconstruction", reconstruction}, {"sensitivity", sensitivity}, {"need", need}};
 
-// Options of the experiment that is told of no paper.
+// Options of the experiment that does not repeat one of the paper's.
 void declare_completeness(OptionList& list, Arguments& a) {
   list.add_with_default("preset", &a.completeness.preset, "completeness: of SimulateUnderwater")
       .add_with_default("medium", &a.completeness.medium, "completeness: air or water")
@@ -100,7 +100,7 @@ ProgramOptions describe(Arguments& a) {
           "compute only the parts whose names begin so; figures and tables come with the last part")
       .add("page", &a.page, "Markdown page to bring up to date with the results");
   declare_completeness(program.visible, a);
-  // The name that parse_options knows the positional argument by.
+  // parse_options uses this name for the positional argument.
   program.hidden.add("input-file", &a.experiment, "the experiment");
   return program;
 }
@@ -128,11 +128,11 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   };
   for (experiments::Experiment& experiment : experiments::all_experiments(a.quick))
     if (asked_for(experiment.name)) chosen.push_back(std::move(experiment));
-  // Made only if asked for: they read the chain's programs, which the others do without.
+  // Made only if asked for: they read the chain's programs, which other experiments do not need.
   for (const auto& [name, make] : kChained)
     if (asked_for(name))
       chosen.push_back(make({work_folder(a, common, name), common.max_threads}, a.quick));
-  // It repeats nothing of the paper's, so that `all` goes without it.
+  // Not part of `all`, because it does not repeat an experiment of the paper.
   if (is_completeness(a)) chosen.push_back(completeness_of(a, common));
   if (chosen.empty())
     fail("'{}' is no experiment: must be {}{} or all", a.experiment, names, kCompleteness);

@@ -11,7 +11,7 @@ using experiments::Document;
 
 constexpr const char* kEnd = "<!-- end -->";
 
-// Where the end of the table whose marker ends at `from` is.
+// The end of the table whose marker ends at `from`.
 std::size_t end_of_table(const std::string& text, std::size_t from, const std::string& marker,
                          const std::filesystem::path& page) {
   const std::size_t to = text.find(kEnd, from);

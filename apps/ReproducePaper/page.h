@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A Markdown page that shows results without a number copied by hand.
+// A Markdown page with results: its numbers are inserted and never copied by hand.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,14 @@
 
 namespace axial {
 
-// Error unless the page can be read and written, has a table of each experiment, and an end to
-// every table: better said before hours of computing than after them.
+// Error unless the page can be read and written, has a table of each experiment, and an end marker
+// after every table. Called before the experiments, which take hours.
 void check_page(const std::filesystem::path& page,
                 const std::vector<experiments::Experiment>& experiments);
 
-// Puts each table of `documents` between the lines "<!-- FILE.md -->" and "<!-- end -->" of the
-// page, where it has them, and writes each figure that the page shows as "images/FILE.svg" there.
+// Replaces the text between the lines "<!-- FILE.md -->" and "<!-- end -->" of the page by the
+// table FILE.md of `documents`, for all tables that the page has. Writes each figure that the page
+// shows as "images/FILE.svg".
 void update_page(const std::filesystem::path& page,
                  const std::vector<experiments::Document>& documents);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's figures 5 and 6: a scene reconstructed in air and through a port, by its method, by
-// ours, and by each with one half of the other.
+// The paper's figures 5 and 6: a scene reconstructed in air and through a port, with the paper's
+// method, with our method, and with one half (projection or warp) of each.
 #include "reconstruction.h"
 
 #include <fmt/format.h>
@@ -64,7 +64,7 @@ std::string dense_name(const std::string& poses, const Method& method) {
   return poses + "-" + method.name;
 }
 
-// What a finished part needs no more; until then an interrupted run finds its clouds again.
+// Removes the clouds of a finished part. An interrupted run needs them.
 void remove_clouds(const std::string& poses, const SimulatedScene& scene) {
   for (const Method& method : reconstruction_methods())
     std::filesystem::remove_all(scene.folder / dense_name(poses, method));
@@ -84,7 +84,8 @@ std::filesystem::path dense_of(const Chain& chain, const std::string& poses,
                    method.in_water ? "water" : "air", options_of(scene, method));
 }
 
-// As it lies, and after the rigid motion that fits it best: the paper registered its clouds.
+// Errors of the cloud in place, and after the best rigid motion, because the paper registered its
+// clouds.
 Json cloud_errors(const Chain& chain, const std::filesystem::path& dense,
                   const SimulatedScene& scene, EvaluationOptions evaluation) {
   Json result = evaluated(chain, dense, scene, evaluation);
@@ -94,8 +95,8 @@ Json cloud_errors(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
-// By how many cameras under water see a place at least, as far as there are so many. `cloud`: what
-// is known of it by as many as the study asks for.
+// Completeness by the least number of underwater cameras that see a place, up to the number of
+// cameras. `cloud`: the cloud's evaluation for the study's own number.
 Json completeness(const Chain& chain, const std::filesystem::path& dense,
                   const SimulatedScene& scene, const Study& study, const Json& cloud) {
   Json result{{std::to_string(study.evaluation.min_views), cloud.at("recall")}};
@@ -110,7 +111,8 @@ Json completeness(const Chain& chain, const std::filesystem::path& dense,
   return result;
 }
 
-// What comes out where two depth maps suffice, judged where two cameras under water see.
+// Evaluation of the maps fused with --number-views-fuse 2, for places that two underwater cameras
+// see.
 Json fused_for_two(const Chain& chain, const std::filesystem::path& dense,
                    const SimulatedScene& scene, const Study& study, const Method& method) {
   EvaluationOptions evaluation = study.evaluation;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the experiment `reconstruction` computes and what it shows have in common.
+// Declarations for both the computation and the documents of the experiment `reconstruction`.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@ struct Method {
   const char* name;
   const char* title;
   bool in_water;
-  Words options;        // of DensifyPointCloud
-  bool judged_closely;  // its depth maps, on true poses, and its completeness by numbers of cameras
+  Words options;  // of DensifyPointCloud
+  // Also evaluates depth maps on true poses, and completeness by the number of cameras.
+  bool judged_closely;
 };
 const std::array<Method, 5>& reconstruction_methods();
 
-// Completeness is also asked of what at least so many cameras see.
+// Completeness is also measured for places that at least so many cameras see.
 inline constexpr std::array<std::size_t, 4> kCompletenessViews{2, 3, 4, 5};
 
 // Names of parts.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the reader sees of figures 5 and 6.
+// Tables and figures for the paper's figures 5 and 6.
 #include <fmt/format.h>
 
 #include "experiments/tables.h"
@@ -15,18 +15,18 @@ using experiments::Document;
 using experiments::result_of;
 using experiments::significant;
 
-// The clouds on one kind of poses.
+// The clouds with one kind of poses.
 struct Clouds {
   const Json& results;
   std::string (*part)(int seed);
 
   const Json& of(int seed) const { return result_of(results, part(seed)).at("clouds"); }
-  // "moved": the mean after the rigid motion.
+  // The field "moved" is the mean after the rigid motion.
   double value(int seed, const std::string& method, const std::string& field) const {
     const Json& cloud = of(seed).at(method);
     return (field == "moved" ? cloud.at("moved").at("mean") : cloud.at(field)).get<double>();
   }
-  // Fused where two depth maps agree.
+  // A value of the cloud fused with --number-views-fuse 2.
   double of_two(int seed, const std::string& method, const std::string& field) const {
     return of(seed).at(method).at("two").at(field).get<double>();
   }
@@ -58,14 +58,15 @@ Words cloud_row(const Clouds& clouds, const Seeds& seeds, const Method& method) 
           beside_air("variance")};
 }
 
-// More columns, after the rigid motion that fits a cloud best.
+// Further columns: values after the best rigid motion.
 Words moved_cells(const Clouds& clouds, const Seeds& seeds, const Method& method) {
   const auto moved = [&](int s) { return clouds.value(s, method.name, "moved"); };
   const auto ratio = [&](int s) { return clouds.beside(s, method.name, "air", "moved"); };
   return {millimetres(median_over(seeds, moved)), fmt::format("{:.3f}", median_over(seeds, ratio))};
 }
 
-// The paper's own (its section 4 and the caption of its figure 6), whose unit is taken for metres.
+// The paper's numbers (its section 4 and the caption of its figure 6). Their unit is assumed to be
+// metres.
 struct PapersCloud {
   const char* title;
   int points;
@@ -74,7 +75,8 @@ struct PapersCloud {
 constexpr PapersCloud kPapersAir{"the paper's own scene, in air", 4200659, 0.88e-3, 2.58e-6};
 constexpr PapersCloud kPapersWater{"the paper's own scene, refracted", 4635708, 1.28e-3, 3.72e-6};
 
-// Registered to the mesh, so that the mean distances are those after a rigid move.
+// The paper registered its clouds to the mesh, so its mean distances are comparable to distances
+// after a rigid motion.
 Words papers_row(const PapersCloud& cloud) {
   return {cloud.title,
           fmt::format("{}", cloud.points),
@@ -107,7 +109,8 @@ std::string colmap_poses_table(const Clouds& clouds, const Seeds& seeds) {
   return experiments::markdown_table(rows);
 }
 
-// How the mean distance changes from the paper's method to ours, by one half of it and by both.
+// The change of the mean distance from the paper's method to our method, for projection, warp and
+// both.
 std::string gains_table(const std::vector<Clouds>& kinds, const Seeds& seeds) {
   std::vector<Words> rows{
       {"poses", "ours in place of the paper's", "mean distance [%]", "of each seed"}};
@@ -132,7 +135,7 @@ std::string gains_table(const std::vector<Clouds>& kinds, const Seeds& seeds) {
   return experiments::markdown_table(rows);
 }
 
-// Of what so many cameras see; "-" where there are fewer.
+// Completeness of places that at least `views` cameras see; "-" if there are fewer cameras.
 std::string completeness_cell(const Clouds& clouds, const Seeds& seeds, const Method& method,
                               std::size_t views) {
   const std::string key = std::to_string(views);
@@ -156,7 +159,7 @@ std::string completeness_table(const Clouds& clouds, const Seeds& seeds) {
   return experiments::markdown_table(rows);
 }
 
-// Where two depth maps suffice.
+// Results of clouds fused with --number-views-fuse 2.
 std::string two_table(const Clouds& clouds, const Seeds& seeds) {
   std::vector<Words> rows{{"cloud", "points", "mean [mm]", "mean / in air", "of each seed",
                            "completeness [%]", "of each seed"}};
@@ -175,8 +178,6 @@ std::string two_table(const Clouds& clouds, const Seeds& seeds) {
   }
   return experiments::markdown_table(rows);
 }
-
-// Pictures.
 
 struct Panel {
   std::string title;
@@ -200,7 +201,7 @@ std::string picture_sheet(const std::string& title, const std::vector<Panel>& pa
   return svg.str();
 }
 
-// The same in all parts.
+// The largest error in the pictures' colour scale, which is the same in all parts.
 double color_max(const Json& results) {
   return results.at("parts").front().at("inputs").at("evaluation").at("color_max").get<double>();
 }
@@ -236,7 +237,7 @@ std::string photographs(const Json& results, int seed) {
       {{"in air", &pictures.at("air")}, {"through the port", &pictures.at("water")}}, 2, 480, 360);
 }
 
-// What was asked of our method.
+// The requirements on our method, and whether the results meet them.
 
 std::string verdicts(const Json& results, const Clouds& clouds, const Seeds& seeds) {
   const double ratio = median_over(seeds, [&](int s) { return clouds.beside(s, "ours", "air"); });

@@ -26,9 +26,9 @@ std::vector<const Method*> judged_methods() {
   return judged;
 }
 
-constexpr std::size_t kFewest = 5000;  // pixels of a ring, or of a kind of place, that counts
+constexpr std::size_t kFewest = 5000;  // pixels of a ring or kind of place in the tables
 
-// A number of one place, or of all places together.
+// The sum of `value` over all kinds of places.
 double sum_over_places(const Json& places, const std::function<double(const Json& place)>& value) {
   double sum = 0;
   for (const Json& place : places) sum += value(place);
@@ -94,7 +94,7 @@ double ring_median(const Json& results, int seed, const std::string& method, std
   return ring_of(results, seed, method, k).at("median").get<double>();
 }
 
-// What refraction adds to the error in air.
+// The difference between the method's median error and the median error in air.
 double ring_difference(const Json& results, int seed, const std::string& method, std::size_t k) {
   return ring_median(results, seed, method, k) - ring_median(results, seed, "air", k);
 }

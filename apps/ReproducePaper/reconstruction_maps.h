@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the reader sees of the depth maps, and how numbers of several seeds are shown.
+// Tables of the depth maps' errors, and helpers that combine numbers of several seeds.
 #pragma once
 
 #include <functional>
@@ -16,17 +16,17 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 // Errors of all pixels of all maps.
 std::string maps_table(const Json& results, const Seeds& seeds);
 
-// Errors by what a pixel lies on.
+// Errors by the kind of place of a pixel (depth_places.h).
 std::string places_table(const Json& results, const Seeds& seeds);
 
-// Shifts in the source view by where in its pixel the true image lies.
+// Shifts in the source view by the true image's position within its pixel.
 std::string phases_table(const Json& results, const Seeds& seeds);
 
 // Signed errors in rings around the image centre.
 std::string rings_table(const Json& results, const Seeds& seeds);
 
-// By how much our method's median in a ring differs from that in air, in the ring where it does
-// most; as a fraction of the depth.
+// The largest absolute difference over all rings between the median error of our method and of the
+// images in air, as a fraction of the depth.
 double largest_ring_difference(const Json& results, const Seeds& seeds);
 
 }  // namespace axial

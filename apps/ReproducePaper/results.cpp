@@ -21,18 +21,18 @@ fs::path parts_folder(const fs::path& folder, const std::string& experiment) {
   return folder / "parts" / experiment;
 }
 
-// Parts of other inputs stand beside each other.
+// The file name contains a hash of the inputs, so that parts with other inputs have other files.
 fs::path part_file(const fs::path& folder, const Part& part) {
   const std::string key = Fingerprint().add(io::to_text(part.inputs)).hex().substr(0, 8);
   return folder / (part.name + "-" + key + ".json");
 }
 
-// Not in the part itself: its bytes are the same for any number of threads, times are not.
+// Times are not stored in the part itself, whose bytes are the same for any number of threads.
 fs::path time_file(fs::path part_file) {
   return part_file.replace_extension(".seconds");
 }
 
-// The kept part, or null. A damaged file is as good as none.
+// The stored part; null if there is none or its file is damaged.
 Json kept_part(const fs::path& file, const Part& part) {
   if (!fs::is_regular_file(file)) return nullptr;
   const Json kept = io::json_from(read_file(file));

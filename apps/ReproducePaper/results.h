@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An experiment's numbers in a folder: finished parts are found there again.
+// Stores an experiment's numbers in a folder, and finds finished parts there again.
 #pragma once
 
 #include <filesystem>
@@ -10,23 +10,23 @@
 
 namespace axial {
 
-// Those whose names begin with `beginning`.
+// The parts whose names begin with `beginning`.
 std::vector<experiments::Part> chosen_parts(const experiments::Experiment& experiment,
                                             const std::string& beginning);
 
-// Computes those of `parts` that `folder`/parts/<experiment> does not hold yet, each written there
-// as soon as it is finished, and beside it how long it took. A part counts as finished if its file
-// is whole and names the same inputs.
+// Computes the parts that `folder`/parts/<experiment> does not hold yet. Writes each part there as
+// soon as it is finished, and its computation time beside it. A part counts as finished if its file
+// is complete and has the same inputs.
 void compute(const std::string& experiment, const std::vector<experiments::Part>& parts,
              const std::filesystem::path& folder, const ProgressSink& progress);
 
-// All that is kept; null unless all parts are finished.
+// All stored results; null unless all parts are finished.
 experiments::Json kept_results(const experiments::Experiment& experiment, bool quick,
                                const std::filesystem::path& folder);
 
-// What the parts that are finished took, on whatever machine that was [s].
+// Computation times [s] of the finished parts, on any machine.
 struct PartTimes {
-  std::size_t parts = 0;  // whose time is known
+  std::size_t parts = 0;  // number of parts with a known time
   double sum = 0, longest = 0;
   std::string longest_part;
 };

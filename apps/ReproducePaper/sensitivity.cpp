@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How wrong clouds get when the housing file is: true poses, a port that is not as the file says.
+// Sensitivity of clouds to a wrong housing file: true poses, but a port that differs from the file.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -19,10 +19,10 @@ using experiments::Part;
 using experiments::result_of;
 using refractive::FlatPort;
 
-// What the file says wrongly. All zero: nothing.
+// The errors of the housing file. All zero: none.
 struct Mistake {
-  std::string name;   // of the part
-  std::string title;  // of the row
+  std::string name;   // name of the part
+  std::string title;  // title of the row
   double distance = 0, thickness = 0, tilt_degrees = 0, n_water = 0;
 };
 
@@ -55,7 +55,7 @@ FlatPort<double> wrong_port(FlatPort<double> port, const Mistake& mistake) {
   return port;
 }
 
-// Near: a metre away, as one photographs a coral. Far: as one surveys.
+// Near: a distance of about a metre, as for photographs of a coral. Far: as for a survey.
 struct Distance {
   const char* name;
   double scale;
@@ -103,7 +103,7 @@ Json measure(const Chain& chain, const Study& study, const Mistake& mistake) {
   return result;
 }
 
-// Quick: one distance, and of each kind of mistake the largest.
+// `quick`: the near distance, without a mistake and with the largest mistakes of two kinds.
 bool is_quick(const Distance& distance, const Mistake& mistake) {
   const bool largest =
       mistake.name == "none" || mistake.name == "distance_20mm" || mistake.name == "tilt_2";

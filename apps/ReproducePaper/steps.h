@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all steps of a chain are made of.
+// Building blocks of the chain's steps.
 #pragma once
 
 #include "base/atomic_file.h"
@@ -10,7 +10,7 @@ namespace axial {
 
 Words& operator+=(Words& words, const Words& more);
 
-// `folder` as `make` fills it, unless it was made from the same `inputs` before.
+// Fills `folder` with `make`, unless the folder was made with the same `inputs` before.
 template <class Make>
 void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   const std::filesystem::path mark = folder / "made-from.json";
@@ -21,20 +21,22 @@ void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   write_atomically(mark, io::to_text(inputs));
 }
 
-// One of the project's programs. False: it said one of `excuses`, see run_unless_excused.
+// Runs one of the project's programs. Returns false if its error is one of `excuses`
+// (run_unless_excused).
 bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
                  const std::filesystem::path& log, const Words& excuses = {});
 
-// CPU time of all programs that this one has run to their end [s].
+// CPU time [s] of all child processes that have ended.
 double children_seconds();
 
 std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& folder,
                                                    const std::string& end);
 
-// Names and bytes of a file, or of all files of a folder, in a few digits.
+// A fingerprint of the name and bytes of a file, or of all files of a folder.
 std::string content_of(const std::filesystem::path& file_or_folder);
 
-// The same of some of the project's programs: what they made is made anew by other ones.
+// Fingerprints of some of the project's programs. As inputs of a step they make sure that the step
+// is repeated with changed programs.
 Json content_of_programs(const Words& programs);
 
 }  // namespace axial

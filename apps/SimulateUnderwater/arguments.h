@@ -25,12 +25,12 @@ ProgramOptions describe(Arguments& a);
 // Error that names the option and its value.
 void check(const Arguments& a);
 
-// Gives the preset the lens that the user asked for. Error for a model that is not known, a wrong
-// number of coefficients, and a lens that does not fill its image.
+// Gives the preset the lens of --lens. Error for an unknown model, a wrong number of coefficients,
+// and a lens that does not fill its image.
 void apply_lens_option(simulate::Preset& preset, const Arguments& a);
 
-// Replaces those properties of the preset's port that the user gave, or the port by the water's
-// surface.
+// Sets the given properties of the preset's port, or replaces the port by a water surface. Error
+// for options that contradict each other.
 void apply_port_options(simulate::Preset& preset, const Arguments& a, const ParsedOptions& parsed);
 
 }  // namespace axial

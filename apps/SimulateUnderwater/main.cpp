@@ -13,7 +13,7 @@ using namespace axial;
 
 namespace {
 
-// Images and truth of all views in one medium, as asked for.
+// Renders the images and truth of all views in one medium, as far as the options ask for them.
 void photograph(const Arguments& a, const simulate::Preset& preset, const simulate::RayScene& scene,
                 const simulate::Shader& shader, bool water, const std::filesystem::path& folder) {
   make_folder(folder);

@@ -23,7 +23,7 @@ io::ColmapImage colmap_image(std::size_t i, const simulate::View& view) {
   return image;
 }
 
-constexpr double kColmapCentre = 0.5;  // COLMAP's centre of the first pixel; ours is 0
+constexpr double kColmapCentre = 0.5;  // of COLMAP's first pixel; the simulator's is 0
 
 io::ColmapCamera colmap_camera(const simulate::Lens& lens) {
   io::ColmapCamera camera;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulator's plain data as the project's files.
+// Writes the simulator's data as the project's files.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace axial {
 
-// "0007": images, their truth and their entries in the sparse model share it.
+// "0007": the common name of an image, its truth and its entry in the sparse model.
 std::string view_name(std::size_t view);
 
 // <folder>/{cameras,images,points3D}.txt: one camera, the true poses and observations.
@@ -23,7 +23,7 @@ void write_sparse_model(const std::filesystem::path& folder, const simulate::Len
 // One port, "main", for every image, or the water surface.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
-// With a vertex property `thickness` [m] where the mesh has some.
+// With a vertex property `thickness` [m] if the mesh has thicknesses.
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);
 
 // <folder>/<name>.{distance,normal}.tiff

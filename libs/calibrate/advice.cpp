@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> corners_of(const pose::Bundle& bundle) {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// In the value's unit. The focal length stays as calibrated in air.
+// The limit in the value's unit. The focal length has none: it stays as calibrated in air.
 double limit_of(const pose::FreeValue& value, const Limits& limits) {
   switch (value.quantity) {
     case pose::Quantity::angle:
@@ -43,7 +43,7 @@ double limit_of(const pose::FreeValue& value, const Limits& limits) {
 
 struct Worst {
   pose::FreeValue value;
-  double ratio = 0;  // of the standard deviation to its limit
+  double ratio = 0;  // standard deviation divided by its limit
 };
 
 Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& calibration,
@@ -57,7 +57,8 @@ Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& cal
   return worst;
 }
 
-// The photographs behind the port as calibrated; where that is no port, as it was before.
+// The bundle with the port as calibrated. If the calibrated values are not valid for a port, the
+// bundle with the port before calibration, and board poses for it.
 pose::ColmapBundle believable(const Calibration& calibration) {
   const CameraModel now = calibration.camera().now();
   try {
@@ -139,7 +140,7 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration,
                                               const Limits& limits) {
   const pose::ColmapBundle bundle = believable(calibration);
   const std::vector<Eigen::Vector3d> corners = corners_of(bundle.bundle);
-  constexpr double kNoLess = 0.1;  // [px]: a few photographs may fit better than corners are found
+  constexpr double kNoLess = 0.1;  // [px]: few photographs may fit better than corners are detected
   const double noise = std::max(kNoLess, calibration.uncertainty.pixel_sigma);
   const Information known = total_information(bundle.bundle, calibration.adjust, noise);
   const auto boards = placed_boards(bundle, corners, 0.8 * nearest(bundle.bundle));

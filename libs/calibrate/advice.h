@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a calibration's photographs suffice, and if not, what to photograph.
+// Whether the photographs of a calibration suffice, and which photograph to add if they do not.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace axial::calibrate {
 
-// The largest standard deviations that will do, of the numbers in housing_change.h.
+// The largest acceptable standard deviations of the numbers in housing_change.h.
 struct Limits {
   double normal = 0.1 * std::numbers::pi / 180;  // [rad]
   double place = 0.001;                          // a flat port's distance, a dome's centre [m]
@@ -21,27 +21,28 @@ struct Limits {
   double thickness = 0.002;  // [m]
 };
 
-// What no photograph shows, in words: corners near each edge of the image, a tilted board, boards
-// near and far. Empty for a good set.
+// What the photographs lack, in words: corners near each edge of the image, a tilted board, boards
+// at two distances. Empty if nothing is missing.
 std::vector<std::string> gaps(const Calibration& calibration);
 
-// The photograph that would help most: of placed_boards() no nearer than four fifths of the
-// nearest photograph, since nearer ones may be out of focus, the one that leaves the largest
-// standard deviation, by its limit, smallest.
+// The most useful next photograph: of placed_boards(), the one with which the largest ratio of a
+// standard deviation to its limit is smallest. Boards are at least four fifths as far away as the
+// nearest board so far, since nearer boards may be out of focus. Empty if no board fits into the
+// image.
 struct NextPhotograph {
   PlacedBoard board;
-  pose::HousingChange<double> sigmas;  // with it
+  pose::HousingChange<double> sigmas;  // standard deviations with this photograph added
 };
 std::optional<NextPhotograph> next_photograph(const Calibration& calibration, const Limits& limits);
 
-// Error if some number is known worse than its limit: which one, how well, what is missing, and
-// what to photograph next.
+// Error if a number has a standard deviation above its limit. The message names the number, its
+// standard deviation, what the photographs lack, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
-// Where a view's board is.
+// The place of the board in one image.
 struct BoardPlace {
-  double distance = 0;      // of its middle from the camera [m]
-  double tilt_degrees = 0;  // of its plane, to the image plane
+  double distance = 0;      // from the camera to the board's middle [m]
+  double tilt_degrees = 0;  // angle between the board and the image plane
 };
 BoardPlace board_place(const pose::Bundle& bundle, std::size_t image);
 

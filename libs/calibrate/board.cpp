@@ -41,7 +41,7 @@ void read_counts(const std::string& word, const std::string& text, Board& board)
   if (counts.size() != 2) fail("{}: '{}' is not COLUMNSxROWS", text, word);
   board.columns = number<int>(counts[0], text);
   board.rows = number<int>(counts[1], text);
-  // OpenCV finds no checkerboard, and makes no ChArUco board, of fewer.
+  // OpenCV needs at least 3 columns and rows to find a checkerboard or make a ChArUco board.
   const int least = board.kind == BoardKind::apriltags ? 1 : 3;
   constexpr int kMost = 100;
   for (const int count : {board.columns, board.rows})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat calibration targets, and where photographs show their corners.
+// Flat calibration targets, and the detection of their corners in photographs.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +11,14 @@ namespace axial::calibrate {
 
 enum class BoardKind { checkerboard, charuco, apriltags };
 
-// A target, in metres. Its corners lie in the plane z = 0.
+// A target. Lengths are in metres. Its corners lie in the plane z = 0.
 struct Board {
   BoardKind kind = BoardKind::checkerboard;
   // Checkerboard: inner corners. ChArUco: squares. AprilTags: tags.
   int columns = 0, rows = 0;
   double size = 0;         // side of a square, or of a tag with its black border [m]
   double second = 0;       // ChArUco: side of a marker. AprilTags: gap between tags [m]
-  std::string dictionary;  // of markers, as OpenCV names it: "4X4_50", "APRILTAG_36h11"
+  std::string dictionary;  // of the markers, with OpenCV's name: "4X4_50", "APRILTAG_36h11"
 };
 
 // Reads
@@ -31,7 +31,8 @@ struct Board {
 // is wrong with it.
 Board parse_board(const std::string& text);
 
-// All corners [m], in the order of their numbers. ChArUco: of the squares. AprilTags: four a tag.
+// All corners [m], in the order of their numbers. ChArUco: the inner corners of the squares.
+// AprilTags: the four corners of each tag.
 std::vector<Eigen::Vector3d> corners_of(const Board& board);
 
 // One corner in a photograph; pixel centres at integers.
@@ -40,8 +41,8 @@ struct Corner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 
-// The corners that a photograph shows, to fractions of a pixel. None where it shows no board: a
-// checkerboard is found whole or not at all, the others in parts.
+// The corners in a photograph, to fractions of a pixel. Empty where no board is found. A
+// checkerboard must be visible completely; the other boards may be visible in part.
 std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

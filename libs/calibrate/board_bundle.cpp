@@ -54,7 +54,8 @@ std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
     const bool inside = pixel.x() >= 1 && pixel.y() >= 1 &&
                         pixel.x() <= static_cast<double>(lens.width) - 2 &&
                         pixel.y() <= static_cast<double>(lens.height) - 2;
-    // What a lens model folds back into the image is not seen there.
+    // A distortion model may also fold distant directions back into the image: they are not
+    // visible.
     if (inside && io::direction_at(lens, pixel)) seen.push_back({i, pixel});
   }
   return seen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs of a board as a bundle, whose points are the board's corners.
+// Photographs of a board as a bundle whose points are the board's corners.
 #pragma once
 
 #include <span>
@@ -18,15 +18,16 @@ struct View {
   std::vector<Corner> corners;
 };
 
-// The views as images of one camera behind `port`, with `poses` (world: the board), which are still
-// unknown without any. An observation's `source` is the corner's index within its view.
+// The views as images of one camera behind `port`. The board is the world frame, with `corners` [m]
+// by number as points. `poses` are the images' poses, or empty if they are unknown. An
+// observation's `source` is the corner's index within its view.
 pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                                 std::span<const View> views,
                                 std::span<const Eigen::Vector3d> corners,
                                 std::span<const Pose> poses = {});
 
-// The corners of the board that the camera of `bundle` would image, each well inside the
-// photograph.
+// The corners that the camera of `bundle` images at `pose`, at least one pixel inside the
+// photograph. Pixels of the photograph.
 std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
                                  std::span<const Eigen::Vector3d> corners, const Pose& pose);
 

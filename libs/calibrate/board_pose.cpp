@@ -11,11 +11,11 @@
 namespace axial::calibrate {
 namespace {
 
-// An image's corners on the board, and its rays in water by where they meet the plane z = 1.
+// The corners of one image: on the board, and their rays in water as intersections with z = 1.
 struct Perspective {
   std::vector<cv::Point3d> board;
   std::vector<cv::Point2d> directions;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // where the rays come from, on average
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean origin of the rays
 };
 
 Perspective perspective_of(const pose::Bundle& image) {
@@ -34,7 +34,7 @@ Perspective perspective_of(const pose::Bundle& image) {
   return result;
 }
 
-// A line of corners may be turned about itself.
+// Corners on one line leave the rotation about that line open.
 bool spans_a_plane(const std::vector<cv::Point3d>& board) {
   constexpr std::size_t kLeast = 4;
   if (board.size() < kLeast) return false;
@@ -56,7 +56,7 @@ Pose pose_of(const cv::Mat& turn, const cv::Mat& place, const Eigen::Vector3d& c
   return pose;
 }
 
-// Up to two.
+// Up to two poses that explain the rays as a perspective image of the board.
 std::vector<Pose> likely_poses(const Perspective& seen) {
   std::vector<Pose> poses;
   if (!spans_a_plane(seen.board)) return poses;
@@ -64,7 +64,7 @@ std::vector<Pose> likely_poses(const Perspective& seen) {
   try {
     cv::solvePnPGeneric(seen.board, seen.directions, cv::Matx33d::eye(), cv::noArray(), turns,
                         places, false, cv::SOLVEPNP_IPPE);
-  } catch (const cv::Exception&) {  // of corners that all are at one place, say
+  } catch (const cv::Exception&) {  // for example if all corners coincide
     return poses;
   }
   for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -79,11 +79,11 @@ struct Placed {
   double cost = 0;
 };
 
-// `image` adjusted from `pose` on; nothing where that leads nowhere.
+// The result of adjusting `image` from `pose`; empty if the adjustment fails.
 std::optional<Placed> placed_from(const Pose& pose, pose::Bundle& image) {
   pose::AdjustOptions options;
   options.points_known = true;
-  options.loss_sigmas = 8;  // what a wrong port leaves is no outlier yet
+  options.loss_sigmas = 8;  // errors caused by a wrong port do not mark outliers
   image.images[0].pose = pose;
   try {
     const double cost = adjust(image, options).final_cost;
@@ -103,7 +103,8 @@ pose::Bundle only(const pose::Bundle& bundle, std::size_t image) {
   return one;
 }
 
-// Of errors in pixels, which tell more than those of directions.
+// Of the likely poses the one with the least errors in pixels, which is a better measure than
+// errors of directions.
 std::optional<Placed> best_place(const pose::Bundle& bundle, std::size_t image) {
   pose::Bundle one = only(bundle, image);
   std::optional<Placed> best;

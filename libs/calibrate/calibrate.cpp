@@ -20,7 +20,7 @@ void require_views(std::size_t count) {
         count, kMinCorners, kMinViews);
 }
 
-// `what` the photographs that are left do.
+// Error if fewer than the necessary photographs are left. `what`: the verb phrase of the message.
 void require_fitting(std::size_t count, std::size_t of, const std::string& what) {
   if (count < kMinViews)
     fail(
@@ -29,7 +29,7 @@ void require_fitting(std::size_t count, std::size_t of, const std::string& what)
         count, of, what, kMinViews);
 }
 
-// Drops corners that do not fit, and all those of photographs with too few that do.
+// Drops corners with larger errors, then all corners of photographs with too few left.
 void drop_misfits(pose::Bundle& bundle, double max_error) {
   const std::vector<double> errors = reprojection_errors(bundle);
   std::vector<pose::Observation> believed;
@@ -42,7 +42,7 @@ void drop_misfits(pose::Bundle& bundle, double max_error) {
   });
 }
 
-// The port, with boards that have their places behind it as it was measured.
+// Adjusts the port and the board poses in rounds, and drops corners that do not fit.
 void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options) {
   pose::Bundle& bundle = calibration.bundle.bundle;
   pose::AdjustOptions& adjusting = calibration.adjust;
@@ -51,7 +51,7 @@ void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options)
   adjusting.loss_sigmas *= 4;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
-    // Wide at first: what a wrong port leaves is no outlier yet.
+    // Wider limits at first: errors caused by a wrong port do not mark outliers.
     const double lenience = round == 0 ? 4 : 1;
     adjust(bundle, adjusting);
     drop_misfits(bundle, lenience * options.max_error);
@@ -62,7 +62,7 @@ void adjust_in_rounds(Calibration& calibration, const CalibrateOptions& options)
   calibration.last = adjust(bundle, adjusting);
 }
 
-// Without those images of which nothing is left.
+// Removes images without observations.
 void leave_out_unobserved(Calibration& calibration) {
   pose::Bundle& bundle = calibration.bundle.bundle;
   const std::vector<std::size_t> counts = observations_by_image(bundle);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The port of a housing from photographs of a board taken through it, under water, and the lens as
-// calibrated in air.
+// Calibrates the port of a housing from underwater photographs of a board taken through it, and the
+// lens as calibrated in air.
 #pragma once
 
 #include "calibrate/board_bundle.h"
@@ -9,29 +9,30 @@
 namespace axial::calibrate {
 
 struct CalibrateOptions {
-  // What is unknown, and how well it was measured; points_known is set here.
+  // Unknowns and their measured standard deviations. calibrate() sets points_known.
   pose::AdjustOptions adjust;
   double max_error = 4;  // corners with larger errors are dropped [px of the photograph]
 };
 
 struct Calibration {
-  std::vector<View> views;     // those used, with the corners as found
-  pose::ColmapBundle bundle;   // one camera; an image for each view; corners that were dropped are
-                               // not among its observations
-  pose::AdjustOptions adjust;  // as used last
+  std::vector<View> views;  // used photographs, with the corners as found
+  // One camera, and an image for each view. Dropped corners are not among its observations.
+  pose::ColmapBundle bundle;
+  pose::AdjustOptions adjust;  // options of the last adjustment
   pose::AdjustReport last;
   pose::Uncertainty uncertainty;
-  std::vector<std::string> left_out;  // photographs with too few corners, or that do not tell
-                                      // where the board is, or with too few that fit
+  // Photographs with too few corners, with corners that do not determine a pose, or with too few
+  // corners that fit.
+  std::vector<std::string> left_out;
 
   const pose::BundleCamera& camera() const { return bundle.bundle.cameras[0]; }
 };
 
-// Board poses and what `options` leave unknown of the port, where the corners' errors are least:
-// exact forward projection, Huber's loss. Starts from `port`, and from nothing known of the poses.
-// `corners`: of the board [m], by number. Error where fewer than 3 photographs show 8 corners
-// or more, or keep as many that fit.
-// Whether the result is well known is another question: advice.h.
+// Adjusts the board poses and the unknown numbers of the port to the least squared reprojection
+// errors of the corners (exact projection, Huber loss). Starts from `port`; the poses need no
+// initial values. `corners`: of the board [m], by number. Error if fewer than 3 photographs show 8
+// corners or more, determine a pose, or keep 8 corners that fit. Whether the result is precise
+// enough is checked separately (advice.h).
 Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                       std::span<const View> views, std::span<const Eigen::Vector3d> corners,
                       const CalibrateOptions& options);

@@ -14,13 +14,13 @@ namespace {
 constexpr double kWidth = 720, kMargin = 30, kTitle = 50;
 constexpr int kColumns = 8, kRows = 6;
 
-// Errors up to one, two and more times what is usual.
+// The colour for errors up to one, up to two, and above two times the usual error.
 const char* color_of(double error, double usual) {
   if (error <= usual) return "#2b6cb0";
   return error <= 2 * usual ? "#dd8a20" : "#c0262d";
 }
 
-// The image, reduced to the drawing.
+// The image area at the scale of the drawing.
 class Drawing {
  public:
   explicit Drawing(const io::ColmapCamera& lens)

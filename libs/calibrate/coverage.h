@@ -7,8 +7,8 @@
 
 namespace axial::calibrate {
 
-// A drawing (SVG) of where in the image corners were seen: one dot each, coloured by how far it is
-// from where the calibrated camera images it, and how many there are in each field of a grid.
+// A drawing (SVG) of the corners' places in the image: one dot for each corner, with a colour for
+// its reprojection error, and the number of corners in each field of a grid.
 std::string coverage_svg(const Calibration& calibration);
 
 }  // namespace axial::calibrate

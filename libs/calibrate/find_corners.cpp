@@ -10,7 +10,7 @@
 namespace axial::calibrate {
 namespace {
 
-// Of neighbours along rows and columns [px].
+// The least distance [px] between neighbours in rows and columns.
 double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
   const auto at = [&](int row, int column) {
     return corners[static_cast<std::size_t>(row * size.width + column)];
@@ -24,15 +24,15 @@ double least_spacing(const std::vector<cv::Point2f>& corners, cv::Size size) {
   return least;
 }
 
-// To where the edges around it cross.
+// Moves each corner to the intersection of the edges around it.
 void refine(const cv::Mat1b& photograph, cv::Size size, std::vector<cv::Point2f>& corners) {
-  // The window must not reach another corner: a third of the way to the nearest on every side.
+  // The window must not reach another corner: a third of the least spacing to each side.
   const int half = std::clamp(static_cast<int>(least_spacing(corners, size) / 3), 2, 11);
   cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
 }
 
-// The older detector, which copes with boards that have hardly any margin.
+// OpenCV's older detector finds boards that have hardly any margin.
 bool find_at_the_margin(const cv::Mat1b& photograph, cv::Size size,
                         std::vector<cv::Point2f>& corners) {
   constexpr int kFlags =

@@ -50,7 +50,7 @@ Information information(const pose::Bundle& bundle, std::size_t image) {
     across += d.by_pose.transpose() * d.by_change;
     result += d.by_change.transpose() * d.by_change;
   }
-  // The pose takes away what it could explain as well.
+  // Schur complement: a change that the pose explains as well gives no information.
   return result - across.transpose() * poses.ldlt().solve(across);
 }
 
@@ -68,7 +68,7 @@ Information total_information(const pose::Bundle& bundle, const pose::AdjustOpti
 
 pose::HousingChange<double> sigmas_from(const Information& information,
                                         const pose::AdjustOptions& options) {
-  // Scaled to ones on the diagonal; what is not free is known.
+  // Scaled to ones on the diagonal. Numbers that are not free stay at the identity.
   Information scaled = Information::Identity();
   pose::HousingChange<double> scale = pose::HousingChange<double>::Zero();
   const auto free = [&](int k) { return options.free[static_cast<std::size_t>(k)]; };

@@ -71,8 +71,8 @@ Eigen::Vector2d pixel_of(const cv::Point2f& p) {
   return {p.x, p.y};
 }
 
-// Half the side [px] of a window around a corner of squares that reaches no marker. The gap is seen
-// at the scale of the two neighbours that are nearest.
+// Half the side [px] of a window around a corner of squares that does not reach a marker. The gap
+// to the marker is scaled by the least distance of two neighbouring corners.
 int charuco_window(const Board& board, const std::vector<cv::Point2f>& corners,
                    const std::vector<int>& numbers) {
   constexpr int kLeast = 2, kMost = 11;
@@ -90,7 +90,7 @@ int charuco_window(const Board& board, const std::vector<cv::Point2f>& corners,
 }
 
 std::vector<Corner> find_charuco(const cv::Mat1b& photograph, const Board& board) {
-  // Corners of squares are refined by themselves; those of markers only lead to them.
+  // Corners of markers only locate the squares. The corners of squares are refined later.
   const Markers markers = find_markers(photograph, board, cv::aruco::CORNER_REFINE_NONE);
   std::vector<Corner> found;
   if (markers.ids.empty()) return found;
@@ -99,7 +99,7 @@ std::vector<Corner> find_charuco(const cv::Mat1b& photograph, const Board& board
   cv::aruco::interpolateCornersCharuco(markers.corners, markers.ids, photograph, charuco(board),
                                        corners, numbers);
   if (corners.empty()) return found;
-  // OpenCV 4.6 leaves them half a pixel to the right and below.
+  // OpenCV 4.6 returns these corners shifted by half a pixel to the right and down.
   const int half = charuco_window(board, corners, numbers);
   cv::cornerSubPix(photograph, corners, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-3});
@@ -112,7 +112,7 @@ std::vector<Corner> find_tags(const cv::Mat1b& photograph, const Board& board) {
   const Markers markers = find_markers(photograph, board, cv::aruco::CORNER_REFINE_SUBPIX);
   std::vector<Corner> found;
   for (std::size_t i = 0; i < markers.ids.size(); ++i) {
-    if (markers.ids[i] >= board.columns * board.rows) continue;  // of another board
+    if (markers.ids[i] >= board.columns * board.rows) continue;  // a marker of another board
     for (std::size_t k = 0; k < 4; ++k)
       found.push_back(
           {4 * static_cast<std::size_t>(markers.ids[i]) + k, pixel_of(markers.corners[i][k])});
@@ -130,8 +130,8 @@ void check_markers(const Board& board, const std::string& where) {
     fail("{}: {} markers, but the dictionary {} has {}", where, needed, board.dictionary, there);
 }
 
-// OpenCV has these places in single precision: whole multiples of the lengths are exact again when
-// they are computed here.
+// OpenCV has these positions in single precision. They are computed again as whole multiples of the
+// lengths, so that they are exact.
 std::vector<Eigen::Vector3d> marker_board_corners(const Board& board) {
   std::vector<Eigen::Vector3d> corners;
   if (board.kind == BoardKind::charuco) {

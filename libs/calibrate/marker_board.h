@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/calibrate: boards of markers, through OpenCV's aruco module.
+// Private to libs/calibrate: boards of markers, by OpenCV's aruco module.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ Box box_of(std::span<const Corner> corners) {
   return box;
 }
 
-// The board's corners around their middle, and the image they must fit into.
+// Places the board in front of the camera of a bundle.
 class Photographer {
  public:
   Photographer(const pose::ColmapBundle& bundle, std::span<const Eigen::Vector3d> corners)
@@ -35,30 +35,30 @@ class Photographer {
     extent_ = box.sizes();
   }
 
-  // Where the board, facing the camera, is as wide or high as `share` of the image, by how fast
-  // rays spread in the middle of the image.
+  // The distance at which the board, facing the camera, is as wide or high as `share` of the image.
+  // Uses the angle between the rays of neighbouring pixels in the middle of the image.
   double distance_for(double share) const {
     const Eigen::Vector2d middle(camera_.lens.cx, camera_.lens.cy);
     refractive::AxialRayJacobian<double> spread;
     std::visit([&](const auto& c) { c.ray(middle, spread); }, make_camera<double>(camera_));
     const auto lens = io::undistorted_lens(bundle_.lenses[0]);
-    // A pixel of the photograph is as many of the lens that holds it.
+    // Converts a length in the photograph's pixels to pixels of the lens without distortion.
     const double across = width() * camera_.lens.fx / lens.fx * spread.direction.col(0).norm();
     const double down = height() * camera_.lens.fy / lens.fy * spread.direction.col(1).norm();
     return std::max(extent_.x() / across, extent_.y() / down) / share;
   }
 
-  // Shifts the board until it touches the edges it shall be at; false if it does not fit.
+  // Shifts the board until it touches the edges that its place names; false if it does not fit.
   bool place(PlacedBoard& placed) const {
     const Eigen::Matrix3d rotation = rotation_of(placed);
-    Eigen::Vector2d at(0, 0);  // of the middle, over the distance
+    Eigen::Vector2d at(0, 0);  // the middle's x and y divided by the distance
     constexpr int kSteps = 12;
     for (int step = 0; step < kSteps; ++step) {
       const Eigen::Vector3d middle = placed.distance * Eigen::Vector3d(at.x(), at.y(), 1);
       placed.pose = {rotation, middle_ - rotation.transpose() * middle};
       placed.corners = photographed(bundle_, corners_, placed.pose);
       if (placed.corners.size() < corners_.size()) {
-        at *= 0.8;  // went too far
+        at *= 0.8;  // the board left the image
         continue;
       }
       const Eigen::Vector2d miss = miss_of(placed);
@@ -75,13 +75,13 @@ class Photographer {
 
   static Eigen::Matrix3d rotation_of(const PlacedBoard& placed) {
     const double angle = kTurnDegrees * std::numbers::pi / 180;
-    // y points down: a turn about it that is positive brings the right side nearer.
+    // The y axis points down: a positive rotation about it brings the right side nearer.
     return (Eigen::AngleAxisd(placed.turned * angle, Eigen::Vector3d::UnitY()) *
             Eigen::AngleAxisd(-placed.tipped * angle, Eigen::Vector3d::UnitX()))
         .toRotationMatrix();
   }
 
-  // By how much [px] the board must move to be where it shall be.
+  // The shift [px] from the board's place in the image to the desired place.
   Eigen::Vector2d miss_of(const PlacedBoard& placed) const {
     const Box box = box_of(placed.corners);
     const double margin = 0.02 * width();

@@ -17,12 +17,12 @@ using io::Anchor;
 using io::Rectangle;
 using io::Svg;
 
-// Of Okabe and Ito, told apart by colour-blind readers too.
+// Colours by Okabe and Ito, which colour-blind readers can distinguish.
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#8a6d00", "#56b4e9", "#000000"};
 constexpr double kTitleHeight = 34;
 
-// Maps [low, high] to [begin, end] of the drawing, by ratios if logarithmic.
+// Maps [low, high] linearly, or logarithmically, to [begin, end] of the drawing.
 struct Axis {
   double low, high, begin, end;
   bool logarithmic = false;
@@ -70,7 +70,7 @@ Axis x_axis(const LinePanel& panel, double begin, double end) {
   return {range.low, range.high > range.low ? range.high : range.low + 1, begin, end};
 }
 
-// Whole decades, or from zero.
+// A logarithmic axis has whole decades; a linear axis starts at zero.
 Axis y_axis(const LinePanel& panel, double begin, double end) {
   const Range range = range_of(panel, [](const Line& line) { return line.y; });
   if (!panel.logarithmic) return {0, range.high > 0 ? 1.05 * range.high : 1, begin, end};
@@ -118,7 +118,7 @@ void draw_panel(Svg& svg, const LinePanel& panel, const Rectangle& where) {
   }
 }
 
-// Colours of values in [0, highest]; grey where there is none.
+// Colours of values in [0, highest]; grey for missing values.
 cv::Mat3b colored(const MapPanel& panel, double highest) {
   const int width = static_cast<int>(panel.width);
   const cv::Mat1d values(static_cast<int>(panel.values.size()) / width, width,
@@ -128,7 +128,7 @@ cv::Mat3b colored(const MapPanel& panel, double highest) {
   cv::Mat3b bgr;
   cv::applyColorMap(scaled, bgr, cv::COLORMAP_VIRIDIS);
   bgr.setTo(cv::Scalar(190, 190, 190), values < 0);
-  // Few pixels as large as they are drawn: not every viewer knows that they should stay squares.
+  // Enlarges small maps: not every viewer draws enlarged pixels as squares.
   const int factor = width < 100 ? std::max(1, 200 / width) : 1;
   cv::resize(bgr, bgr, {}, factor, factor, cv::INTER_NEAREST);
   return bgr;

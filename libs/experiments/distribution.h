@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The distribution of very many errors: counts in equal bins, and what bins cannot tell.
+// The distribution of very many errors: counts in equal bins, and the exact mean and largest error.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ class Distribution {
   std::int64_t count() const { return count_; }
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
   double largest() const { return largest_; }
-  // The error that the share `q` of all errors does not exceed, linear within its bin; `largest()`
-  // if that lies beyond the bins.
+  // The error that the share `q` of all errors does not exceed, interpolated linearly within its
+  // bin; largest() if this error lies beyond the bins.
   double quantile(double q) const;
 
   double upper() const { return upper_; }
@@ -45,7 +45,8 @@ class Distribution {
   double sum_ = 0, largest_ = 0;
 };
 
-// The mean of the two middle ones if their number is even. Precondition: not empty.
+// The median; for an even number of values, the mean of the two middle values. Precondition: not
+// empty.
 double median_of(std::vector<double> values);
 
 }  // namespace axial::experiments

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all experiments look like to the program: independent parts, each computed once and kept,
-// and documents (figures and tables) made from the kept numbers alone.
+// The common form of all experiments: independent parts, each computed once and stored, and
+// documents (figures and tables) made from the stored numbers alone.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@ namespace axial::experiments {
 using Json = nlohmann::ordered_json;
 
 struct Part {
-  std::string name;               // unique within the experiment, fit for a file name
-  Json inputs;                    // everything the result depends on but the machine
-  std::function<Json()> compute;  // the same bytes for any number of threads, times excepted
+  std::string name;               // unique within the experiment, valid as part of a file name
+  Json inputs;                    // everything the result depends on, except the machine
+  std::function<Json()> compute;  // the same bytes for any number of threads, except times
 };
 
 struct Document {
@@ -28,33 +28,33 @@ struct Document {
 struct Experiment {
   std::string name;
   std::vector<Part> parts;
-  // From {"experiment", "quick", "parts": {name: {"inputs", "result"}, ...}}.
+  // Makes the documents from {"experiment", "quick", "parts": {name: {"inputs", "result"}, ...}}.
   std::function<std::vector<Document>(const Json& results)> documents;
 };
 
-// Quick: the same parts from fewer samples, for tests.
+// `quick`: the same parts with fewer samples, for tests.
 Experiment figure2(bool quick);
 Experiment runtime(bool quick);
 Experiment figure3(bool quick);
 Experiment figure4(bool quick);
 
-// All that need no other program.
+// All experiments that need no other program.
 std::vector<Experiment> all_experiments(bool quick);
 
-// One parameter and its values, the default's among them.
+// A parameter and its values, which include the default value.
 struct Series {
-  std::string name;  // as `vary` knows it
+  std::string name;  // a name that vary() accepts
   std::vector<double> values;
 };
 
 std::string series_title(const std::string& series);               // "interface distance [mm]"
 std::string value_title(const std::string& series, double value);  // "distance 20 mm"
 
-// Name of the part of one value, "setup1_fov_degrees_100": the default, which is in every series,
-// is one part, "setup1_default".
+// The name of the part for one value: "setup1_fov_degrees_100". The default setup, which occurs in
+// every series, is one part: "setup1_default".
 std::string part_name(const std::string& series, double value, int stereo_number);
 
-// Every value of every series once.
+// Every value of every series, the default setup only once.
 std::vector<Variation> variations(const std::vector<Series>& series, int stereo_number);
 
 Json to_json(const CameraSetup& setup);

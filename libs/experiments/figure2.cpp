@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's figure 2: how far Algorithm 1 misses, and the exact projection beside it.
+// The paper's figure 2: the errors of Algorithm 1, and of the exact projection.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ Part make_part(const Variation& variation, double step) {
           }};
 }
 
-// Bins that are drawn as one: errors in float come in steps of a coordinate's last bit.
+// Number of bins that are drawn as one: errors in float are multiples of a coordinate's last bit.
 constexpr std::size_t kDrawnBins = 10;
 
 // Density of the errors, in units of `unit` pixels.
@@ -80,7 +80,7 @@ LinePanel panel(const Json& results, const Series& one, const std::string& metho
   return panel;
 }
 
-// "positions 0.1 px apart", all parts being alike.
+// "positions 0.1 px apart"; all parts have the same step.
 std::string sampling(const Json& results) {
   const Json& inputs = results.at("parts").front().at("inputs");
   return fmt::format("{0} x {0} image, positions {1:g} px apart", inputs.at("size").get<int>(),
@@ -144,7 +144,7 @@ Experiment figure2(bool quick) {
                                   {"figure2.md", table(results)},
                                   {"figure2_verdicts.md", verdicts(results)}};
                         }};
-  // Coarse steps still meet every tenth of a pixel.
+  // Coarse steps still cover every tenth of a pixel.
   for (const Variation& variation : variations(series(), 1))
     experiment.parts.push_back(make_part(variation, quick ? 1.7 : 0.1));
   return experiment;

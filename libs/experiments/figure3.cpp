@@ -13,7 +13,7 @@ namespace axial::experiments {
 namespace {
 
 constexpr int kSize = 10;
-constexpr int kBorder = 12;  // of both images: wide enough to hold most patches in the second
+constexpr int kBorder = 12;  // of both images: so wide that most patches lie in the second image
 constexpr std::array kShown{Warp::kPapers, Warp::kExactCentre, Warp::kScaled, Warp::kFirstOrder};
 constexpr std::array<const char*, 4> kTitles{"the paper's", "f_v = f, exact centre",
                                              "local virtual scale", "first-order exact"};
@@ -85,7 +85,7 @@ std::vector<Document> documents(const Json& results) {
 
 }  // namespace
 
-// It has no quick form: there are 200 patches.
+// `quick` changes nothing: there are only 200 patches.
 Experiment figure3(bool) {
   return {"figure3", {make_part(1), make_part(2)}, documents};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's figure 4: mean errors of patches, at its own 100 x 100 pixels and at the size of real
-// images.
+// The paper's figure 4: mean errors of patches, at the paper's 100 x 100 pixels and at the size of
+// real images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ Json to_json(const StudyStatistics& statistics) {
           {"middle_not_least", statistics.middle_not_least}};
 }
 
-// Millionths of a pixel, as whole numbers: short in a file, and -1 stays -1.
+// Whole millionths of a pixel: short in a file, and -1 stays -1.
 Json whole_numbers(const std::vector<double>& map) {
   Json list = Json::array();
   for (const double value : map) list.push_back(value < 0 ? -1 : std::lround(1e6 * value));
@@ -157,7 +157,7 @@ std::string means_table(const Json& results, const char* size) {
   });
 }
 
-// Which term dominates.
+// The parts of the error, and which part is larger.
 std::string terms_table(const Json& results, const char* size) {
   const Row header{"patches",
                    "warp alone [px]",
@@ -181,9 +181,9 @@ std::string terms_table(const Json& results, const char* size) {
   });
 }
 
-// Means that a prototype by other hands gave before this project, for 2048 x 2048 pixels, indices
-// 1.52 and 1.333: the design notes' table of the paper's warp (rounded lookup), of the exact lookup
-// with f_v = f, and of the first-order exact warp.
+// Mean errors [px] of a prototype that was written independently before this project, for 2048 x
+// 2048 pixels and indices 1.52 and 1.333: the paper's warp (rounded lookup), the exact lookup with
+// f_v = f, and the first-order exact warp.
 struct Prototype {
   int setup;
   const char* series;
@@ -223,7 +223,7 @@ std::string prototype_table(const Json& results) {
   return markdown_table(rows);
 }
 
-// Of both setups at 80 degrees.
+// Over both setups, at 80 degrees.
 double largest_first_order_mean(const Json& results) {
   double largest = 0;
   for (const int setup : {1, 2})

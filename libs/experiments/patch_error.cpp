@@ -25,7 +25,7 @@ Vector2<double> texel(const Vector2<double>& centre, std::size_t k) {
   return centre + kPatchStep * offset - Vector2<double>(kPatchReach, kPatchReach);
 }
 
-// Centres in one direction.
+// The number of centres in one direction.
 std::size_t centres_along(int size, int border = kPatchReach) {
   return static_cast<std::size_t>(std::max(0, size - 2 * border));
 }
@@ -121,7 +121,7 @@ std::optional<PatchErrors> WarpStudy::errors(const Vector2<double>& centre) cons
 
 namespace {
 
-// Sums over some centres; the shares are still counts.
+// Sums over some centres. Shares are counts until study_statistics() divides them.
 void add(StudyStatistics& sum, const PatchErrors& patch) {
   ++sum.centres;
   for (std::size_t w = 0; w < kWarps; ++w) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far each warp of a patch is from the truth, as in the paper's figures 3 and 4: a 9x9 window,
-// every second pixel, from one camera behind a flat port to another by a plane.
+// The error of each warp of a patch, as in the paper's figures 3 and 4: a 9x9 window, every second
+// pixel, mapped from one camera behind a flat port to another by a plane.
 #pragma once
 
 #include <array>
@@ -13,12 +13,14 @@
 
 namespace axial::experiments {
 
-// In the order of the tables. Where the reference camera is virtual, it is exact in all of them.
+// In the order of the tables. Where a virtual camera replaces the reference camera, it is the exact
+// one.
 enum class Warp : std::size_t {
-  kPapers,       // homography of virtual cameras, f_v = f; the source's looked up at the pixel that
-                 // is nearest to where Algorithm 1 ends
-  kRounded,      // the same at the pixel nearest to the exact projection
-  kExactCentre,  // the same at the exact projection
+  // homography of virtual cameras with f_v = f; the source's virtual camera is looked up at the
+  // pixel nearest to the result of Algorithm 1
+  kPapers,
+  kRounded,        // the same, looked up at the pixel nearest to the exact projection
+  kExactCentre,    // the same, at the exact projection
   kScaledRounded,  // locally correct virtual scale, nearest pixel
   kScaled,         // locally correct virtual scale, exact projection
   kFirstOrder,     // exact centre and exact first derivative
@@ -32,7 +34,7 @@ inline constexpr int kPatchReach = 4, kPatchStep = 2, kPatchSide = 5;
 inline constexpr std::size_t kPatchTexels = 25;  // row by row
 inline constexpr std::size_t kPatchCentre = 12;
 
-// e_H [px] of every texel.
+// The error e_H [px] of every texel.
 using TexelErrors = std::array<double, kPatchTexels>;
 double mean_error(const TexelErrors& errors);  // the paper's e_BH
 
@@ -43,10 +45,12 @@ struct PatchErrors {
 
 class WarpStudy {
  public:
-  // Images of size x size pixels, whose middle `fov_size` pixels span the field of view (0: all).
+  // Images of size x size pixels, whose middle `fov_size` pixels span the field of view (0: all
+  // pixels).
   WarpStudy(const StereoSetup& setup, int size, int fov_size = 0);
 
-  // None: the plane's point is not seen, or a texel's true image is outside the second image.
+  // The errors of the patch at `centre` [px]. Empty if the plane's point is not visible, or if the
+  // true image of a texel is outside the second image.
   std::optional<PatchErrors> errors(const Vector2<double>& centre) const;
 
   int size() const { return size_; }
@@ -64,7 +68,7 @@ class WarpStudy {
   Vector3<double> source_, plane_point_, plane_normal_;
 };
 
-// Over the centres whose patch lies in both images.
+// Statistics of the centres whose patch lies in both images.
 struct WarpStatistics {
   double mean = 0;            // of e_BH [px]
   double largest = 0;         // of e_BH
@@ -74,24 +78,25 @@ struct WarpStatistics {
 struct StudyStatistics {
   std::int64_t centres = 0;
   std::array<WarpStatistics, kWarps> warps;
-  // Shares of the centres. The warp's part is the e_BH that is left with an exact centre,
-  // rounding's part is the e_H of the middle texel, where the homography has no other error.
-  double rounding_over_warp = 0;         // rounding alone is larger, nearest pixel
-  double papers_rounding_over_warp = 0;  // with Algorithm 1's end point
-  double middle_not_least = 0;  // the paper's: some other texel of the patch has less error
+  // Shares of the centres. The warp's part of the error is e_BH with an exact centre. The part of
+  // rounding is e_H of the middle texel, where the homography has no other error.
+  double rounding_over_warp = 0;         // rounding causes the larger part, nearest pixel
+  double papers_rounding_over_warp = 0;  // the same, with the result of Algorithm 1
+  double middle_not_least = 0;  // paper's warp: another texel has less error than the middle one
 
   const WarpStatistics& operator[](Warp w) const { return warps[static_cast<std::size_t>(w)]; }
 };
 
-// Every `step`-th centre in each direction.
+// Statistics over every `step`-th centre in each direction.
 StudyStatistics study_statistics(const WarpStudy& study, int step);
 
-// e_BH of one warp for every centre from kPatchReach to size - 1 - kPatchReach, row by row; -1:
-// none.
+// e_BH [px] of one warp for every centre from kPatchReach to size - 1 - kPatchReach, row by row. -1
+// where errors() is empty.
 std::vector<double> patch_error_map(const WarpStudy& study, Warp warp);
 
-// e_H of every texel of every centre from `border` to size - 1 - border, patches side by side:
-// kPatchSide times as wide; -1: none.
+// e_H [px] of every texel of every centre from `border` to size - 1 - border. Patches lie side by
+// side, so that the map is kPatchSide times as wide as the range of centres. -1 where errors() is
+// empty.
 std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border = kPatchReach);
 
 }  // namespace axial::experiments

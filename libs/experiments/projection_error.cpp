@@ -12,10 +12,11 @@ namespace {
 
 using refractive::LineSearchCamera;
 
-// Bins: Algorithm 1 errs up to about a pixel, float by ten-thousandths.
+// Upper ends of the bins [px]: errors of Algorithm 1 are up to about a pixel, errors of float are
+// some ten-thousandths.
 constexpr double kLineSearchUpper = 1.25, kExactUpper = 5e-4;
 constexpr std::size_t kBins = 250;
-constexpr std::size_t kBlocks = 64;  // of rows: work items, whatever the number of threads
+constexpr std::size_t kBlocks = 64;  // blocks of rows, a fixed number for any number of threads
 
 ProjectionErrors no_errors() {
   return {{Distribution(kLineSearchUpper, kBins), 0}, {Distribution(kExactUpper, kBins), 0}};

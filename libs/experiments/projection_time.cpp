@@ -18,17 +18,17 @@ namespace {
 
 struct Sample {
   Vector3<float> point;
-  Vector2<double> pixel;  // where it is seen
+  Vector2<double> pixel;  // the image of `point`
 };
 
-// CPU time of this thread: other programs do not count.
+// CPU time of this thread: the time of other programs does not count.
 double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Computed, and one at a time, whatever the optimiser thinks of it.
+// Keeps the optimiser from removing or combining projections.
 void keep(const refractive::Projection<float>& projection) {
   asm volatile("" : : "g"(&projection) : "memory");
 }
@@ -79,8 +79,8 @@ std::vector<Method> make_methods(const CameraSetup& setup, int width, int height
   return methods;
 }
 
-// Pixels anywhere in the image, or runs of a hundred neighbours along rows anywhere in it, each
-// seen 1 to 5 m away.
+// Pixels anywhere in the image, or runs of a hundred neighbours in a row that start anywhere. Their
+// points are 1 to 5 m away.
 std::vector<Sample> make_samples(const CameraSetup& setup, int width, int height, Order order,
                                  int count) {
   const FlatPortCamera<double> camera(make_lens(setup, width, height), make_port(setup), width,
@@ -124,7 +124,7 @@ std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, in
   const auto own = [&](const Method& method) {
     return std::span(samples).first(std::min(method.points, samples.size()));
   };
-  // All methods in turn, so that what slows the machine slows them all.
+  // All methods in turn, so that a slower phase of the machine affects all methods alike.
   std::vector<std::vector<double>> times(methods.size()), ratios(methods.size());
   for (int repetition = 0; repetition < options.repetitions; ++repetition) {
     for (std::size_t m = 0; m < methods.size(); ++m) {

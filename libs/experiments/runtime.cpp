@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a projection costs by each method, over the image's size.
+// The time of a projection by each method, for several image sizes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,12 +34,12 @@ std::string part_name(Order order, int megapixels) {
   return fmt::format("{}_{}mp", order_name(order), megapixels);
 }
 
-// 4:3.
+// The height of an image with aspect ratio 4:3.
 int image_height(int megapixels) {
   return static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 3 / 4)));
 }
 
-// "" where the system does not say.
+// The processor's name; "" if the system does not give it.
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -97,7 +97,7 @@ LinePanel panel(const Json& results, Order order) {
 
 using Row = std::vector<std::string>;
 
-// One row a method and order of points, `cells` for each size.
+// A table with one row for each method and order of points, and with `cells` for each image size.
 std::string table(const Json& results, const Row& cell_titles,
                   const std::function<Row(const Json& time)>& cells) {
   std::vector<Row> rows{{"points", "method"}};
@@ -138,7 +138,7 @@ double ratio(const Json& results, Order order, int megapixels, const char* metho
   return result_of(results, part_name(order, megapixels)).at(method).at("ratio_to_exact");
 }
 
-// What the paper measured of its method: how many times faster than a polynomial it is.
+// The paper's measure of its method: how many times faster it is than a polynomial.
 std::string analytic_table(const Json& results) {
   std::vector<Row> rows{{"points", "12th-degree polynomial / line search of"}};
   for (const int megapixels : kMegapixels) rows[0].push_back(fmt::format("{} MP", megapixels));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's virtual camera with the locally correct scale in place of f_v = f: a 2x2 matrix,
-// since behind a flat port a pixel is not as wide as it is high.
+// The paper's virtual camera with the locally correct scale instead of f_v = f. The scale is a 2x2
+// matrix: behind a flat port the horizontal and the vertical scale differ.
 #pragma once
 
 #include <Eigen/LU>
@@ -13,11 +13,11 @@ template <class T>
 struct ScaledVirtualCamera {
   refractive::Vector3<T> centre;          // C_v in the frame of the real camera
   refractive::Matrix3<T> rotation;        // virtual_from_camera
-  refractive::Matrix3<T> pixel_from_ray;  // K with `scale` for its upper left 2x2
+  refractive::Matrix3<T> pixel_from_ray;  // K with `scale` as its upper left 2x2 block
 };
 
-// With y = (x/z, y/z) of the ray in the virtual camera's frame, the scale is d(pixel)/dy, from the
-// derivative of the ray by the pixel; c_v as in eq. 3.
+// The virtual camera of `pixel`. With y = (x/z, y/z) of the ray in the virtual camera's frame, the
+// scale is d(pixel)/dy, from the derivative of the ray by the pixel; c_v as in the paper's eq. 3.
 template <class Camera, class T = typename Camera::Scalar>
 ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
                                              const refractive::Vector2<T>& pixel) {
@@ -35,7 +35,8 @@ ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
   return {ray.origin, rotation, K};
 }
 
-// Eq. 2 for such cameras; frames as in refractive::virtual_homography.
+// The homography of the paper's eq. 2 for these cameras; frames as in
+// refractive::virtual_homography.
 template <class T>
 refractive::Matrix3<T> scaled_homography(const ScaledVirtualCamera<T>& reference,
                                          const ScaledVirtualCamera<T>& source,

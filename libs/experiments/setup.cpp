@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// z turned about y by `degrees`, towards +x.
+// The z axis rotated by `degrees` about y, towards +x.
 Vector3<double> turned_axis(double degrees) {
   return {std::sin(degrees * kDegree), 0, std::cos(degrees * kDegree)};
 }
@@ -41,7 +41,8 @@ Vector3<double> plane_point(const StereoSetup&) {
   return {0, 0, 4};
 }
 
-// Towards the cameras. A positive angle turns the plane away from the second camera.
+// The normal points towards the cameras. A positive angle turns the plane away from the second
+// camera.
 Vector3<double> plane_normal(const StereoSetup& setup) {
   return -turned_axis(-setup.plane_degrees);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the paper's simulations vary: a camera behind a flat port, and a stereo pair of it before a
-// plane. The defaults are the paper's; it does not give the refractive indices.
+// The setups of the paper's simulations: a camera behind a flat port, and a stereo pair of it
+// before a plane. The default values are the paper's, except the refractive indices, which the
+// paper does not give.
 #pragma once
 
 #include <string>
@@ -25,23 +26,26 @@ struct CameraSetup {
   double n_water = 1.333;
 };
 
-// An image of `width` x `height` pixels, of whose width the middle `fov_width` pixels span the
-// field of view (the rest is a border; 0: no border). Centred principal point.
+// The lens of an image of `width` x `height` pixels. The middle `fov_width` pixels of the width
+// span the field of view, and the other pixels are a border (0: no border). The principal point is
+// in the middle.
 PinholeLens<double> make_lens(const CameraSetup& setup, int width, int height, int fov_width = 0);
 FlatPort<double> make_port(const CameraSetup& setup);
 
-// Two cameras with parallel axes, and a plane through the point 4 m before the first.
+// Two cameras with parallel axes, and a plane through the point 4 m in front of the first camera.
 struct StereoSetup {
   int number = 1;  // 1: baseline of 1 m; 2: second camera at x = 0.5 m, z = -1 m
   CameraSetup camera;
-  double plane_degrees = 0;  // the plane turned about y
+  double plane_degrees = 0;  // rotation of the plane about y
 };
 
+// The centre of the second camera, a point of the plane, and the plane's unit normal towards the
+// cameras; in the frame of the first camera [m].
 Vector3<double> source_centre(const StereoSetup& setup);
 Vector3<double> plane_point(const StereoSetup& setup);
 Vector3<double> plane_normal(const StereoSetup& setup);
 
-// One value of one varied parameter; all others have their defaults.
+// One value of one varied parameter. All other parameters have their default values.
 struct Variation {
   // "fov_degrees", "distance_mm", "tilt_degrees", "n_glass", "n_water", "plane_degrees"
   std::string series;
@@ -49,7 +53,7 @@ struct Variation {
   StereoSetup setup;
 };
 
-// The default, under the name of the series.
+// The setup with one parameter changed. Error for an unknown series.
 Variation vary(const std::string& series, double value, int stereo_number = 1);
 
 }  // namespace axial::experiments

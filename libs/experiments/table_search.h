@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Algorithm 1 over tables of other layouts than refractive/line_search.h has: how much memory a
-// pixel takes decides how long a search waits for it.
+// Algorithm 1 with other table layouts than refractive/line_search.h: the memory of a pixel's entry
+// determines how long a search waits for it.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace axial::experiments {
 
-// As the paper prints it: L(x) = {C_v, X_v, c_v}, all vectors, 8 numbers a pixel.
+// The entry as the paper prints it: L(x) = {C_v, X_v, c_v}, all vectors, 8 numbers for each pixel.
 template <class T>
 struct PlainCell {
   refractive::Vector3<T> centre, direction;
@@ -23,14 +23,15 @@ struct PlainCell {
     return {ray.origin, ray.direction, {at.lens.cx, at.lens.cy}};
   }
 
-  // Whether Algorithm 1 goes forward: alpha < beta, both as it computes them.
+  // Whether Algorithm 1 goes forward: alpha < beta, computed as in the paper.
   bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
     const refractive::Vector3<T> from_centre = X - centre;
     return from_centre.dot(n) / from_centre.norm() < direction.dot(n);
   }
 };
 
-// As little as Algorithm 1 can do with: the height of C_v on the axis and beta, 2 numbers a pixel.
+// The smallest entry for Algorithm 1: the height of C_v on the axis and beta, 2 numbers for each
+// pixel.
 template <class T>
 struct TightCell {
   T along, cosine;
@@ -48,7 +49,7 @@ struct TightCell {
   }
 };
 
-// Projects as LineSearchCamera does, by its own table of `Cell`s.
+// Projects as LineSearchCamera, with its own table of `Cell`s.
 template <class T, class Cell>
 class TableSearch {
  public:
@@ -89,7 +90,7 @@ class TableSearch {
     return x;
   }
 
-  // Of the pixel nearest to x, which lies in [-1, width] x [-1, height].
+  // The entry of the pixel nearest to x, which lies in [-1, width] x [-1, height].
   const Cell& cell(const Vector2<T>& x) const {
     const auto u = static_cast<std::size_t>(x.x() + T(1.5));
     const auto v = static_cast<std::size_t>(x.y() + T(1.5));

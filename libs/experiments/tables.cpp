@@ -27,7 +27,7 @@ std::string significant(double value, int digits) {
   };
   const double unit = std::pow(10, last_digit(value));
   const double rounded = std::round(value / unit) * unit;
-  // 9.996 has become 10.00: a digit longer.
+  // Rounding has added a digit: 9.996 became 10.00.
   const int decimals = -last_digit(rounded * (1 + 1e-12));
   return fmt::format("{:.{}f}", rounded, std::max(0, decimals));
 }

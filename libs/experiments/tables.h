@@ -7,10 +7,10 @@
 
 namespace axial::experiments {
 
-// The first row is the header; all rows are of its length.
+// The first row is the header. Precondition: all rows have the same length.
 std::string markdown_table(const std::vector<std::vector<std::string>>& rows);
 
-// A number to `digits` significant digits without an exponent: 0.2671, 0.00221, 24600.
+// A number with `digits` significant digits and without an exponent: 0.2671, 0.00221, 24600.
 std::string significant(double value, int digits = 3);
 
 }  // namespace axial::experiments

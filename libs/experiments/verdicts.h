@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was asked of an experiment's numbers, and whether they keep to it.
+// Requirements on the numbers of an experiment, and whether the numbers meet them.
 #pragma once
 
 #include <string>
@@ -13,6 +13,7 @@ struct Verdict {
   bool met = false;
 };
 
+// A Markdown table with one row for each requirement.
 std::string verdict_table(const std::vector<Verdict>& verdicts);
 
 }  // namespace axial::experiments

@@ -22,11 +22,12 @@ ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iteration
   }
   options.num_threads = 1;
   options.max_num_iterations = max_iterations;
-  // Refraction tells the scale, and little else does: it converges last and moves the cost least.
+  // Often refraction alone determines the scale: it converges last and changes the cost least.
   options.function_tolerance = 1e-10;
   options.gradient_tolerance = 0;
   options.parameter_tolerance = 1e-12;
-  // Where nothing tells the scale, some damping must be left to divide by.
+  // Bounds the damping from below, so that the equations can be solved where nothing determines the
+  // scale.
   options.max_trust_region_radius = 1e10;
   options.logging_type = ceres::SILENT;
   return options;

@@ -12,7 +12,7 @@
 namespace axial::pose {
 namespace {
 
-// What follows are residuals in standard deviations.
+// The residuals of known numbers, in standard deviations.
 
 struct LengthResidual {
   int offset;  // of the position within its block

@@ -12,19 +12,22 @@
 
 namespace axial::pose {
 
-// Residual blocks: first all observations, in their order, then what is known besides.
+// Residual blocks: first one for each observation, in the bundle's order, then the known distances,
+// positions and numbers of cameras.
 class AdjustProblem {
  public:
-  // `bundle` must outlive this; it is not changed before write_back().
+  // Both arguments must outlive this. The bundle is not changed before write_back(). Error as
+  // adjust().
   AdjustProblem(const Bundle& bundle, const AdjustOptions& options);
 
   ceres::Problem& problem() { return *problem_; }
 
-  // Blocks under adjustment, those that stay left out. Points have 3 numbers each.
-  std::vector<double*> camera_blocks();  // images, changes of cameras, points of known lengths
-  std::vector<double*> point_blocks();   // all other points, which are independent of each other
+  // The parameter blocks under adjustment. Blocks that stay constant are left out. A point has 3
+  // numbers.
+  std::vector<double*> camera_blocks();  // images, changes of cameras, points with a known distance
+  std::vector<double*> point_blocks();   // all other points: independent of each other
 
-  // The first image that is observed in: it stays where it is.
+  // The first image with observations. Its pose stays constant.
   std::size_t anchor() const;
   bool is_observed(std::size_t image) const {
     return problem_->HasParameterBlock(poses_[image].data());
@@ -33,6 +36,8 @@ class AdjustProblem {
   double* image_block(std::size_t image) { return poses_[image].data(); }
   double* change_block(std::size_t camera) { return changes_[camera].data(); }
 
+  // Writes the adjusted poses, points and changes to `bundle`, which is the bundle of the
+  // constructor or a copy of it.
   void write_back(Bundle& bundle) const;
 
  private:
@@ -47,7 +52,7 @@ class AdjustProblem {
   const AdjustOptions& options_;
   std::vector<PoseNumbers> poses_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<bool> tied_;  // points that a known length ties to another
+  std::vector<bool> tied_;  // points with a known distance to another point
   std::vector<HousingChange<double>> changes_;
   std::unique_ptr<CurrentCameras> cameras_;
   std::unique_ptr<ceres::Problem> problem_;

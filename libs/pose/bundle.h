@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What refractive bundle adjustment moves: cameras, poses and points, and the observations that tie
-// them. World frame and metres throughout; pixels with centres at integers.
+// The input of refractive bundle adjustment: cameras, poses, points and observations. World frame
+// and metres throughout; pixels with centres at integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,10 @@ namespace axial::pose {
 
 struct BundleCamera {
   CameraModel measured;
+  // How far lens and port are from the measured ones.
   HousingChange<double> change = HousingChange<double>::Zero();
 
+  // The camera with the change applied.
   CameraModel now() const { return moved(measured, change); }
 };
 
@@ -29,22 +31,22 @@ struct BundleImage {
 
 struct BundlePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::size_t source = 0;  // what it was in the model it comes from
+  std::size_t source = 0;  // its id in the model it comes from
 };
 
 struct Observation {
   std::size_t image = 0;
   std::size_t point = 0;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // of the camera's pinhole lens
-  // From the pinhole's pixels to those of the photograph, where a lens distorts: errors are
-  // measured there.
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the camera's pinhole lens
+  // From pixels of the pinhole lens to pixels of the photograph, to first order; not the identity
+  // where the lens distorts. Reprojection errors are measured in the photograph.
   Eigen::Matrix2d to_photograph = Eigen::Matrix2d::Identity();
-  // Where a lens distorts, another focal length takes the distortion away from another place: the
-  // derivative of `pixel` by the logarithm of the focal lengths' factor.
+  // The derivative of `pixel` by the logarithm of the factor of the focal lengths. It is not zero
+  // where the lens distorts: the same pixel of the photograph then has another undistorted pixel.
   Eigen::Vector2d pixel_by_focal = Eigen::Vector2d::Zero();
-  std::size_t source = 0;  // what it was in the model it comes from
+  std::size_t source = 0;  // its index in ColmapImage::points, in the model it comes from
 
-  // `pixel` with the camera's lens changed so, to first order.
+  // `pixel` for the camera changed by `change`, to first order.
   Eigen::Vector2d pixel_with(const HousingChange<double>& change) const {
     return pixel + pixel_by_focal * change(kFocalNumber);
   }
@@ -57,16 +59,18 @@ struct Bundle {
   std::vector<Observation> observations;
 };
 
-// The index of the point that was `source`. Error if it is not, or no longer, in the bundle.
+// The index of the point whose source is `source`. Error if no point of the bundle has that source,
+// for example because it was dropped.
 std::size_t point_of(const Bundle& bundle, std::size_t source);
 
-std::vector<std::size_t> observations_by_image(const Bundle& bundle);  // their numbers
+// The number of observations in each image.
+std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
-// Reprojection errors [px of the photograph] of all observations, in their order; infinite where
-// the point's light does not reach the camera.
+// Reprojection errors [px of the photograph] of all observations, in their order. Infinite where
+// light from the point does not reach the lens.
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
-// Root of the mean of the squared errors; those that are infinite do not count. 0 if none does.
+// Root of the mean of the squared finite errors. 0 if no error is finite.
 double root_mean_square(std::span<const double> errors);
 
 }  // namespace axial::pose

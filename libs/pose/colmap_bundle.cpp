@@ -27,7 +27,8 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
   return *found;
 }
 
-// The lens without distortion, zoomed out until it holds all that `camera` images.
+// The lens of `camera` without distortion, with a focal length so short that its image holds
+// everything that `camera` images.
 refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
   refractive::PinholeLens<double> lens = io::undistorted_lens(camera);
   const double right = static_cast<double>(camera.width) - 1;
@@ -54,7 +55,7 @@ refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
   return lens;
 }
 
-// Bundle cameras: one for each lens and port that occur together.
+// Makes the bundle's cameras: one for each pair of lens and port that occurs.
 class Cameras {
  public:
   Cameras(ColmapBundle& result, const io::Housing& housing) : result_(result), housing_(housing) {}
@@ -81,7 +82,8 @@ class Cameras {
   std::map<std::pair<std::uint32_t, std::string>, std::size_t> indices_;
 };
 
-// The observation on the distortion-free lens; false where the lens images nothing.
+// Computes the observation's pixel on the lens without distortion, and its derivatives. Returns
+// false where the lens has no direction for the pixel.
 bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& pinhole,
            const io::ColmapPoint2D& point, Observation& observation) {
   const auto imaged = io::direction_at(lens, {point.x - 0.5, point.y - 0.5});
@@ -90,8 +92,9 @@ bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& 
                        pinhole.fy * imaged->direction.y() + pinhole.cy};
   observation.to_photograph.col(0) = imaged->derivative.col(0) / pinhole.fx;
   observation.to_photograph.col(1) = imaged->derivative.col(1) / pinhole.fy;
-  // The photograph's pixel stays, and the direction d(f) that f times the distortion brings there
-  // changes: d(direction)/d(log f) = -(d(pixel)/d(direction))^-1 (pixel - principal point).
+  // If the focal length f changes, the pixel of the photograph stays the same and its direction d
+  // changes: d(d)/d(log f) = -(d(pixel)/d(d))^-1 (pixel - principal point). The focal length of the
+  // pinhole has the same factor, which adds d.
   const refractive::PinholeLens<double> bare = io::undistorted_lens(lens);
   const Eigen::Vector2d from_centre(point.x - 0.5 - bare.cx, point.y - 0.5 - bare.cy);
   const Eigen::Vector2d by_focal = imaged->direction - imaged->derivative.inverse() * from_centre;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a COLMAP model of photographs taken through a port to a bundle, and back.
+// Converts a COLMAP model of photographs taken through a port to a bundle, and back.
 #pragma once
 
 #include <span>
@@ -10,39 +10,42 @@
 
 namespace axial::pose {
 
-// A bundle and what it takes to make a COLMAP model of it again.
+// A bundle, and the parts of a COLMAP model that the bundle itself does not hold.
 struct ColmapBundle {
   Bundle bundle;
-  std::vector<io::ColmapCamera> lenses;  // per bundle camera: in air; ids are the bundle's, from 1
-  std::vector<std::string> ports;        // per bundle camera: its port's name
-  std::size_t unseen = 0;                // observations left out: the lens images nothing there
+  std::vector<io::ColmapCamera> lenses;  // per bundle camera: the lens in air; ids count from 1
+  std::vector<std::string> ports;        // per bundle camera: the name of its port
+  std::size_t unseen = 0;                // observations left out: their lens has no direction there
 };
 
-// Poses, points and tracks of `model`, whatever lenses it believes in; in their place the `lenses`
-// in air, by camera id, or a single one for all cameras of its size, behind their ports of
-// `housing`. Observations are moved to the pixels of a distortion-free lens that holds the whole
-// image. Error for a camera without a lens, or of another size than its lens, and for one behind a
-// water surface.
+// The bundle of the poses, points and tracks of `model`. The lenses of `model` are not used: each
+// camera gets the lens in air of `lenses` with its id, or the only one if `lenses` holds one,
+// behind its port of `housing`. Observations are converted to pixels of a lens without distortion
+// whose image holds the whole photograph. Error for a camera without a lens, for a camera whose
+// size differs from its lens, for a port that is not defined, and for a camera behind a water
+// surface.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
-// Moves the observations to where the lenses take the distortion away at the focal lengths that the
-// cameras have now. Until then focal lengths move them to first order, from where they were placed.
+// Computes the undistorted pixels of the observations again, with the focal lengths that the
+// cameras have now. Until then, Observation::pixel_by_focal accounts for a change of the focal
+// lengths, only to first order. `model` is the model that the bundle was made of.
 void place_again(ColmapBundle& bundle, const io::ColmapModel& model);
 
-// Which cameras the poses of a model that carries ports were solved with: the RMS [px] of its own
-// tracks with the cameras behind their ports, and in air. 0 where a model has no tracks.
+// With which cameras the poses of a model with ports were computed: the RMS reprojection error [px]
+// of its tracks with the cameras behind their ports, and with the same cameras in air. 0 where a
+// model has no tracks.
 struct PortFit {
   double behind_ports = 0, in_air = 0;
 };
 PortFit port_fit(const io::ColmapModel& model);
 
-// `model` with the bundle's poses, points, tracks and mean errors, the in-air lenses and the ports.
-// Images without observations are left out.
+// `model` with the poses, points, tracks and mean reprojection errors of the bundle, its lenses in
+// air and its ports. Images without observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
-// The ports where the bundle has them now, by camera id; one that several cameras share, and that
-// has been adjusted, becomes one for each.
+// The ports of the bundle as they are now, by camera id. A port that several cameras share, and
+// that was adjusted, becomes one port for each camera.
 io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
 
 }  // namespace axial::pose

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of a camera that are under adjustment, as people name them and know them.
+// The numbers of a camera that are under adjustment: their names in options and reports.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace axial::pose {
 
-// How well the free numbers were measured; 0: not at all.
+// The standard deviations with which the free numbers were measured. 0: not measured.
 struct Sigmas {
   double normal_degrees = 0;
   double distance = 0, centre = 0, thickness = 0;  // [m]
@@ -18,21 +18,24 @@ struct Sigmas {
   double focal = 0;  // relative
 };
 
-// Declares the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
-// --index-sigma, bound to `sigmas`. Only the poses' program frees focal lengths (--focal-sigma).
+// Adds the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
+// --index-sigma, bound to `sigmas`. RefinePoses alone adjusts focal lengths and adds --focal-sigma
+// itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// What --refine says, a list of normal, distance, centre, thickness, index and focal, and how well
-// that was measured, into `adjust`: normal and distance of the flat ports, the centre of the domes,
-// the others of all. Error for another word; for normal or distance without a flat port, the centre
-// without a dome, or any number of a port where there are cameras in air; for a sigma that
-// is negative, or of what is not refined; for a thickness without one, since it looks like
-// distance; for the distance of a flat port where neither it nor any length is known, since only
-// their ratio is seen.
+// Sets the unknowns of `adjust` from the value of --refine, a comma-separated list of normal,
+// distance, centre, thickness, index and focal. Normal and distance apply to flat ports, centre to
+// domes, the other words to all cameras.
+//
+// Error for an unknown word; for normal or distance without a flat port; for centre without a dome;
+// for any number of a port where some cameras are in air; for a negative standard deviation, or one
+// of a number that `refine` does not name; for a thickness without a standard deviation, since its
+// effect looks like that of the distance; for a distance of a flat port where neither its standard
+// deviation nor any length is known, since photographs show only the ratio of lengths.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust);
 
-// What --refine calls the numbers that say where the port is.
+// The words of --refine for the place of the port: "normal,distance" or "centre".
 std::string place_words(const refractive::Port<double>& port);
 
 enum class Quantity { angle, place, index, thickness, focal };
@@ -43,10 +46,11 @@ struct FreeValue {
   Quantity quantity = Quantity::place;
   std::string name, unit;
   double now = 0, sigma = 0;  // [unit]
-  double scale = 1;           // of the unit, in that of housing_change.h: 1000 for mm
+  double scale = 1;           // factor from the unit of housing_change.h to `unit`: 1000 for mm
 };
 
-// Those under adjustment, with standard deviations `sigmas` as uncertainty() has them.
+// The numbers of `camera` under adjustment, with their standard deviations. `sigmas` as
+// Uncertainty::camera_sigmas.
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
                                    const AdjustOptions& options);
 

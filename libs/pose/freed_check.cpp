@@ -26,7 +26,7 @@ AdjustOptions options_for(const Bundle& part, const AdjustOptions& options) {
   result.loss_sigmas = 4;
   result.max_iterations = 20;
   if (options.poses_known) return result;
-  // The length from the first image to the farthest stays.
+  // Holds the length from the first image to the image farthest from it.
   std::size_t farthest = 0;
   const auto length = [&](std::size_t i) {
     return (part.images[i].pose.centre - part.images[0].pose.centre).norm();
@@ -44,7 +44,7 @@ double adjusted_rms(Bundle& part, const AdjustOptions& options) {
   return root_mean_square(reprojection_errors(part));
 }
 
-// Numbers of which one alone may be wrong: a normal's or a centre's belong together.
+// Numbers that can be wrong alone. The numbers of a normal or of a centre are one group.
 std::vector<std::vector<std::size_t>> candidates(const Bundle& part) {
   const auto& port = part.cameras.front().measured.port;
   std::vector<std::vector<std::size_t>> groups{{kIndexNumber}};
@@ -56,7 +56,7 @@ std::vector<std::vector<std::size_t>> candidates(const Bundle& part) {
   return groups;
 }
 
-// Ports of one kind: numbers of a flat one mean nothing to a dome.
+// Whether all ports are flat or all are domes: their numbers have different meanings.
 bool of_one_kind(const Bundle& part) {
   return std::ranges::all_of(part.cameras, [&](const BundleCamera& camera) {
     return camera.measured.port &&
@@ -64,7 +64,7 @@ bool of_one_kind(const Bundle& part) {
   });
 }
 
-// The number of the group that moved farthest, of the first camera.
+// The number of the first camera that changed most.
 FreedNumber moved_most(const Bundle& before, const Bundle& after, const AdjustOptions& options) {
   const HousingChange<double> none = HousingChange<double>::Zero();
   const auto stated = free_values(before.cameras.front(), none, options);
@@ -111,7 +111,7 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
       if (freed.deviations > kLeastDeviations) best = freed;
     }
   } catch (const Error&) {
-    return {};  // an adjustment that a number drives out of bounds tells nothing
+    return {};  // an adjustment fails where a number leaves its valid range
   }
   return best;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// After refractive bundle adjustment: do the photographs want another housing than the one given?
+// After refractive bundle adjustment: would other numbers of the housing fit the photographs better
+// than the stated numbers?
 #pragma once
 
 #include <optional>
@@ -10,29 +11,34 @@
 
 namespace axial::pose {
 
-// What one number of the housing, set free, does to the errors.
+// The effect of adjusting one number of the housing that was taken as known.
 struct FreedNumber {
   std::string name, unit;
   double stated = 0, found = 0;          // [unit]
   double rms_stated = 0, rms_found = 0;  // [px]
-  double deviations = 0;                 // how far the stated value is off, in standard deviations
+  double deviations = 0;                 // |found - stated| in standard deviations
 };
 
-// Of the numbers of lens and port that `options` does not leave free, the one that brings the RMS
-// down most, by 7 % or more: less is within what a good lens calibration leaves. A bounded part of
-// the refined bundle (40 images, 600 points) is adjusted for some iterations with each number free,
-// the model's lengths held. So a distance that is wrong shows where the scale was given: where
-// refraction alone told the scale, poses at another scale fit as well, and nothing can tell.
-// Nothing where the stated numbers fit, or the bundle is too small to say.
+// Of the numbers of lens and port that `options` does not leave free, the one that lowers the RMS
+// error most when it is adjusted. Only a decrease by 7 % or more, and by 0.02 px or more, counts: a
+// good lens calibration leaves smaller errors. Adjusts a bounded part of the refined bundle (40
+// images, 600 points) for up to 20 iterations for each number, with the model's lengths held.
+//
+// A wrong port distance is found only if the scale was given. If refraction alone determined the
+// scale, poses at another scale fit as well.
+//
+// Empty if the stated numbers fit, if the bundle is too small, if its ports are not all flat or all
+// domes, or if an adjustment fails.
 std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options);
 
-// The warning of it. `scale_sigma`: what the adjustment claims to know lengths to, relative;
-// infinite if it claims nothing.
+// The warning that names the number. `scale_sigma`: the relative standard deviation of lengths that
+// the adjustment reports; infinite if it reports none.
 std::string warning_of(const FreedNumber& freed, double scale_sigma);
 
-// Where a quarter of the observations or more were dropped: the reason of most. Only errors ask for
-// the housing; few observations in an image, or narrow angles, are the survey's own.
+// One line for each reason that dropped more than a quarter of the observations (observations that
+// repeat a point in an image do not count). Only large errors question the housing; few
+// observations in an image, or narrow angles, are properties of the survey.
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits);
 
 }  // namespace axial::pose

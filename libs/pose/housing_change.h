@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The unknown numbers of a camera behind a port: how far lens and port are from where they were
-// measured.
+// The unknown numbers of a camera behind a port: the differences between lens and port and their
+// measured values.
 #pragma once
 
 #include <array>
@@ -11,15 +11,18 @@
 
 namespace axial::pose {
 
-// Of a flat port: tilts [rad] of the normal about the two axes across it, distance [m]; of a dome:
-// its centre [m]. Of both: refractive index of the water, thickness of the glass [m]. Of a camera
-// in air: nothing. Last, of all of them: the logarithm of the factor of both focal lengths.
+// The numbers 0 to 2 of a flat port: tilts [rad] of the normal towards the two axes across it, and
+// distance [m]. Of a dome: its centre [m]. Of both: refractive index of the water (3) and thickness
+// of the glass [m] (4). Of all cameras, also in air: the logarithm of the factor of both focal
+// lengths (5).
 inline constexpr int kHousingNumbers = 6;
 inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 
 template <class T>
 using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
 
+// The measured port or lens changed by `change`. T is double or an automatic-differentiation
+// scalar.
 template <class T>
 refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
                               const HousingChange<T>& change) {
@@ -54,12 +57,13 @@ refractive::PinholeLens<T> moved(const refractive::PinholeLens<double>& measured
   return lens;
 }
 
-// The camera with lens and port moved.
+// The camera with `change` applied to lens and port.
 CameraModel moved(const CameraModel& measured, const HousingChange<double>& change);
 
-// The derivative of the point at `lambda` on the pixel's ray, in the camera frame, by the change.
-// Since a point's image is the pixel whose ray meets it, the derivative of an image by the change
-// is -(d(pixel)/dX) times this (implicit function theorem): no iteration is differentiated.
+// The derivative by the change of the point at `lambda` [m] on the ray of `pixel`, in the camera
+// frame. The image of a point is the pixel whose ray meets the point, so the derivative of the
+// image by the change is -(d(pixel)/dX) times this derivative (implicit function theorem). Only the
+// ray, a closed form, is differentiated, and no iteration.
 Eigen::Matrix<double, 3, kHousingNumbers> ray_by_change(const CameraModel& measured,
                                                         const HousingChange<double>& change,
                                                         const Eigen::Vector2d& pixel,

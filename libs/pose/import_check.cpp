@@ -16,16 +16,16 @@
 namespace axial::pose {
 namespace {
 
-// Photographs agree with a prediction, or have nothing to do with it. Patches of the same place
-// correlate at 0.6 and more unless noise or haze hides it, those of others at 0.2 and less.
+// Patches of the same place correlate by 0.6 or more unless noise or haze hides the texture;
+// patches of different places correlate by 0.2 or less.
 constexpr double kAgree = 0.5, kClearlyMore = 0.25;
-// A single change may be the cause and not yet the whole truth: the optical axis for a normal that
-// is in truth some degrees off it.
+// A single change may find the cause without its exact value: the optical axis is tried for a
+// normal that is in truth some degrees off it.
 constexpr double kAgreeWithChange = 0.35;
-// Less than any detector would have matched.
+// Below the correlation of any match that a feature detector makes.
 constexpr double kNothingInCommon = 0.1;
 
-// `in_air` behind the ports of `housing`: a water surface is another port for every pose.
+// `in_air` behind the ports of `housing`. A water surface is another port for each pose.
 Bundle behind_ports(const Bundle& in_air, const io::ColmapModel& sample,
                     const io::Housing& housing) {
   Bundle bundle = in_air;
@@ -74,7 +74,7 @@ std::string misfit(const PortCheck& check, const Bundle& bundle, bool ports) {
                             check.best_residual, advice_for(check.best));
 }
 
-// The change under which the photographs agree, clearly more than with what was given; the first
+// The change with which the photographs agree clearly better than with the given cameras; the first
 // of several.
 std::optional<std::pair<PortChange, double>> change_by_pictures(const TrackPictures& pictures,
                                                                 const Bundle& bundle,
@@ -92,7 +92,8 @@ std::optional<std::pair<PortChange, double>> change_by_pictures(const TrackPictu
   return best;
 }
 
-// Tracks that fit in air are of photographs in air, or of pinhole poses: the photographs know.
+// For tracks that fit cameras in air. They come from photographs in air, or their poses were
+// computed without the port. The photographs tell which.
 std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapModel& sample,
                                        const Bundle& in_air, const Bundle& bundle, bool ports,
                                        const std::filesystem::path& image_folder) {
@@ -144,7 +145,7 @@ std::optional<std::string> import_warning(const io::ColmapModel& model, const io
     const bool ports = std::ranges::any_of(bundle.cameras, [](const BundleCamera& camera) {
       return camera.measured.port.has_value();
     });
-    // Tracks of a model that carries ports are of photographs taken through them.
+    // A model with ports has tracks of photographs taken through these ports.
     const bool carried = std::ranges::any_of(
         sample.cameras, [](const io::ColmapCamera& camera) { return camera.port.has_value(); });
     if (check.fits_in_air() && !carried)
@@ -152,7 +153,7 @@ std::optional<std::string> import_warning(const io::ColmapModel& model, const io
     if (check.fits()) return {};
     return misfit(check, bundle, ports);
   } catch (const Error&) {
-    return {};  // a lens that is not supported, a port that an image does not reach
+    return {};  // an unsupported lens, or an image whose rays do not reach its port
   }
 }
 

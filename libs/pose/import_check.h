@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a COLMAP model, its housing and its photographs belong together, in one line.
+// Checks whether a COLMAP model, its housing and its photographs belong together.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,19 @@
 
 namespace axial::pose {
 
-// A warning for a model whose lenses look through `housing`, or nothing where all fits or nothing
-// can be told (port_check.h says what can). Points are triangulated anew, a bounded sample of them.
-// Where tracks fit in air they may be of photographs in air, and up to six photographs of
-// `image_folder` decide; with an empty path nothing is said then. (Tracks of a model that carries
-// ports itself are of photographs through them.) The line is the same for any number of threads.
-// Poses that are too large are not told there: points move by a pixel, which patches hardly show.
-// DensifyPointCloud's depth maps tell (depth/agreement.h).
-// Nothing is thrown for files that cannot be read.
+// A warning of one line if `model`, with its cameras behind the ports of `housing`, does not fit
+// its tracks or its photographs. Empty if everything fits or if the data cannot tell (port_check.h
+// says when tracks can tell). Triangulates a bounded sample of the points anew.
+//
+// Tracks that fit cameras in air may come from photographs in air. Then up to six photographs of
+// `image_folder` decide; with an empty path there is no warning. Tracks of a model that carries
+// ports itself always come from photographs taken through these ports. The line is the same for any
+// number of threads.
+//
+// Poses at too large a scale are not found here: their points move by about a pixel, and patches
+// hardly show that. The depth maps of DensifyPointCloud show it (depth/agreement.h).
+//
+// Throws nothing for files that cannot be read.
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
                                           const std::filesystem::path& image_folder);
 

@@ -12,7 +12,7 @@
 namespace axial::pose {
 namespace {
 
-// Sets of images and points that observations connect.
+// Connected components of the graph of images and points with observations as edges (union-find).
 class Connected {
  public:
   explicit Connected(const Bundle& bundle)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether lengths and positions that are known in metres have a hold on a bundle.
+// Checks whether lengths and positions that are known in metres determine the scale of a bundle.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace axial::pose {
 
-// Why what `options` say is known in metres does not tell the bundle's scale, one line each; empty
-// where it does. A distance does not if an end has no observations, or if no chain of points leads
-// from one end to the other. Positions do not if fewer than three are of images with observations,
-// or those lie on one line.
+// Why known lengths and positions of `options` cannot be used to determine the scale of the bundle:
+// one line for each reason, empty if there is none. A distance cannot be used if one of its ends
+// has no observations, or if no chain of points connects its ends. Positions cannot be used if
+// fewer than three belong to images with observations, or if these positions lie on one line.
 std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options);
 
-// The indices into `options.positions` of those whose images have no observations.
+// The indices into `options.positions` of the positions whose images have no observations.
 std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOptions& options);
 
 }  // namespace axial::pose

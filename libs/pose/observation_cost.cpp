@@ -75,7 +75,7 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
       std::visit([&](const auto& camera) { return camera.project(X, &by_point, &origin); }, now_);
   Eigen::Map<Eigen::Vector2d> residual(residuals);
   if (!image.visible) {
-    // No image of a point that is seen lies farther from its observation.
+    // At least as far as any visible image lies from its observation.
     residual = Eigen::Vector2d(measured_.measured.width, measured_.measured.height);
     set_zero(jacobians);
     return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The residual of refractive bundle adjustment: by how many pixels a point misses its observation,
-// by the exact projection, with analytic derivatives.
+// The residual of refractive bundle adjustment: the reprojection error of one observation by the
+// exact projection, with analytic derivatives.
 #pragma once
 
 #include <ceres/evaluation_callback.h>
@@ -13,22 +13,23 @@
 
 namespace axial::pose {
 
-// A pose as its change: a rotation vector w [rad], applied after the rotation it starts from, and
-// the camera centre. X_camera = exp([w]x) R (X - C).
+// A pose relative to the pose it starts from: a rotation vector w [rad], applied after the start's
+// rotation R, and the camera centre C [m]. X_camera = exp([w]x) R (X - C).
 inline constexpr int kPoseNumbers = 6;
 using PoseNumbers = std::array<double, kPoseNumbers>;
 
+// The numbers of `start` itself (w = 0), and the pose with `numbers` relative to `start`.
 PoseNumbers numbers_of(const Pose& start);
 Pose moved(const Pose& start, const PoseNumbers& numbers);
 
-// d(exp([w]x) v)/dw = -[exp([w]x) v]x J, with this J: the left Jacobian of the rotation group.
+// The left Jacobian J of the rotation group: d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 
-// The cameras as the numbers under adjustment have them now: made anew once per evaluation, not
-// once per observation.
+// The cameras with the numbers that the solver has now. They are built once for each evaluation,
+// and not for each observation.
 class CurrentCameras : public ceres::EvaluationCallback {
  public:
-  // `changes`, one per camera: what the solver works on. Both must outlive this.
+  // `changes`: the solver's parameter blocks, one per camera. Both arguments must outlive this.
   CurrentCameras(std::span<const BundleCamera> cameras,
                  std::span<const HousingChange<double>> changes);
 
@@ -42,9 +43,9 @@ class CurrentCameras : public ceres::EvaluationCallback {
   std::vector<CameraVariant<double>> cameras_;
 };
 
-// Residual [px of the photograph] of one observation; blocks: the pose's numbers, the point, the
-// camera's change. A point whose light does not reach the camera has a large residual that nothing
-// moves: the loss function bounds its say.
+// Residual [px of the photograph] of one observation. Parameter blocks: the pose's numbers, the
+// point [m], the camera's change. A point whose light does not reach the lens has a large constant
+// residual with zero derivatives; the loss function bounds its weight.
 class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
  public:
   // All arguments must outlive the cost.

@@ -60,7 +60,8 @@ PortValues values_of(const refractive::Port<double>& port) {
   return {std::get<Dome>(port).n_water, 0, false};
 }
 
-// Of the first camera that has one: others differ from it seldom, and the cause names one value.
+// Of the first camera with a port: the ports of a bundle seldom differ in these values, and the
+// cause names only one value.
 std::optional<PortValues> first_port(const Bundle& bundle) {
   for (const BundleCamera& camera : bundle.cameras)
     if (camera.measured.port) return values_of(*camera.measured.port);
@@ -128,8 +129,9 @@ PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_erro
       first_port(bundle) ? track_residual(changed(bundle, {Of::port_left_out})) : check.residual;
   check.best_residual = check.residual;
   if (check.fits()) return check;
-  // Of causes that explain the tracks alike, the likeliest. Where none does so to the noise, none
-  // is the whole truth, and residuals rank them less sharply.
+  // Takes the likeliest of the changes that explain the tracks about equally well. If no change
+  // brings the errors down to the noise, residuals rank the changes less reliably, and the
+  // tolerance is wider.
   const std::vector<PortChange> changes = likely_changes(bundle);
   std::vector<double> residuals;
   for (const PortChange& change : changes)

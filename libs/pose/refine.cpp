@@ -14,8 +14,8 @@
 namespace axial::pose {
 namespace {
 
-constexpr std::size_t kTrialPoints = 1500;  // enough to tell one scale from another
-// Median distances of the scene [m] to begin with: close-up to wide survey.
+constexpr std::size_t kTrialPoints = 1500;  // enough to distinguish scales
+// Median distances of the scene [m] that are tried: from close-ups to wide surveys.
 constexpr std::array<double, 7> kTrialDistances{0.25, 0.5, 1, 2, 4, 8, 16};
 
 const Eigen::Vector3d& place_of(const Bundle& bundle, const KnownDistance& known, std::size_t end) {
@@ -23,7 +23,7 @@ const Eigen::Vector3d& place_of(const Bundle& bundle, const KnownDistance& known
   return bundle.points[point_of(bundle, end)].position;
 }
 
-// The factor that makes a length known in metres right; nothing where none is known.
+// The factor that scales the first known length to metres; 0 if no length is known.
 double known_scale(const Bundle& bundle, const AdjustOptions& options) {
   for (const KnownDistance& known : options.distances) {
     const double length =
@@ -34,7 +34,7 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
   return 0;
 }
 
-// Brings the bundle where its positions are known to be.
+// Moves the bundle to its known positions by a similarity; false if fewer than three are known.
 bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positions) {
   if (positions.size() < 3) return false;
   Eigen::Matrix3Xd from(3, positions.size()), to(3, positions.size());
@@ -54,7 +54,7 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
   return true;
 }
 
-// A part of the bundle: the points seen most often.
+// A part of the bundle: the points with the most observations.
 Bundle sample(const Bundle& bundle) {
   std::vector<std::size_t> seen(bundle.points.size());
   for (const Observation& observation : bundle.observations) ++seen[observation.point];
@@ -78,7 +78,7 @@ Bundle sample(const Bundle& bundle) {
   return part;
 }
 
-// What a short adjustment of `trial` leaves of its errors.
+// The cost that remains after a short adjustment of `trial` at another scale.
 double trial_cost(Bundle trial, double scale) {
   scale_places(trial, scale);
   triangulate(trial);
@@ -88,7 +88,7 @@ double trial_cost(Bundle trial, double scale) {
   try {
     return adjust(trial, options).final_cost;
   } catch (const Error&) {
-    return std::numeric_limits<double>::infinity();  // another scale will do
+    return std::numeric_limits<double>::infinity();  // the adjustment fails: other scales are tried
   }
 }
 
@@ -140,15 +140,15 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   report.lost = lost_knowledge(bundle, adjusting);
   if (!report.lost.empty()) return report;
 
-  // Wide at first: what a pinhole engine left is no outlier yet.
+  // Wider limits at first: errors of the pinhole engine's poses do not mark outliers.
   TrackLimits limits = options.tracks;
   limits.max_error *= 4;
   adjusting.loss_sigmas *= 4;
   for (int round = 0; round < options.rounds; ++round) {
     report.last = adjust(bundle, adjusting);
-    // Before errors are judged: what was placed for another lens is no outlier.
+    // Before errors are judged: the undistorted pixels belong to the previous focal lengths.
     if (options.between_rounds) options.between_rounds();
-    // Once adjusted, cameras predict which of several observations is meant.
+    // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
     if (bundle.observations.empty()) fail("no observation fits refractive cameras");

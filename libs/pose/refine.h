@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From poses that a pinhole engine found in photographs taken under water to refractive ones.
+// Turns the poses that a pinhole engine found in underwater photographs into refractive poses.
 #pragma once
 
 #include <functional>
@@ -14,40 +14,45 @@ namespace axial::pose {
 struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
-  int rounds = 3;  // of adjusting and dropping what does not fit
-  // After each round's adjustment: may move the bundle's observations, as place_again() does.
+  int rounds = 3;  // of adjusting, then dropping observations that do not fit
+  // Called after each round's adjustment. It may change the bundle's observations, as place_again()
+  // does.
   std::function<void()> between_rounds;
 };
 
 struct RefineReport {
-  double rms_before = 0;  // [px], refractive cameras at the poses it began with
+  double rms_before = 0;  // [px], refractive cameras at the initial poses
   double rms_after = 0;
   std::size_t observations_before = 0, observations_after = 0;
-  std::size_t repeated = 0;  // of the former: further ones of an image that sees the point already
-  DropCounts dropped;        // the others that are not left
+  std::size_t repeated = 0;  // dropped as repeated observations of a point in one image
+  DropCounts dropped;        // dropped for other reasons
   std::size_t points_before = 0, points_after = 0;
   AdjustReport last;
-  // Not empty: refining ended early, because what is known in metres has lost its hold on the
-  // bundle; the lines of lost_knowledge().
+  // The lines of lost_knowledge(). Not empty: refining ended early, because known lengths or
+  // positions can no longer be used.
   std::vector<std::string> lost;
 };
 
-// Brings a bundle of any scale to metres, a first guess, and triangulates it anew: a pinhole
-// engine's model has no scale (known poses have it, and stay as they are). What is known in metres
-// sets it; else that scale out of a series is taken under which a short adjustment leaves the least
-// error, since refraction depends on the distance in metres.
+// Scales a bundle of any scale to metres, as a first guess, and triangulates its points anew. A
+// pinhole engine's model has no scale. Three or more known positions place the bundle; otherwise
+// the first known distance scales it. If neither is known, a short adjustment is tried for a series
+// of scene distances, and the scale with the least error is taken: refraction depends on the
+// distance in metres. Known poses are in metres and stay as they are. Error for a known distance
+// that has no length in the model, or a point that the bundle does not have.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
-// Rounds of adjusting and filtering a bundle in metres, the later ones with the noise that was
-// found as the observations' weight. How well the result is known, uncertainty() of the bundle and
-// `options.adjust` tells. Error for a bundle of which nothing is left.
+// Adjusts and filters a bundle in metres for `options.rounds` rounds, then once more. From the
+// second round on, the noise that was found weighs the observations. uncertainty() of the bundle
+// and `options.adjust` gives the standard deviations of the result. `progress` gets one line for
+// each round. Error if no observation is left.
 RefineReport refine(Bundle& bundle, const RefineOptions& options,
                     const std::function<void(const std::string&)>& progress = {});
 
-// Median distance [m] of the points from the images that observe them.
+// Median distance [m] from the images to the points that they observe. Error if the bundle has no
+// observations.
 double median_distance(const Bundle& bundle);
 
-// All places multiplied by `scale`.
+// Multiplies all camera centres and points by `scale`.
 void scale_places(Bundle& bundle, double scale);
 
 }  // namespace axial::pose

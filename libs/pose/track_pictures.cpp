@@ -19,8 +19,8 @@ namespace axial::pose {
 namespace {
 
 constexpr std::size_t kPairs = 3, kLeastPoints = 30, kPointsOfPair = 150;
-constexpr int kHalf = 6;           // patches of 13 x 13 samples
-constexpr double kPicture = 1200;  // samples are pixels of pictures of about this width
+constexpr int kHalf = 6;           // patches have 13 x 13 samples
+constexpr double kPicture = 1200;  // samples: pixels of the photograph reduced to this width [px]
 
 using Cameras = std::vector<CameraVariant<double>>;
 
@@ -31,7 +31,7 @@ Cameras cameras_of(const Bundle& bundle) {
   return cameras;
 }
 
-// From the pixels of the distortion-free lens to those of the photograph.
+// From pixels of the lens without distortion to pixels of the photograph.
 std::optional<Eigen::Vector2d> in_photograph(const io::ColmapCamera& lens,
                                              const refractive::PinholeLens<double>& pinhole,
                                              const Eigen::Vector2d& pixel) {
@@ -41,7 +41,8 @@ std::optional<Eigen::Vector2d> in_photograph(const io::ColmapCamera& lens,
   return at;
 }
 
-// A point's image and how it moves with the point, along two directions across the line of sight.
+// The image of a point, and its derivatives by the point along two directions across the line of
+// sight.
 struct Patch {
   Eigen::Vector2d centre;
   Eigen::Matrix2d along;
@@ -72,7 +73,7 @@ cv::Mat1f grey_picture(const std::filesystem::path& file, cv::Size size) {
     cv::GaussianBlur(picture, picture, {}, sigma);
     return picture;
   } catch (const Error&) {
-    return {};  // whoever needs the photograph says so
+    return {};  // programs that need the photograph report it
   }
 }
 
@@ -85,7 +86,8 @@ std::optional<double> sample_at(const cv::Mat1f& picture, const Eigen::Vector2d&
          b * ((1 - a) * picture(j + 1, i) + a * picture(j + 1, i + 1));
 }
 
-// Nothing where a patch leaves its picture or has no texture.
+// Normalised cross-correlation of two patches. Empty where a patch leaves its photograph or has no
+// texture.
 std::optional<double> correlation(const cv::Mat1f& a, const Patch& in_a, const cv::Mat1f& b,
                                   const Patch& in_b) {
   if (!(std::abs(in_a.along.determinant()) > 1e-9)) return {};
@@ -106,7 +108,7 @@ std::optional<double> correlation(const cv::Mat1f& a, const Patch& in_a, const c
   return (sab / n - sa * sb / (n * n)) / std::sqrt(var_a * var_b);
 }
 
-// At most `most` of them: the first of them may lie side by side in the image.
+// At most `most` of the items, evenly spaced: the first items may all lie in one part of the image.
 template <class T>
 std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
   if (all.size() <= most) return all;
@@ -124,14 +126,14 @@ TrackPictures::TrackPictures(const io::ColmapModel& sample, const Bundle& in_air
   read_pictures(image_folder);
 }
 
-// Those with the most points in common that are not seen from nearly one place: there every camera
-// predicts the same.
+// The pairs with the most points in common that are seen from sufficiently different directions.
+// From nearly one place, all cameras predict the same.
 void TrackPictures::choose_pairs() {
   std::vector<std::vector<std::size_t>> tracks(in_air_.points.size());
   for (std::size_t i = 0; i < in_air_.observations.size(); ++i)
     tracks[in_air_.observations[i].point].push_back(i);
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::array<std::size_t, 3>>> shared;
-  constexpr double kLeastSine = 0.05;  // of an angle of 3 degrees
+  constexpr double kLeastSine = 0.05;  // 3 degrees
   for (std::size_t point = 0; point < tracks.size(); ++point)
     for (const std::size_t i : tracks[point])
       for (const std::size_t j : tracks[point]) {
@@ -191,7 +193,8 @@ std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_obs
                              const Tangents& at) -> std::optional<Patch> {
         const BundleImage& from = bundle.images[image];
         const io::ColmapCamera& lens = *lenses.at(sample_.images[image].camera);
-        // Where the photograph is taken apart does not change with the bundle's cameras.
+        // The lens that observations were undistorted with does not change with the bundle's
+        // cameras.
         const auto& pinhole = in_air_.cameras[in_air_.images[image].camera].measured.lens;
         const auto see = [&](const Eigen::Vector3d& x) -> std::optional<Eigen::Vector2d> {
           const auto image_of =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether photographs show what tracks and cameras predict: small patches of two photographs at the
-// places of one point, compared. Tracks may come from other photographs of the same views (in air),
-// and then only the pictures tell whether a port is right.
+// Checks whether photographs show what tracks and cameras predict: compares small patches of two
+// photographs around the images of one point. Tracks may come from other photographs of the same
+// views (in air). Then only the photographs tell whether a port is right.
 #pragma once
 
 #include <array>
@@ -15,26 +15,26 @@
 
 namespace axial::pose {
 
-// Up to three pairs of images of a sample that see many points in common, their photographs in
-// memory. Photographs that cannot be read, or are of another size than their camera, are left out.
+// Up to three pairs of images of a sample with many points in common, with their photographs in
+// memory. Photographs that cannot be read, or whose size differs from their camera's, are left out.
 class TrackPictures {
  public:
-  // `sample` and its bundle in air, images and points in the same order; the points lie where the
-  // tracks' rays meet. Both must outlive this.
+  // `sample`, and its bundle in air with images and points in the same order and points
+  // triangulated from the tracks. Both must outlive this.
   TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
                 const std::filesystem::path& image_folder);
 
-  // How alike patches are at the tracks' own pixels, and where the cameras of `bundle` (in_air with
-  // other cameras, or in another scale) see the points: the median of the normalised
-  // cross-correlation, 1 for the same picture, near 0 for places that have nothing in common.
-  // Nothing, where fewer than 30 points have enough texture.
+  // The median normalised cross-correlation of patches: at the pixels of the tracks (at_tracks), or
+  // where the cameras of `bundle` project the points (behind). `bundle` is `in_air` with other
+  // cameras or at another scale. 1 for the same picture, near 0 for unrelated places. Empty if
+  // fewer than 30 points have enough texture.
   std::optional<double> at_tracks() const;
   std::optional<double> behind(const Bundle& bundle) const;
 
  private:
   struct Pair {
     std::size_t first, second;                       // images
-    std::vector<std::array<std::size_t, 3>> shared;  // point, its observations in both
+    std::vector<std::array<std::size_t, 3>> shared;  // the point, its observations in both images
     cv::Mat1f pictures[2];
   };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-// The k-th of `count` evenly spaced places among `total`.
+// The k-th of `count` evenly spaced indices among `total`.
 std::size_t spaced(std::size_t k, std::size_t count, std::size_t total) {
   return (2 * k + 1) * total / (2 * count);
 }
@@ -32,14 +32,14 @@ std::unordered_set<std::uint64_t> points_of_seeds(const io::ColmapModel& model,
   return chosen;
 }
 
-// Takes images into the sample as tracks name them, as long as there is room.
+// The images of the sample, in the order in which tracks name them, up to a limit.
 class SampledImages {
  public:
   SampledImages(const io::ColmapModel& model, std::size_t limit) : model_(model), limit_(limit) {
     for (std::size_t i = 0; i < model.images.size(); ++i) index_of_.emplace(model.images[i].id, i);
   }
 
-  // The place in the sample; kNone where it is full.
+  // The index of the image in the sample; kNone if the sample is full.
   std::size_t take(std::uint32_t id) {
     const auto found = place_of_.find(id);
     if (found != place_of_.end()) return found->second;
@@ -64,7 +64,8 @@ class SampledImages {
 
 void add_track(const io::ColmapPoint3D& from, std::size_t limit, SampledImages& images,
                std::vector<io::ColmapPoint3D>& points) {
-  std::vector<std::pair<std::size_t, io::ColmapPoint2D>> seen;  // by place in the sample
+  // With the index of the image in the sample.
+  std::vector<std::pair<std::size_t, io::ColmapPoint2D>> seen;
   for (const io::ColmapTrackElement& element : from.track) {
     if (seen.size() == limit) break;
     const std::size_t place = images.take(element.image);
@@ -97,7 +98,7 @@ std::vector<std::vector<std::size_t>> images_by_point(const Bundle& bundle) {
   return lists;
 }
 
-// Images reached from the middle one through points that both see, nearest first.
+// Breadth-first search from the middle image through points that two images observe.
 std::vector<bool> connected_images(const Bundle& bundle, std::size_t limit, bool behind_ports) {
   const auto points = points_by_image(bundle);
   const auto images = images_by_point(bundle);
@@ -160,7 +161,7 @@ Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behi
     observation.point = place[observation.point];
     part.observations.push_back(observation);
   }
-  // Images and cameras that nothing is left of would be unknowns of the adjustment.
+  // Leaves out images and cameras without observations: they would be unknowns of the adjustment.
   std::vector<std::size_t> image_place(bundle.images.size(), kNone),
       camera_place(bundle.cameras.size(), kNone);
   Bundle result{{}, {}, std::move(part.points), std::move(part.observations)};

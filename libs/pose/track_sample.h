@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bounded part of a model's tracks, for checks that must not cost more the larger the model is.
+// A bounded part of a model's tracks, for checks whose cost must not grow with the model.
 #pragma once
 
 #include "io/colmap.h"
@@ -10,17 +10,20 @@ namespace axial::pose {
 struct SampleLimits {
   std::size_t points = 2000;
   std::size_t images = 300;
-  std::size_t track = 8;   // observations of a point
-  std::size_t seeds = 20;  // images, evenly spaced in the model's order, whose points are taken
+  std::size_t track = 8;  // observations of each point
+  // The points are taken from this many images, evenly spaced in the model's order.
+  std::size_t seeds = 20;
 };
 
-// Points that two images or more see, their observations, and the images and cameras of these. Each
-// image counts once in a track. Time is linear in the model's images and points, and the same model
-// gives the same sample. A model without tracks gives an empty one.
+// A sample of the points that two images or more observe, with their observations, and the images
+// and cameras of these observations. A track has at most one observation of each image. Runs in
+// linear time in the model's images and points. The same model gives the same sample, and a model
+// without tracks gives an empty sample.
 io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits = {});
 
-// The same of a bundle: images that see points in common, beginning with the one in the middle of
-// the bundle's order. Only images whose camera is behind a port, if `behind_ports` says so.
+// A sample of a bundle: images connected by common points, from the middle of the bundle's order
+// outwards, and the points most of these images observe. `seeds` and `track` of the limits are not
+// used. With `behind_ports`, only images whose camera is behind a port.
 Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behind_ports);
 
 }  // namespace axial::pose

@@ -38,7 +38,7 @@ std::vector<std::vector<std::size_t>> observations_by_point(const Bundle& bundle
   return lists;
 }
 
-// [rad], the largest between any two.
+// The largest angle [rad] between any two rays of the list.
 double widest_angle(std::span<const std::size_t> list, const std::vector<Ray>& rays) {
   double smallest_cosine = 1;
   for (std::size_t i = 0; i < list.size(); ++i)
@@ -48,7 +48,7 @@ double widest_angle(std::span<const std::size_t> list, const std::vector<Ray>& r
   return std::acos(std::clamp(smallest_cosine, -1.0, 1.0));
 }
 
-// Points without observations leave, and the others close ranks.
+// Removes the points that are not kept, and their observations, and renumbers the other points.
 void drop_points(Bundle& bundle, const std::vector<bool>& kept) {
   std::vector<std::size_t> place(kept.size());
   std::vector<BundlePoint> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tracks of a bundle: triangulation through ports, and which observations to believe.
+// Tracks of a bundle: triangulation through ports, and rejection of outliers.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace axial::pose {
 
-// The point with the least sum of squared distances to the rays (metres, any common frame). Nothing
-// for fewer than two rays, or where they are parallel or meet behind their origins.
+// The point with the least sum of squared distances to the rays (metres, any common frame). Empty
+// for fewer than two rays, for parallel rays, and for rays that meet behind their origins.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
-// All points anew from their observations' rays. Those that have none keep their place.
+// Triangulates all points from the rays of their observations. Points without a solution keep their
+// position.
 void triangulate(Bundle& bundle);
 
-// Where a point has several observations in one image, as tracks of an engine may have, the one
-// with the least error stays, the first of equal ones; so each image counts once. The number
-// dropped.
+// If a point has several observations in one image, as tracks of some engines have, keeps the
+// observation with the least error, the first of equal ones. Returns the number dropped.
 std::size_t drop_repeated(Bundle& bundle);
 
 struct TrackLimits {
@@ -30,14 +30,15 @@ struct TrackLimits {
 
 // Why observations were dropped.
 struct DropCounts {
-  std::size_t errors = 0;       // too large
-  std::size_t weak_images = 0;  // of images with too few observations left
-  std::size_t weak_points = 0;  // of points seen by one image, or under too narrow an angle
+  std::size_t errors = 0;       // error too large
+  std::size_t weak_images = 0;  // image with too few observations left
+  std::size_t weak_points = 0;  // point seen by one image, or under too narrow an angle
 };
 
-// Drops observations with larger errors, then all those of images with too few, and of points seen
-// by fewer than two images or under too narrow an angle, until nothing is left to drop. The number
-// dropped, and by reason in `counts`, to which it is added.
+// Drops observations with errors above the limit. Then drops all observations of images that have
+// too few, and of points that fewer than two images see or that are seen under too narrow an angle,
+// and repeats this until nothing changes. Points without observations are removed. Returns the
+// number of dropped observations, and adds the numbers by reason to `counts`.
 std::size_t filter(Bundle& bundle, const TrackLimits& limits, DropCounts* counts = nullptr);
 
 }  // namespace axial::pose

@@ -23,7 +23,7 @@ std::size_t unknowns_of(const Bundle& bundle, const AdjustOptions& options) {
   std::size_t free = 0;
   for (const BundleCamera& camera : bundle.cameras)
     free += static_cast<std::size_t>(std::ranges::count(options.unknowns(camera).free, true));
-  // Images without observations are no unknowns.
+  // The poses of images without observations are not adjusted.
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   auto images = counts.size() -
                 static_cast<std::size_t>(std::count(counts.begin(), counts.end(), std::size_t{0}));
@@ -45,12 +45,12 @@ Sparse jacobian(ceres::Problem& problem, const std::vector<double*>& blocks) {
                                 crs.cols.data(), crs.values.data());
 }
 
-// Of the blocks of 3 that the points are.
+// The inverse of a block-diagonal matrix with one 3 x 3 block for each point.
 Sparse inverse_of_blocks(const Sparse& blocks) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int start = 0; start < blocks.cols(); start += 3) {
     const Eigen::Matrix3d block = blocks.block(start, start, 3, 3);
-    // A point that nothing sees, or that is at infinity, knows nothing of the cameras' places.
+    // A point without observations, or at infinity, gives no information about the poses.
     const SymmetricEigen3 eigen(block);
     if (!(eigen.eigenvalues()(2) > 0)) continue;
     const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1e-12 * eigen.eigenvalues()(2));
@@ -64,7 +64,7 @@ Sparse inverse_of_blocks(const Sparse& blocks) {
   return result;
 }
 
-// The normal matrix of the cameras with the points eliminated.
+// The normal matrix of the camera parameters, with the points eliminated (Schur complement).
 Eigen::MatrixXd reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camera_columns) {
   const Sparse cameras = jacobian.leftCols(camera_columns);
   const Sparse points = jacobian.rightCols(jacobian.cols() - camera_columns);
@@ -76,8 +76,8 @@ Eigen::MatrixXd reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camer
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Covariance of a vector whose normal matrix is given; scaled first, since metres, radians and
-// indices differ by orders of magnitude.
+// Covariance of a vector with the given normal matrix. The matrix is scaled first, since metres,
+// radians and indices differ by orders of magnitude.
 class Covariance {
  public:
   explicit Covariance(const Eigen::MatrixXd& normal)
@@ -87,7 +87,8 @@ class Covariance {
     factor_.compute(scaled);
   }
 
-  // Infinite along what nothing determines: there, the damping alone answers.
+  // The variance along `direction`. Infinite along directions that nothing but the damping
+  // determines.
   double variance(const Eigen::VectorXd& direction) const {
     const Eigen::VectorXd scaled = scale_.asDiagonal() * direction;
     if (factor_.info() != Eigen::Success || scaled.isZero(0)) return kInfinite;
@@ -102,7 +103,7 @@ class Covariance {
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
-// The normal equations at the solution, and which of their columns is what.
+// The normal equations at the solution, and the columns of each parameter block.
 class Normal {
  public:
   Normal(const Bundle& bundle, const AdjustOptions& options)
@@ -134,7 +135,8 @@ class Normal {
     return sigmas;
   }
 
-  // Relative, of the distance between the first image and the one farthest from it.
+  // The relative standard deviation of the distance between the first image and the image farthest
+  // from it.
   double sigma_of_scale() {
     const std::size_t from = problem_.anchor(), to = farthest_from(from);
     if (from == to) return kInfinite;
@@ -177,7 +179,7 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) 
   const std::vector<double> errors = reprojection_errors(bundle);
   const double residuals = 2.0 * static_cast<double>(errors.size());
   const double free = std::max(1.0, residuals - static_cast<double>(unknowns_of(bundle, options)));
-  constexpr double kLeast = 1e-9;  // of errors that rounding makes
+  constexpr double kLeast = 1e-9;  // [px], size of rounding errors
   return std::max(kLeast, root_mean_square(errors) * std::sqrt(residuals / (2 * free)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CPU time, not wall time: benchmarks share their machine.
+// CPU time instead of wall time, because benchmarks share their machine with other programs.
 #pragma once
 
 #include <ctime>

@@ -18,7 +18,7 @@ double clock_ghz() {
     const std::uint64_t term = 3;
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < kRounds; ++i)
-      // Register to register: additions of constants can vanish before they are executed.
+      // Adds registers: the processor may eliminate additions of constants.
       asm volatile(
           "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"
           "add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n add %1, %0\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this machine can do at most, measured: the roofs that the scorer is held against.
+// Measured upper limits of this machine's speed, for comparison with the scorer.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,15 @@ enum class InstructionSet;  // lanes/scorer.h
 
 namespace axial::benchmarks {
 
-// All of these are the best seen since the program began: what disturbs a measurement only slows
-// it.
+// All values are the best since the program began: a disturbance only slows a measurement.
 
-// Cycles per nanosecond, from a chain of additions, one cycle each.
+// Cycles per nanosecond, measured by a chain of additions that take one cycle each.
 double clock_ghz();
 
-// Of one core, with one instruction set, data in the first-level cache.
+// For one core and one instruction set, with data in the first-level cache.
 struct MachineLimits {
-  // 32-bit words from anywhere into a register: with the instruction for it (0: the set has none),
-  // or loaded one by one.
+  // 32-bit words from arbitrary places into a register, with the gather instruction (0: the set has
+  // none) or loaded one by one.
   double gathered_words_per_ns = 0, loaded_words_per_ns = 0;
   double float_operations_per_ns = 0;  // multiplications and additions, not fused
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled for avx2 alone: nothing here may be shared with other translation units.
+// Compiled for AVX2 alone: nothing here may be shared with other translation units.
 #include "benchmarks/machine_limits_kernel.h"
 
 namespace axial::benchmarks::detail {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops behind machine_limits.h, for one instruction set. To be included by its translation
-// unit alone; every name carries the set in a type.
+// The loops of machine_limits.h for one instruction set. Only its translation unit may include this
+// file. Every name has the instruction set in a type.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class LimitKernel {
   using Floats = stdx::simd<float, Abi>;
   using Ints = stdx::rebind_simd_t<std::int32_t, Floats>;
   static constexpr std::size_t kWidth = Floats::size();
-  static constexpr std::size_t kChains = 6;  // of either kind: hides latencies, fits registers
+  static constexpr std::size_t kChains = 6;  // of each kind: hides latencies, fits the registers
   static constexpr std::size_t kRounds = 20000;
   static constexpr std::size_t kWords = 4096;  // 16 KiB
   static constexpr std::size_t kIndices = 1024;
@@ -45,7 +45,7 @@ class LimitKernel {
   }
 
  private:
-  // The best of many short runs: the others were disturbed.
+  // The best of many short runs: other runs may have been disturbed.
   static double best_ns(void (*run)()) {
     double best = 1e30;
     for (int i = 0; i < 25; ++i) {
@@ -58,7 +58,7 @@ class LimitKernel {
     return best;
   }
 
-  // Keeps a vector where it is, and the compiler from knowing what is in it.
+  // Forces a vector to memory, so that the compiler does not know its content.
   template <class Vector>
   static void hide(Vector& vector) {
     asm volatile("" : "+m"(vector));
@@ -74,7 +74,7 @@ class LimitKernel {
       return Ints(_mm256_i32gather_epi32(base, static_cast<__m256i>(at), 4));
   }
 
-  // Positions leave their register two by two.
+  // Takes two positions at a time from their register.
   static __m128i load_four(const std::int32_t* base, __m128i at) {
     const auto first = static_cast<std::uint64_t>(_mm_cvtsi128_si64(at));
     const auto second = static_cast<std::uint64_t>(_mm_extract_epi64(at, 1));
@@ -122,7 +122,7 @@ class LimitKernel {
     std::array<Ints, kSums> sums;
     sums.fill(Ints(0));
     for (std::size_t round = 0; round < kReadRounds; ++round) {
-      asm volatile("" ::: "memory");  // or one round would do for all
+      asm volatile("" ::: "memory");  // otherwise one round could be used for all
       for (std::size_t i = 0; i < kIndices; i += kSums * kWidth)
         for (std::size_t k = 0; k < kSums; ++k)
           sums[k] ^= kRead(image.words.data(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matching, from one score to whole depth maps. See docs/performance.md.
+// Benchmarks of matching, from one score to whole depth maps. See docs/performance.md.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/benchmarks.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sweeps and whole depth maps, pinhole and flat port in turn, strip by strip and map by map, so
-// that the machine's moods strike both: the ratio is what --refractive costs. One thread.
+// Sweeps and whole depth maps, with pinhole and flat port in turn, strip by strip and map by map.
+// Disturbances of the machine then affect both alike: their ratio is the cost of --refractive. One
+// thread.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 struct Cost {
   double seconds = 0;
-  double scores = 0;  // of one hypothesis in one view
+  double scores = 0;  // each of one hypothesis in one view
 
   Cost& operator+=(const Cost& b) {
     seconds += b.seconds;
@@ -30,7 +31,7 @@ struct Cost {
   }
 };
 
-// What the coarser level leaves: planes off by about one of its pixels.
+// The start of a level: planes with errors of about one pixel of the coarser level.
 depth::PlaneMap coarse_start(const Survey& scene) {
   std::mt19937 random(5);
   depth::PlaneMap map(scene.truth.width, scene.truth.height);
@@ -56,7 +57,7 @@ depth::SweepInput sweep_input(int number) {
   return input;
 }
 
-// One camera's sweeps at full resolution. Those before `first` run unmeasured.
+// Sweeps of one camera at full resolution. Sweeps before `first` are not measured.
 template <class Camera>
 class SweepRun {
  public:
@@ -69,7 +70,7 @@ class SweepRun {
 
   void restart() { map_ = start_; }
 
-  // Begins a sweep; how many strips it has.
+  // Begins a sweep and returns its number of strips.
   int begin(int number) {
     sweep_.emplace(matcher_, map_, options_, sweep_input(number));
     sweep_->prepare();
@@ -108,7 +109,7 @@ void report_scores(benchmark::State& state, const Cost& pinhole, const Cost& fla
   state.counters["flat_port_scores_per_pixel"] = flat_port.scores / visits;
 }
 
-// Nanoseconds per hypothesis and view, all that a sweep does in its strips included.
+// Nanoseconds per hypothesis and view, with everything that a sweep does in its strips.
 void sweep_pair(benchmark::State& state, bool geometric, int first, int last,
                 depth::lanes::InstructionSet set) {
   const ThreadLimit one(1);
@@ -131,7 +132,7 @@ void sweep_pair(benchmark::State& state, bool geometric, int first, int last,
   report_scores(state, pinhole, flat_port, pixels() * sweeps);
 }
 
-// Time and quality side by side: a faster matcher that is worse is none.
+// Quality is measured with the time, because a faster matcher must not be worse.
 struct Quality {
   double median_error = 0;  // relative
   double complete = 0;      // share of the pixels
@@ -149,7 +150,7 @@ Quality quality(const DepthMap& map, const depth::PlaneMap& truth) {
   return {*middle, static_cast<double>(errors.size()) / static_cast<double>(truth.pixels.size())};
 }
 
-// One view's share of the matching stage at the program's defaults.
+// The matching stage of one view with the program's defaults.
 DepthMap matched(const Survey& scene, std::uint64_t& scores) {
   constexpr int kGeometricPasses = 2;
   const depth::PatchMatchOptions options;
@@ -172,7 +173,7 @@ Cost match(bool behind_port, Quality& result) {
   return {end - begin, static_cast<double>(scores)};
 }
 
-// CPU time of whole depth maps; nanoseconds are per hypothesis and view, everything included.
+// CPU time of whole depth maps; nanoseconds per hypothesis and view include all work.
 void depth_map_pair(benchmark::State& state) {
   const ThreadLimit one(1);
   survey(false), survey(true);
@@ -206,7 +207,7 @@ void add_sweep(const std::string& name, bool geometric, int first, int last) {
 }  // namespace
 
 void add_matching_benchmarks() {
-  // What programs take here, and whole depth maps with them.
+  // The instruction set that programs use on this machine, also for whole depth maps.
   benchmark::AddCustomContext("instruction_set", name_of(depth::lanes::fastest_instruction_set()));
   add_sweep("sweep/photometric/first", false, 0, 0);
   add_sweep("sweep/photometric/later", false, 1, 2);

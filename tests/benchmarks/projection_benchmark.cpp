@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forward projections by each method at 2 to 10 megapixels, with their errors beside their times.
+// Forward projections by each method at 2 to 10 megapixels, with their times and errors.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using experiments::MethodTime;
 
-// All methods of one size take turns, so they are measured together.
+// All methods of one size are measured together, in turn.
 const std::vector<MethodTime>& measured(int megapixels) {
   static std::map<int, std::vector<MethodTime>> all;
   std::vector<MethodTime>& times = all[megapixels];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The innermost work: what one plane hypothesis costs in one source view, for every camera and
-// instruction set, and how far that is from what the machine can do.
+// The innermost work: the time of one plane hypothesis in one source view, for every camera and
+// instruction set, compared with the limits of the machine.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/benchmarks.h"
@@ -14,19 +14,19 @@ namespace {
 
 using depth::lanes::InstructionSet;
 
-// Multiplications and additions of floats that lane_zncc.h does for one sample of one lane: 1 for
-// the mean, 6 for the three sums. Its whole numbers (positions, bilinear value) are left out, so
-// this roof is a good deal too high.
+// Multiplications and additions of floats in lane_zncc.h for one sample of one lane: 1 for the
+// mean, 6 for the three sums. Integer operations (positions, bilinear value) are not counted, so
+// this limit is much too optimistic.
 constexpr double kOperationsPerSample = 7;
 constexpr double kSamplesPerScore = depth::kTexels;
 
-// As a level's first sweep asks: a pixel's own plane in four views and two neighbours' in two each,
-// then trials in the two best.
+// Scores as in a level's first sweep: a pixel's own plane in four views and the planes of two
+// neighbours in two views each, then trials in the two best views.
 constexpr std::size_t kCandidates = 3, kTrials = 8;
 constexpr std::array<depth::ScorePair, 8> kCandidatePairs{
     {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 4}, {2, 1}, {2, 2}}};
 constexpr std::size_t kScoresPerPixel = kCandidatePairs.size() + 2 * kTrials;
-constexpr int kChunk = 32;  // pixels between two looks at the clock
+constexpr int kChunk = 32;  // pixels between two readings of the clock
 
 struct Question {
   depth::ReferencePixel pixel;
@@ -66,8 +66,8 @@ void answer(const depth::LaneMatcher<Camera>& matcher, const Question& asked) {
   benchmark::DoNotOptimize(best);
 }
 
-// Walks the image in reading order, a chunk of a row in every iteration, all of it seen by all
-// sources.
+// Walks over the image in reading order, a part of a row in each iteration. All sources see all of
+// these pixels.
 class Walk {
  public:
   explicit Walk(const Survey& survey)

@@ -27,7 +27,7 @@ CameraModel camera(bool behind_port) {
   return model;
 }
 
-// The reference in the middle of its sources, all looking at the dome.
+// The reference is in the middle of its sources, and all views look at the dome.
 Pose pose(int view) {
   Pose result;
   const double angle = 2 * std::numbers::pi * view / kSourceViews;
@@ -38,7 +38,7 @@ Pose pose(int view) {
   return result;
 }
 
-// A finished depth map is wrong by a tenth of a percent or so.
+// The truth with errors of about a tenth of a percent, as in a finished depth map.
 DepthMap noisy_map(const depth::MatchImage& view, const cv::Mat1f& truth) {
   std::mt19937 random(view.id);
   std::normal_distribution<float> noise(1, 0.001f);
@@ -50,7 +50,7 @@ DepthMap noisy_map(const depth::MatchImage& view, const cv::Mat1f& truth) {
   return map;
 }
 
-// The surface as its pixels' points span it.
+// The planes spanned by the points of neighbouring pixels.
 depth::PlaneMap true_planes(const depth::MatchImage& view, const cv::Mat1f& truth) {
   depth::PlaneMap planes(truth.cols, truth.rows);
   std::visit(

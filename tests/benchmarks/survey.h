@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the matching benchmarks work on: a textured floor with a dome on it, seen by a reference
-// view and five sources, in air or behind a flat port, and hypotheses near its true surface.
+// The scene of the matching benchmarks: a textured floor with a dome on it, imaged by a reference
+// view and five source views, in air or behind a flat port, and hypotheses near its true surface.
 #pragma once
 
 #include <random>
@@ -16,7 +16,7 @@ inline constexpr int kSourceViews = 5;
 
 struct Survey {
   std::vector<depth::MatchImage> views;  // the reference first
-  std::vector<DepthMap> maps;            // the truth, with a map's usual noise
+  std::vector<DepthMap> maps;            // the truth with typical noise
   std::vector<Eigen::Vector3f> points;   // sparse, world frame
   depth::PlaneMap truth;                 // of the reference
   std::vector<const depth::MatchImage*> sources;
@@ -25,14 +25,14 @@ struct Survey {
   depth::MatchInput input() const { return {&views[0], sources, points}; }
 };
 
-// Made once and kept. 512 x 384 pixels.
+// Made once and kept in memory. Images of 512 x 384 pixels.
 const Survey& survey(bool behind_port);
 
-// The true plane at a pixel, moved by at most `depth` (relative) and `turn` [rad].
+// The true plane at a pixel, changed by at most `depth` (relative) and `turn` [rad].
 depth::PlaneHypothesis near_truth(const Survey& survey, int x, int y, float depth, float turn,
                                   std::mt19937& random);
 
-// What LaneMatcher needs, with and without the sources' depth maps.
+// The input of a LaneMatcher, with or without the sources' depth maps.
 template <class Camera>
 class Bench {
  public:

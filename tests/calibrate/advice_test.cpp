@@ -74,7 +74,7 @@ TEST(Advice, RefusesBoardsInTheMiddleOfTheImageAndSaysWhatIsMissing) {
   for (const char* edge : {"left", "right", "upper", "lower"})
     EXPECT_THAT(said, HasSubstr(std::string("corners near the image's ") + edge + " edge"));
   EXPECT_THAT(said, HasSubstr("what would help most is the board at the image's "));
-  EXPECT_THAT(said, Not(HasSubstr("tilted by")));  // that, they are
+  EXPECT_THAT(said, Not(HasSubstr("tilted by")));  // the boards are tilted
   EXPECT_THAT(said, Not(HasSubstr("\n")));
 }
 
@@ -98,7 +98,7 @@ Calibration in_need_of_advice() {
                      .within = box(0.2, 0.2, 0.8, 0.8)});
 }
 
-// The advice is followed: the photograph it asks for is taken, and does what it promised.
+// Adds the advised photograph and compares the standard deviations with the prediction.
 TEST(Advice, TheNextPhotographHelpsAsPromised) {
   const Calibration found = in_need_of_advice();
   const auto next = next_photograph(found, Limits());
@@ -122,7 +122,7 @@ TEST(Advice, TheNextPhotographHelpsAsPromised) {
   EXPECT_LT((after.head<3>().cwiseQuotient(before.head<3>())).minCoeff(), 0.8);
 }
 
-// The worst of the standard deviations by its limit, for noise of a pixel.
+// The largest ratio of a standard deviation to its limit, for noise of 1 px.
 double worst_for_a_pixel(const Calibration& calibration) {
   const Limits limits;
   const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
@@ -131,8 +131,8 @@ double worst_for_a_pixel(const Calibration& calibration) {
          calibration.uncertainty.pixel_sigma;
 }
 
-// The advice is followed, and so is other advice: each photograph is taken by the true camera, with
-// noise, and all is calibrated again.
+// Adds the advised photograph, or another one, as the true camera takes it, with noise, and
+// calibrates again.
 TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
   const Calibration found = in_need_of_advice();
   const auto next = next_photograph(found, Limits());
@@ -154,8 +154,8 @@ TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
   const auto advised = taken(next->board);
   ASSERT_TRUE(advised);
   const auto& sigmas = advised->uncertainty.camera_sigmas[0];
-  // Each photograph is taken where the port as calibrated would have it, which is not quite the
-  // true one; the noise moves the poses. Both change the standard deviations by a few percent.
+  // The board is placed for the calibrated port, which differs a little from the true one, and
+  // noise changes the poses. Both change the standard deviations by a few percent.
   constexpr double kElsewhere = 0.05;
   for (int k = 0; k < 3; ++k) {
     const double promised = next->sigmas(k) / found.uncertainty.pixel_sigma;
@@ -173,11 +173,11 @@ TEST(Advice, NoOtherPhotographHelpsMuchMoreOnceTaken) {
   std::ranges::sort(others);
   const double worst = worst_for_a_pixel(*advised);
   EXPECT_LT(worst, (1 + kElsewhere) * others.front());
-  // Advice by chance would do no better than the middle one.
+  // Random advice would do no better than the median.
   EXPECT_LT(worst, 0.8 * others[others.size() / 2]);
 }
 
-// A board that is said to be at an edge is there, and whole.
+// A board that is named as at an edge is there, and completely visible.
 TEST(PlacedBoards, AreWhereTheyAreSaidToBe) {
   const Calibration found = calibrated({.views = 5});
   const auto boards = placed_boards(found.bundle, corners_of(kBoard), 0.2);
@@ -206,23 +206,23 @@ TEST(PlacedBoards, AreWhereTheyAreSaidToBe) {
     const auto depth = [&](std::size_t corner) {
       return board.pose.to_camera(corners_of(kBoard)[corner]).z();
     };
-    // Corner 0 is the upper left one, 8 the upper right, 45 the lower left.
+    // Corner 0 is the upper left one, corner 8 the upper right, corner 45 the lower left.
     const double nearer_right = depth(0) - depth(8), nearer_below = depth(0) - depth(45);
     EXPECT_EQ(board.turned, nearer_right > 0.01 ? 1 : nearer_right < -0.01 ? -1 : 0);
     EXPECT_EQ(board.tipped, nearer_below > 0.01 ? 1 : nearer_below < -0.01 ? -1 : 0);
   }
 }
 
-// At which share of the image's half width a ray is seen that would be at `share` if the port
-// magnified everywhere as in the middle. By Snell's law, for a scene far away.
+// The share of the image's half width at which a ray is imaged, if `share` is its place for a port
+// that magnifies everywhere as in the middle. By Snell's law, for a distant scene.
 double share_of_a_far_board(double share) {
   const double half = 512 / 610.0, n_water = 1.334;
   const double in_water = std::atan(share * half / n_water);
   return std::tan(std::asin(n_water * std::sin(in_water))) / half;
 }
 
-// Their distances come from the rays in the middle of the image. A port magnifies more towards the
-// edges, most if the board is far away.
+// The distances are computed from the rays in the middle of the image. A port magnifies more
+// towards the edges, and most for a distant board.
 TEST(PlacedBoards, FillTheSharesOfTheImageThatTheirDistancesAreFor) {
   const Calibration found = calibrated({.views = 5});
   std::vector<double> shares;
@@ -235,7 +235,7 @@ TEST(PlacedBoards, FillTheSharesOfTheImageThatTheirDistancesAreFor) {
     shares.push_back((seen.sizes().array() / image).maxCoeff());
   }
   ASSERT_EQ(shares.size(), 2u);
-  constexpr double kTilted = 0.01;  // what the port's tilt moves
+  constexpr double kTilted = 0.01;  // effect of the port's tilt
   for (const auto& [share, wanted] : {std::pair(shares[0], 0.8), std::pair(shares[1], 0.4)}) {
     EXPECT_GT(share, (1 - kTilted) * wanted);
     EXPECT_LT(share, (1 + kTilted) * share_of_a_far_board(wanted));

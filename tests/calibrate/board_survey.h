@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board held in front of a camera under water, where its corners are then seen: by the exact
-// projection, with as much noise as is asked for.
+// A board in front of a camera under water, and its corners in the photographs, by the exact
+// projection and with a given noise.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -34,7 +34,7 @@ inline const io::ColmapCamera kPinhole{1, "PINHOLE", 1024, 768, {610, 615, 512, 
 inline const io::ColmapCamera kDistorting{
     1, "OPENCV", 1024, 768, {620, 615, 512, 384, -0.12, 0.02, 1e-4, -2e-4}};
 
-// Three megapixels and a board of 126 corners: what people have.
+// A common camera and board: three megapixels and 126 corners.
 inline const io::ColmapCamera kUsual{1, "PINHOLE", 2048, 1536, {1220, 1220, 1024, 768}};
 inline const Board kUsualBoard{BoardKind::checkerboard, 14, 9, 0.025, 0, ""};
 
@@ -49,11 +49,12 @@ struct SurveyOptions {
   double steepest = 35;                   // [degrees]
   double noise = 0;                       // standard deviation per axis [px]
   unsigned seed = 1;
-  // Where in the image all corners are, as shares of its width and height.
+  // The part of the image that all corners lie in, as shares of its width and height.
   Eigen::AlignedBox2d within{Eigen::Vector2d(0.01, 0.01), Eigen::Vector2d(0.99, 0.99)};
 };
 
-// Where the lens behind the port images the board's corners; empty unless all are within the box.
+// The images of the board's corners by the lens behind the port; empty unless all are within the
+// box.
 inline std::vector<Corner> seen_corners(const io::ColmapCamera& lens,
                                         const refractive::Port<double>& port, const Pose& pose,
                                         const Board& board, const Eigen::AlignedBox2d& within) {

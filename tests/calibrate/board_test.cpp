@@ -50,7 +50,7 @@ TEST(Board, WrongDescriptionsAreNamed) {
   EXPECT_THAT(error("charuco:20x20:0.03:0.02"), HasSubstr("200 markers, but"));
 }
 
-// A board that is wide in the image and tilted, behind the port.
+// A pose with a large and tilted board in the image, behind the port.
 Pose pose_before(const Board& board) {
   const auto corners = corners_of(board);
   const Eigen::Vector3d middle = (corners.front() + corners.back()) / 2;
@@ -72,12 +72,12 @@ TEST(FindCorners, OfACheckerboardAreWhereTheExactProjectionPutsThem) {
       testing::seen_corners(kPinhole, flat_port(), pose, board, testing::SurveyOptions().within);
   ASSERT_EQ(found.size(), 54u);
   ASSERT_EQ(expected.size(), 54u);
-  // The board looks the same upside down.
+  // The board looks the same if it is rotated by 180 degrees.
   const bool same_way = (found[0].pixel - expected[0].pixel).norm() < 100;
   double sum2 = 0;
   for (std::size_t i = 0; i < 54; ++i)
     sum2 += (found[i].pixel - expected[same_way ? i : 53 - i].pixel).squaredNorm();
-  // Of noise-free corners OpenCV finds a tenth of a pixel and better.
+  // OpenCV finds noise-free corners to a tenth of a pixel or better.
   EXPECT_LT(std::sqrt(sum2 / 54), 0.1);
 }
 
@@ -88,11 +88,11 @@ TEST(FindCorners, NoneInAnEmptyPhotograph) {
   EXPECT_TRUE(find_corners(grey, parse_board("apriltags:4x3:0.04:0.01")).empty());
 }
 
-// Boards of markers may be seen in part: every corner is where the exact projection puts the one of
-// its number.
+// Boards of markers may be visible in part: every corner lies where the exact projection images the
+// corner with its number.
 struct Errors {
   double rms = 0, largest = 0;                     // [px]
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // poses and ports take it for their own
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();  // common shift: poses and ports absorb it
 };
 
 Errors errors_behind_port(const Board& board, const cv::Mat1b& print, double width, double height,
@@ -130,7 +130,8 @@ TEST(FindCorners, OfACharucoBoardAreWhereTheExactProjectionPutsThem) {
   cv::Mat print;
   printed->draw({1600, 1200}, print);
   const Errors errors = errors_behind_port(board, print, 0.2, 0.15, 20);
-  // Windows that reach no marker are small, and see the edges in steps of a third of a pixel.
+  // Windows that do not reach a marker are small and sample the edges coarsely, in thirds of a
+  // pixel.
   EXPECT_LT(errors.rms, 0.15);
   EXPECT_LT(errors.largest, 0.4);
   EXPECT_LT(errors.mean.norm(), 0.05);
@@ -143,7 +144,7 @@ TEST(FindCorners, OfAprilTagsAreWhereTheExactProjectionPutsThem) {
   cv::Mat print;
   printed->draw({1900, 1500}, print);
   const Errors errors = errors_behind_port(board, print, 0.19, 0.15, 40);
-  // A tag's corner is a corner of one dark area, not of two: a blur moves it.
+  // A tag's corner is the corner of a single dark area, and blur moves it.
   EXPECT_LT(errors.rms, 0.3);
   EXPECT_LT(errors.largest, 0.6);
   EXPECT_LT(errors.mean.norm(), 0.05);

@@ -35,14 +35,14 @@ Port found_port(const Calibration& calibration) {
   return std::get<Port>(*calibration.camera().now().port);
 }
 
-// Half a centimetre and 1.5 degrees off.
+// A port with errors of half a centimetre and 1.5 degrees.
 FlatPort<double> rough_flat_port() {
   return flat_port(0, 0.03);
 }
 
 class CalibrateWith : public ::testing::TestWithParam<io::ColmapCamera> {};
 
-// What is left is the lens's inversion, good to 1e-9 of a pixel's place, and rounding.
+// The remaining errors are the lens's inversion, with a relative error of 1e-9, and rounding.
 TEST_P(CalibrateWith, FindsAFlatPortExactlyInPerfectPhotographs) {
   const auto taken = survey(GetParam(), flat_port());
   const Calibration found =
@@ -68,7 +68,7 @@ TEST_P(CalibrateWith, FindsADomeExactlyInPerfectPhotographs) {
 INSTANTIATE_TEST_SUITE_P(Lenses, CalibrateWith, ::testing::Values(kPinhole, kDistorting),
                          [](const auto& tested) { return tested.param.model; });
 
-// Standard deviations as docs/calibration.md says them: another noise changes them by less.
+// The standard deviations in docs/calibration.md: another random noise changes them by less.
 void expect_sigmas(const Calibration& calibration, double normal_degrees, double distance) {
   const auto& sigmas = calibration.uncertainty.camera_sigmas[0];
   EXPECT_NEAR(std::max(sigmas(0), sigmas(1)) / testing::kDegree, normal_degrees,
@@ -109,7 +109,7 @@ TEST(Calibrate, FindsADomeToHalfAMillimetreInTwentyFiveNoisyPhotographs) {
   }
 }
 
-// Many calibrations that differ in noise alone: results scatter as their standard deviations say.
+// Many calibrations that differ in noise alone scatter as their standard deviations predict.
 TEST(Calibrate, StandardDeviationsAreHonest) {
   constexpr int kRuns = 30;
   const auto exact = survey(kPinhole, flat_port(), {.views = 10});
@@ -127,7 +127,8 @@ TEST(Calibrate, StandardDeviationsAreHonest) {
     sum2 += found.camera().change.cwiseAbs2();
     predicted2 += found.uncertainty.camera_sigmas[0].cwiseAbs2();
   }
-  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %; three times
+  // this is allowed.
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(sum2(k) / predicted2(k), 0.3) << k;
     EXPECT_LT(sum2(k) / predicted2(k), 1.9) << k;
@@ -135,7 +136,7 @@ TEST(Calibrate, StandardDeviationsAreHonest) {
   for (int k = 3; k < pose::kHousingNumbers; ++k) EXPECT_EQ(sum2(k) + predicted2(k), 0) << k;
 }
 
-// Two ways to the same numbers: all normal equations at once, and one photograph after the other.
+// Two ways to the same numbers: the normal equations at once, or one photograph after the other.
 TEST(Calibrate, WhatPhotographsTellAddsUp) {
   const auto taken = survey(kPinhole, flat_port(), {.views = 8, .noise = 0.2});
   CalibrateOptions options = unknown({0, 1, 2, pose::kThicknessNumber});
@@ -151,7 +152,7 @@ TEST(Calibrate, WhatPhotographsTellAddsUp) {
     EXPECT_NEAR(sigmas(k), expected(k), 1e-4 * expected(k)) << k;
 }
 
-// Glass and gap look alike: the thickness is known about as well as it was measured.
+// Glass and gap have similar effects: the thickness stays about as precise as it was measured.
 TEST(Calibrate, AMeasuredThicknessStaysAboutAsItWasMeasured) {
   const auto taken = survey(kPinhole, flat_port(), {.noise = 0.2});
   FlatPort<double> rough = rough_flat_port();
@@ -181,7 +182,7 @@ TEST(Calibrate, FindsTheIndexOfTheWater) {
 TEST(Calibrate, LeavesOutWhatDoesNotFit) {
   auto taken = survey(kPinhole, flat_port(), {.noise = 0.2});
   for (std::size_t i = 0; i < taken.views[3].corners.size(); i += 9)
-    taken.views[3].corners[i].pixel.x() += 30;  // some corners mistaken
+    taken.views[3].corners[i].pixel.x() += 30;  // some wrong corners
   std::swap(taken.views[7].corners[10].pixel, taken.views[7].corners[30].pixel);
   taken.views[9].corners.resize(5);
   const Calibration found =
@@ -201,7 +202,7 @@ TEST(Calibrate, RefusesTooFewPhotographs) {
       << error;
 }
 
-// Light from beyond the fold of a lens model has no direction.
+// Directions beyond the fold of a lens model have no image.
 TEST(Calibrate, LeavesOutWhatDoesNotTellWhereTheBoardIs) {
   const io::ColmapCamera folding{1, "SIMPLE_RADIAL", 1024, 768, {610, 512, 384, -0.3}};
   auto taken =
@@ -221,8 +222,8 @@ TEST(Calibrate, LeavesOutWhatDoesNotTellWhereTheBoardIs) {
   EXPECT_NEAR(found_port<FlatPort<double>>(found).distance, 0.025, 1e-6);
 }
 
-// From afar a plane looks nearly the same from two sides. Behind a port that is far from central,
-// two of these boards look more like the wrong one until the exact projection tells.
+// A distant plane looks nearly the same in two poses. Behind a port far from central, two of these
+// boards look more like the wrong pose until the exact projection is used.
 TEST(Calibrate, PlacesBoardsOnTheRightOneOfTheirTwoSides) {
   const auto port = flat_port(25, 0.3);
   const auto taken =
@@ -234,7 +235,7 @@ TEST(Calibrate, PlacesBoardsOnTheRightOneOfTheirTwoSides) {
         << i;
 }
 
-// A row of corners may be turned about itself.
+// Corners on one line leave the rotation about that line open.
 TEST(Calibrate, ARowOfCornersIsNoBoard) {
   auto taken = survey(kPinhole, flat_port(), {.views = 4});
   taken.views[2].corners.resize(9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CalibrateHousing on photographs that are files.
+// CalibrateHousing with photographs in files.
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using testing::dome_port;
 using testing::flat_port;
 using ::testing::HasSubstr;
 
-// Smaller than real photographs, so that they are drawn in no time.
+// Smaller than real photographs, so that drawing takes little time.
 const io::ColmapCamera kLens{1, "PINHOLE", 640, 480, {380, 380, 320, 240}};
 const std::string kInput = "-i photos --board checkerboard:9x6:0.025 ";
 
@@ -54,7 +54,7 @@ class CalibrateHousing : public test::ProgramTest {
     io::write_housing(folder_ / name, housing);
   }
 
-  // `grey_noise`: standard deviation of the pixels' noise, of 255.
+  // `grey_noise`: standard deviation of the pixels' noise, in grey levels of 255.
   void take_photographs(const refractive::Port<double>& port, const testing::SurveyOptions& options,
                         const Board& board = testing::kBoard, double grey_noise = 0) const {
     make_folder(folder_ / "photos");
@@ -86,9 +86,9 @@ class CalibrateHousing : public test::ProgramTest {
   }
 };
 
-// Half a millimetre and 0.05 degrees, of a board that people have, with noise. What 0.2 px are to
-// their cameras of 3 megapixels is 0.062 px here, the same angle: pixels with a noise of 10 grey
-// levels of 255, drawn in steps of a third, give the corners somewhat more than that.
+// Half a millimetre and 0.05 degrees, with a common board and with noise. The angle of 0.2 px of a
+// 3-megapixel camera is 0.062 px here. Pixels with a noise of 10 grey levels of 255, drawn with
+// three samples a pixel in each direction, cause somewhat larger errors of corners.
 TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   constexpr double kUsualNoise = 0.2;  // [px]
   take_photographs(flat_port(), with_margin(25), testing::kUsualBoard, 10);
@@ -118,8 +118,8 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   EXPECT_EQ(camera.params, kLens.params);
   EXPECT_EQ(std::get<refractive::FlatPort<double>>(*camera.port).distance, port.distance);
 
-  // From such a file alone, which has the lens and a port to begin with, here 5 mm off. Ten
-  // photographs know the distance to 0.3 mm: three of these.
+  // From a calibration.yaml alone, which has the lens and an initial port, here 5 mm off. Ten
+  // photographs determine the distance to 0.3 mm; three times this is allowed.
   std::get<refractive::FlatPort<double>>(*camera.port).distance += 0.005;
   io::write_calibmar(folder_ / "calibration.yaml", camera, {});
   for (int i = 10; i < 25; ++i)
@@ -132,7 +132,7 @@ TEST_F(CalibrateHousing, FindsAFlatPortInTwentyFiveNoisyPhotographs) {
   EXPECT_NEAR(same.distance, port.distance, 0.001);
 }
 
-// Behind the camera's own port, not the housing's default.
+// Behind the camera's own port, not the default port of the housing.
 TEST_F(CalibrateHousing, FindsTheCentreOfADome) {
   take_photographs(dome_port(), with_margin(15));
   io::Housing housing = io::read_housing(folder_ / "dome.json");
@@ -160,12 +160,12 @@ TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
   EXPECT_THAT(outcome.output, HasSubstr("a board tilted by 20 degrees or more"));
   EXPECT_THAT(outcome.output, HasSubstr("what would help most is the board "));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "housing.json"));
-  // What is missing can be looked up.
+  // The report has the missing photographs, too.
   const auto report = io::read_json(folder_ / "report.json");
   EXPECT_GE(report["missing"].size(), 2u);
 }
 
-// The first of them in the order of names, whatever the threads.
+// Names the first damaged photograph in the order of names, for any number of threads.
 TEST_F(CalibrateHousing, RefusesADamagedPhotograph) {
   take_photographs(flat_port(), {.views = 4});
   for (const int view : {1, 3}) {

@@ -13,7 +13,7 @@
 namespace axial::experiments {
 namespace {
 
-// Against the sorted list: exact but for the width of a bin.
+// Compares with the sorted list: equal up to the width of a bin.
 TEST(Distribution, AgreesWithTheSortedErrors) {
   std::mt19937 random(1);
   std::exponential_distribution<double> draw(3);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Where a ray of light from the lens, traced by Snell's law in angles, meets the height z [axis
-// frame]: distance from the axis.
+// The distance from the axis at which a light ray from the lens, traced by Snell's law with angles,
+// reaches the height z [axis frame].
 double traced_radius(const CameraSetup& setup, double angle, double z) {
   const double glass = std::asin(std::sin(angle) / setup.n_glass);
   const double water = std::asin(std::sin(angle) / setup.n_water);
@@ -23,7 +23,7 @@ double traced_radius(const CameraSetup& setup, double angle, double z) {
          (z - setup.distance - setup.thickness) * std::tan(water);
 }
 
-// Forward projection by halving the angle, for a port without tilt.
+// Forward projection by bisection of the angle, for a port without tilt.
 Vector2<double> traced_image(const CameraSetup& setup, const PinholeLens<double>& lens,
                              const Vector3<double>& X) {
   const double rho = std::hypot(X.x(), X.y());
@@ -36,7 +36,7 @@ Vector2<double> traced_image(const CameraSetup& setup, const PinholeLens<double>
   return lens.pixel({X.x() * scale, X.y() * scale, 1});
 }
 
-// The point of the plane z = 4 that the pixel sees.
+// The point of the plane z = 4 on the pixel's ray.
 Vector3<double> traced_point(const CameraSetup& setup, const PinholeLens<double>& lens,
                              const Vector2<double>& pixel) {
   const Vector3<double> air = lens.bearing(pixel);
@@ -45,7 +45,7 @@ Vector3<double> traced_point(const CameraSetup& setup, const PinholeLens<double>
   return {k * air.x(), k * air.y(), 4};
 }
 
-// A pinhole with its centre on the z axis that sees the same ray at the same pixel.
+// A pinhole with its centre on the z axis that has the same ray at the same pixel.
 struct TracedVirtualCamera {
   double height, f;
   Vector2<double> c;
@@ -68,7 +68,8 @@ struct TracedVirtualCamera {
   }
 };
 
-// Everything again by angles and pinholes, without homographies, rays or derivatives.
+// Computes everything a second time by angles and pinholes, without homographies, rays or
+// derivatives.
 TEST(WarpStudy, AgreesWithTracedLight) {
   for (const int number : {1, 2}) {
     const StereoSetup setup{number, {}, 0};
@@ -92,7 +93,7 @@ TEST(WarpStudy, AgreesWithTracedLight) {
         const Vector2<double> truth =
             traced_image(setup.camera, lens, traced_point(setup.camera, lens, q) - C);
         const Vector3<double> X = reference.point(q, 4) - C;
-        // The halvings end at 1e-16 of the angle.
+        // Bisection ends at 1e-16 of the angle.
         EXPECT_NEAR((*errors)[Warp::kExactCentre][k], (exact.image(X) - truth).norm(), 1e-8);
         EXPECT_NEAR((*errors)[Warp::kRounded][k], (rounded.image(X) - truth).norm(), 1e-8);
         ++compared;
@@ -104,8 +105,8 @@ TEST(WarpStudy, AgreesWithTracedLight) {
   }
 }
 
-// Without refraction a virtual camera is the camera itself, wherever it is looked up. (Without
-// tilt: it is aligned with the port, and with f_v = f then has another scale.)
+// Without refraction a virtual camera is the camera itself, for any pixel. (Without tilt: with tilt
+// it is aligned with the port, and with f_v = f its scale differs.)
 TEST(WarpStudy, HasNoErrorWithoutRefraction) {
   const StereoSetup setup{2, {.n_glass = 1, .n_water = 1}, 30};
   const StudyStatistics result = study_statistics(WarpStudy(setup, 108, 100), 3);
@@ -117,8 +118,8 @@ TEST(WarpStudy, HasNoErrorWithoutRefraction) {
   EXPECT_GT(result[Warp::kFirstOrder].mean, 1e-3);  // a homography is not affine
 }
 
-// FIELD 3d in closed form: radial f (mu^2 + (mu^2 - 1) t^2)^(3/2) / mu^2, tangential
-// f sqrt(mu^2 + (mu^2 - 1) t^2) with t the in-air tangent.
+// The local scale in closed form, with mu the index of the water and t the tangent of the angle in
+// air: radial f (mu^2 + (mu^2 - 1) t^2)^(3/2) / mu^2, tangential f sqrt(mu^2 + (mu^2 - 1) t^2).
 TEST(ScaledVirtualCamera, HasTheLocalScale) {
   const CameraSetup setup;
   const int size = 1001;
@@ -134,8 +135,8 @@ TEST(ScaledVirtualCamera, HasTheLocalScale) {
   }
 }
 
-// With its scale in both views, the homography's own derivative is nearly the true one: what is
-// left is the motion of C_v.
+// With the local scale in both views, the homography's derivative is nearly the true one. The
+// remaining error is the motion of C_v.
 TEST(ScaledVirtualCamera, LeavesLittleError) {
   for (const int number : {1, 2}) {
     const StudyStatistics result = study_statistics(WarpStudy({number, {}, 0}, 512), 37);
@@ -149,11 +150,11 @@ struct Row {
   const char* series;
   double value;
   int setup;
-  double papers;  // DESIGN section 3, where it has the row
+  double papers;  // [px], mean of the prototype's rounded warp; 0: not known
 };
 
-// Acceptance: the first-order exact warp is within 0.005 px wherever the field of view is 80
-// degrees.
+// Requirement: the first-order exact warp has a mean of at most 0.005 px for a field of view of 80
+// degrees. The rounded warp agrees with the means of an independent prototype.
 TEST(WarpStudy, GivesDesignsTable) {
   for (const Row& row : {Row{"fov_degrees", 80, 1, 0.475}, Row{"distance_mm", 100, 1, 0.462},
                          Row{"tilt_degrees", 6, 1, 0.502}, Row{"plane_degrees", 20, 1, 0},

@@ -11,7 +11,7 @@
 namespace axial::experiments {
 namespace {
 
-// 2.3 px apart: all tenths of a pixel are met.
+// Positions 2.3 px apart cover all tenths of a pixel.
 ProjectionErrors quick_errors(const CameraSetup& setup) {
   return projection_errors(setup, 1000, 2.3);
 }
@@ -20,11 +20,11 @@ TEST(ProjectionErrors, AreThePapersAndOurs) {
   for (const CameraSetup& setup : {CameraSetup{.fov_degrees = 50}, CameraSetup{.fov_degrees = 120},
                                    CameraSetup{.distance = 0.1}, CameraSetup{.tilt_degrees = 20}}) {
     const ProjectionErrors errors = quick_errors(setup);
-    // "A mean of roughly a quarter pixel."
+    // The paper: "A mean of roughly a quarter pixel."
     EXPECT_GT(errors.line_search.errors.mean(), 0.24);
     EXPECT_LT(errors.line_search.errors.mean(), 0.29);
     EXPECT_LT(errors.exact.errors.largest(), 1e-3);
-    EXPECT_GT(errors.exact.errors.largest(), 1e-7);  // it is float
+    EXPECT_GT(errors.exact.errors.largest(), 1e-7);  // errors of float
     EXPECT_EQ(errors.exact.missed, 0);
     const std::int64_t positions = 434 * 434;  // floor(1000 / 2.3)
     EXPECT_EQ(errors.exact.errors.count(), positions);
@@ -33,8 +33,8 @@ TEST(ProjectionErrors, AreThePapersAndOurs) {
   }
 }
 
-// Without refraction the exact projection is the pinhole's, and Algorithm 1 starts at the answer,
-// but knows it only by rounded pixels: an error of its own remains.
+// Without refraction the exact projection is the pinhole's. Algorithm 1 starts at the solution, but
+// represents it by rounded pixels, which leaves an error of its own.
 TEST(ProjectionErrors, OfAPinholeAreRounding) {
   const ProjectionErrors errors = quick_errors({.n_glass = 1, .n_water = 1});
   EXPECT_LT(errors.exact.errors.largest(), 5e-4);
@@ -53,8 +53,8 @@ TEST(ProjectionErrors, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.exact.errors.counts(), four.exact.errors.counts());
 }
 
-// The other tables hold the same rays: the search ends at the same place, but where a comparison
-// hangs on the last bit.
+// The other tables hold the same rays: the search ends at the same place, except where a comparison
+// depends on the last bit.
 template <class Cell>
 void expect_same_search(const CameraSetup& setup) {
   const int width = 320, height = 240;
@@ -62,7 +62,7 @@ void expect_same_search(const CameraSetup& setup) {
                                                      make_port(setup), width, height);
   const TableSearch<double, Cell> search(library.exact(), width, height);
   int same = 0, all = 0;
-  // Never at a pixel's centre, where alpha and beta are equal but for rounding.
+  // Never at a pixel's centre, where alpha and beta are equal up to rounding.
   for (double v = -0.35; v < height - 0.6; v += 3.7) {
     for (double u = -0.35; u < width - 0.6; u += 3.3) {
       const Vector3<double> X = library.ray({u, v}).at(1 + 0.01 * u);

@@ -34,7 +34,7 @@ TEST_P(AdjustBehind, FindsPosesPointsAndScaleOfPerfectTracks) {
   disturb(bundle, 0.5 * kDegree, 0.01, 3);
   bundle.images[0].pose = truth.images[0].pose;
   AdjustOptions options;
-  // The true scale, as a tape measure knows it: a centred dome would not tell it.
+  // A measured length gives the true scale: a centred dome does not determine it.
   options.distances.push_back({KnownDistance::Between::images, 0, 11,
                                (truth.images[0].pose.centre - truth.images[11].pose.centre).norm(),
                                1e-4});
@@ -45,7 +45,7 @@ TEST_P(AdjustBehind, FindsPosesPointsAndScaleOfPerfectTracks) {
   EXPECT_LT(errors.largest_angle, 1e-5);
 }
 
-// Every observation has two numbers of noise, and every unknown takes one away.
+// The expected sum of squares counts two residuals for each observation, minus one per unknown.
 TEST_P(AdjustBehind, LeavesAsMuchErrorAsTheNoise) {
   const Bundle truth = survey(camera_behind(GetParam().port), {.noise = 0.5});
   Bundle bundle = truth;
@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Ports, AdjustBehind,
                                            Case{"Dome", dome_port()}),
                          [](const auto& tested) { return tested.param.name; });
 
-// Known poses leave three unknowns a point, and lengths that nothing else need tell.
+// With known poses each point has three unknowns, and no other length must be known.
 TEST(Adjust, PlacesPointsAmongKnownPoses) {
   const Bundle truth = survey(camera_behind(flat_port(3)), {.noise = 0.5});
   Bundle bundle = truth;
@@ -92,7 +92,7 @@ TEST(Adjust, PlacesPointsAmongKnownPoses) {
   EXPECT_EQ(known.scale_sigma, 0);
 }
 
-// What the scale is to a port's distance, known poses are.
+// Known poses determine the distance of the port, as a known scale does.
 TEST(Adjust, KnownPosesTellTheDistanceOfThePort) {
   const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.3});
   Bundle bundle = truth;
@@ -102,7 +102,7 @@ TEST(Adjust, KnownPosesTellTheDistanceOfThePort) {
   bundle.cameras[0].change(2) = 0.005;
   adjust(bundle, options);
   const double sigma = uncertainty(bundle, options).camera_sigmas[0](2);
-  EXPECT_LT(sigma, 0.001);  // a fifth of what it began off by
+  EXPECT_LT(sigma, 0.001);  // a fifth of the initial error
   EXPECT_LT(std::abs(bundle.cameras[0].change(2)), 4 * sigma);
 }
 
@@ -121,7 +121,7 @@ TEST(Adjust, OutliersHaveLittleSay) {
   EXPECT_LT(error_with(2), 0.2 * error_with(1e9));
 }
 
-// An image that nothing is left of, first or farthest, says nothing of the scale.
+// An image without observations, first or farthest, does not affect the scale's standard deviation.
 TEST(Uncertainty, IsNotMistakenByAnImageWithoutObservations) {
   const Bundle whole = survey(camera_behind(flat_port()), {.noise = 0.5});
   for (const std::size_t lost : {std::size_t{0}, std::size_t{11}}) {
@@ -172,7 +172,7 @@ TEST(Adjust, RefusesWhatCannotBe) {
   EXPECT_NE(test::error_of([&] { adjust(bundle, {}); }).find("no observations"), std::string::npos);
 }
 
-// In air nothing tells the scale; behind a port, the farther the port the better.
+// In air nothing determines the scale; behind a port, a more distant port determines it better.
 TEST(Uncertainty, OfTheScaleIsWhatThePortMakesIt) {
   const auto scale_sigma = [](std::optional<refractive::Port<double>> port) {
     const Bundle bundle = survey(camera_behind(std::move(port)), {.noise = 0.5});
@@ -201,16 +201,16 @@ Bundle with_noise(Bundle bundle, double sigma, int seed) {
   return bundle;
 }
 
-// A distance of the port as far off as the scene is makes the same photographs, but for the glass:
-// one length must be known to find the port.
+// If port and scene are both farther away by the same factor, photographs are the same except for
+// the glass. One length must be known to find the port's distance.
 KnownDistance known_baseline(const Bundle& truth) {
   const std::size_t last = truth.images.size() - 1;
   return {KnownDistance::Between::images, 0, last,
           (truth.images[0].pose.centre - truth.images[last].pose.centre).norm(), 1e-5};
 }
 
-// Many surveys that differ in noise alone: how the port's numbers scatter about the truth, and how
-// their standard deviations say that they do. Sums of squares over the runs.
+// Results of many surveys that differ in noise alone: the scatter of the port's numbers about the
+// truth, and their predicted standard deviations. Sums of squares over the runs.
 struct Scatter {
   HousingChange<double> sum2 = HousingChange<double>::Zero(), predicted2 = sum2;
 };
@@ -235,7 +235,8 @@ Scatter scatter_of_port(int runs, double loss_sigmas) {
 
 TEST(Uncertainty, OfThePortIsHonest) {
   const Scatter scatter = scatter_of_port(30, 100);
-  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %: 3 of these.
+  // The ratio of a sum of 30 squares to its expectation scatters by sqrt(2/30) = 26 %; three times
+  // this is allowed.
   for (int k = 0; k < 3; ++k) {
     EXPECT_GT(scatter.sum2(k) / scatter.predicted2(k), 0.3) << k;
     EXPECT_LT(scatter.sum2(k) / scatter.predicted2(k), 1.9) << k;
@@ -244,17 +245,18 @@ TEST(Uncertainty, OfThePortIsHonest) {
     EXPECT_EQ(scatter.sum2(k) + scatter.predicted2(k), 0) << k;
 }
 
-// The default loss (Huber's, from 2 sigmas on) beside none, on the same surveys: the two differ by
-// the loss alone, so that five tell much. With Gaussian noise it costs 1.8 % of efficiency (a
-// seventh of the errors are beyond), by which variances grow; the rest of the ratio of their sums
-// scatters by 2 sqrt(0.018/5) = 12 %: 3 of these. The weights, 0.98 in the mean, make the
-// predicted ones grow by up to 2.2 %, less where errors left by a fit are smaller than the noise.
+// Compares the default loss (Huber's, from 2 sigma on) with no loss on the same surveys. The two
+// results differ by the loss alone, so five surveys suffice. With Gaussian noise the loss costs 1.8
+// % of efficiency (a seventh of the errors are beyond 2 sigma), and variances grow by 1.8 %. The
+// remaining ratio of the sums scatters by 2 sqrt(0.018/5) = 12 %; three times this scatter is
+// allowed. The weights have a mean of 0.98, so predicted variances grow by up to 2.2 %, and less
+// where residuals of a fit are smaller than the noise.
 TEST(Uncertainty, OfThePortIsHonestWithTheDefaultLoss) {
   const Scatter robust = scatter_of_port(5, AdjustOptions().loss_sigmas);
   const Scatter none = scatter_of_port(5, 100);
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(robust.sum2(k) / none.sum2(k), 1.018, 0.36) << k;
-    EXPECT_GT(robust.predicted2(k) / none.predicted2(k), 1.005) << k;  // the loss does work
+    EXPECT_GT(robust.predicted2(k) / none.predicted2(k), 1.005) << k;  // the loss has an effect
     EXPECT_LT(robust.predicted2(k) / none.predicted2(k), 1.022) << k;
   }
 }
@@ -273,11 +275,11 @@ TEST(Uncertainty, OfTheScaleIsHonest) {
     sum2 += error * error;
     predicted2 += std::pow(uncertainty(bundle, options).scale_sigma, 2);
   }
-  EXPECT_GT(sum2 / predicted2, 0.3);  // see above
+  EXPECT_GT(sum2 / predicted2, 0.3);  // the same limits as for the port
   EXPECT_LT(sum2 / predicted2, 1.9);
 }
 
-// Started from a distance wrong by 5 mm and a tilt wrong by 1 degree.
+// Starts from a distance with an error of 5 mm and a tilt with an error of 1 degree.
 TEST(Adjust, FindsThePortAgain) {
   const Bundle truth = survey(camera_behind(flat_port(2, 0.02)), {.points = 600, .noise = 0.5});
   Bundle bundle = truth;

@@ -27,7 +27,7 @@ TEST(ColmapBundle, SeesThroughLensAndPort) {
   for (const double error : reprojection_errors(bundle.bundle)) ASSERT_LT(error, 1e-6);
 }
 
-// A tenth of a pixel in the photograph is a tenth of a pixel of error, wherever the lens distorts.
+// An error of a tenth of a pixel in the photograph counts as a tenth, wherever the lens distorts.
 TEST(ColmapBundle, MeasuresErrorsInThePhotograph) {
   io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
   for (io::ColmapImage& image : model.images)
@@ -36,10 +36,10 @@ TEST(ColmapBundle, MeasuresErrorsInThePhotograph) {
   for (const double error : reprojection_errors(bundle.bundle)) ASSERT_NEAR(error, 0.1, 2e-4);
 }
 
-// With a focal length 1 % short and the factor that mends it, everything is in place again: a
-// distortion that does not follow the factor misses by up to a pixel here, one that follows to
-// first order by the square of that hundredth (0.01^2 of 600 px, times the distortion), and one
-// that is taken away anew by nothing.
+// The focal length is 1 % too short, and its factor corrects it. A distortion that does not follow
+// the factor causes errors up to a pixel here. A distortion that follows to first order causes
+// errors of second order (0.01^2 of 600 px, times the distortion). Undistorting again causes no
+// error.
 TEST(ColmapBundle, DistortionFollowsTheFocalLength) {
   const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
   io::ColmapCamera lens = kLens;
@@ -136,15 +136,15 @@ TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
             "camera 4 has no in-air lens");
 }
 
-// A model as COLMAP-Underwater writes it, the port in its camera whether the poses were solved with
-// it or, as far as a focal length helps, in air.
+// A model as COLMAP-Underwater writes it. Its camera has the port, whether the poses were computed
+// with the port or in air, as far as a focal length compensates for the port.
 io::ColmapModel solved_with(const io::Housing& housing) {
   const io::ColmapModel tracks =
       model_of(survey(camera_behind(flat_port(2)), {.points = 100, .noise = 0.2}));
   ColmapBundle bundle = to_bundle(tracks, {&kLens, 1}, housing);
   AdjustOptions options;
   options.free[kFocalNumber] = housing.ports.empty();
-  for (int round = 0; round < 3; ++round) {  // from a focal length a third too short
+  for (int round = 0; round < 3; ++round) {  // the initial focal length is a third too short
     adjust(bundle.bundle, options);
     place_again(bundle, tracks);
   }
@@ -156,7 +156,7 @@ io::ColmapModel solved_with(const io::Housing& housing) {
 
 TEST(PortFit, TellsPosesSolvedWithThePortFromPosesSolvedInAir) {
   const PortFit refractive = port_fit(solved_with(housing()));
-  EXPECT_LT(refractive.behind_ports, 0.2 * std::sqrt(2));  // no more than the noise of both axes
+  EXPECT_LT(refractive.behind_ports, 0.2 * std::sqrt(2));  // not more than the noise of both axes
   EXPECT_GT(refractive.in_air, 10 * refractive.behind_ports);
   io::ColmapModel absorbed = solved_with({});
   const PortFit in_air = port_fit(absorbed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A survey in COLMAP's files: a lens that distorts, and a model made of its photographs.
+// A survey as COLMAP files: a distorting lens, and a model of its photographs.
 #pragma once
 
 #include "io/colmap.h"
@@ -19,7 +19,7 @@ inline io::Housing housing() {
   return housing;
 }
 
-// The survey as COLMAP would know it: its images taken by the distorting lens.
+// The survey as a COLMAP model whose images the distorting lens has taken.
 inline io::ColmapModel model_of(const Bundle& bundle) {
   io::ColmapModel model;
   model.cameras = {{4, "SIMPLE_RADIAL", 1024, 768, {800, 512, 384, 0.1}}};

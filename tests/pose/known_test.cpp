@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known in metres has a hold on a bundle, or is said to have none.
+// Lengths and positions known in metres determine the scale of a bundle, or are reported if they
+// cannot.
 #include "pose/known.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ Bundle random_bundle(std::size_t images, std::size_t points) {
   return bundle;
 }
 
-// The images that a walk from `image` over shared points reaches; none without observations.
+// The images that are connected with `image` by shared points; empty if it has no observations.
 std::set<std::size_t> reached_from(const Bundle& bundle, std::size_t image) {
   std::set<std::size_t> images{image}, points;
   bool seen = false;
@@ -106,7 +107,8 @@ TEST(LostKnowledge, NamesTheEndThatIsLeftOut) {
   EXPECT_NE(lost_knowledge(bundle, points)[0].find("point 9"), std::string::npos);
 }
 
-// Positions hold a model while three of them, off one line, are of images that are left.
+// Positions determine the scale if three of them, not on one line, belong to images with
+// observations.
 TEST(LostKnowledge, OfPositionsIsThatTooFewAreLeft) {
   Bundle bundle = survey(camera_behind(flat_port()), {});
   AdjustOptions options;
@@ -123,7 +125,7 @@ TEST(LostKnowledge, OfPositionsIsThatTooFewAreLeft) {
   EXPECT_NE(lost_knowledge(bundle, options).at(0).find("2 positions"), std::string::npos);
 }
 
-// Whichever image it is, refining stops as soon as its known length is of no use.
+// Refining stops when a known length can no longer be used, for any image.
 TEST(LostKnowledge, EndsRefining) {
   const Bundle truth = survey(camera_behind(flat_port()), {.noise = 0.2});
   for (const std::size_t lost : {std::size_t{0}, std::size_t{6}, std::size_t{11}}) {

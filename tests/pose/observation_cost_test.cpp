@@ -40,7 +40,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
     return observation;
   }
 
-  // Away from zero everywhere, so that no derivative is one by accident.
+  // All numbers differ from zero, so that no derivative is right by accident.
   Numbers numbers(const Observation& observation) const {
     const Pose& pose = bundle_.images[observation.image].pose;
     Numbers x;
@@ -83,7 +83,7 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfFiniteDifferences) {
   }
 }
 
-// The camera as the product under test does not have it: everything an automatic derivative.
+// The camera by automatic differentiation alone, unlike the tested code.
 template <class Port>
 refractive::Projection<Jet> projection(const Port& port, const refractive::PinholeLens<Jet>& lens,
                                        const CameraModel& model,

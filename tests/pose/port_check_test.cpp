@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether port, lens, scale and poses belong together, over generated surveys: no word of correct
-// ones, and the right cause of those with one fault.
+// Checks of port, lens, scale and poses on generated surveys: no warning for correct surveys, and
+// the right cause for surveys with one fault.
 #include "pose/port_check.h"
 
 #include <gmock/gmock.h>
@@ -56,8 +56,8 @@ TEST(ImportWarning, SaysNothingOfWhatBelongsTogether) {
 struct Fault {
   const char* name;
   MaybePort given;
-  double scale = 1;  // of the poses
-  double focal = 1;  // of the lens
+  double scale = 1;  // of the poses: factor
+  double focal = 1;  // of the lens: factor
   Of cause = Of::nothing;
 };
 
@@ -104,20 +104,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"Forgotten", std::nullopt, 1, 1, Of::thin_port}),
     [](const auto& tested) { return tested.param.name; });
 
-// Poses that are too large push the port towards the lens: told where the port is far enough.
+// Poses at too large a scale have the effect of a port close to the lens: this is found if the port
+// is far enough from the lens.
 TEST(PortCheckOfScale, TellsPosesThatAreTooLarge) {
   for (const double scale : {10.0, 100.0, 1000.0}) {
     Bundle bundle = survey(camera_behind(flat_port(3, 0.1)), {.distance = 0.8, .noise = 0.5});
     scale_places(bundle, scale);
     const PortCheck check = check_ports(bundle, {});
     EXPECT_FALSE(check.fits()) << check.residual;
-    // Ten times the port's distance, too, is nearly the same.
+    // A port at ten times the distance has nearly the same effect.
     EXPECT_TRUE(check.best.of == Of::scale || (scale == 10 && check.best.of == Of::distance))
         << cause_of(check.best, bundle);
   }
 }
 
-// Both twice as large is no other photograph; and a dome around the lens tells no scale.
+// Port and scene at twice the size give the same photographs, and a dome centred at the lens does
+// not determine the scale.
 TEST(PortCheckOfScale, SaysNothingWhereNothingCanBeTold) {
   const auto centred = refractive::DomePort<double>{{0, 0, 0}, 0.05, 0.007, 1, 1.52, 1.333};
   Bundle bundle = survey(camera_behind(centred), {.distance = 2.5, .noise = 0.5});
@@ -164,7 +166,7 @@ TEST(ImportWarning, SaysNothingOfModelsThatTellNothing) {
   EXPECT_FALSE(import_warning({}, behind(flat_port()), {}));
 }
 
-// 20,000 images, each with a camera of its own that sees what its neighbours see.
+// 20,000 images, each with its own camera, that observe the same points as their neighbours.
 TEST(SampleTracks, IsBoundedWhateverTheModel) {
   io::ColmapModel model;
   for (std::uint32_t i = 0; i < 20000; ++i) {
@@ -197,7 +199,7 @@ TEST(SampleTracks, IsBoundedWhateverTheModel) {
   }
 }
 
-// Refined behind `given`, the survey having been taken through `truth`.
+// Refines behind `given` a survey that was taken through `true_port`.
 std::optional<FreedNumber> after_refining(const refractive::Port<double>& true_port,
                                           const refractive::Port<double>& given, double noise,
                                           SurveyOptions of = {.distance = 0.7, .points = 400}) {
@@ -243,7 +245,7 @@ TEST(NumberThatDoesNotFit, NamesTheIndexAndTheNormal) {
   EXPECT_THAT(warning_of(*freed, 0.0012), HasSubstr("0.12 %"));
 }
 
-// Fewer than thirty observations in an image say nothing against the housing.
+// Too few observations in an image are no sign of a wrong housing.
 TEST(DroppedLines, AskForTheHousingOnlyWhereErrorsAreLarge) {
   const Bundle truth =
       survey(camera_behind(flat_port(3)), {.images = 12, .points = 120, .noise = 0.3});

@@ -31,7 +31,7 @@ class RefinePoses : public test::ProgramTest {
     io::write_housing(folder_ / "housing.json", testing::housing());
   }
 
-  // The survey as COLMAP knows it, and the lens.
+  // Writes the survey as a COLMAP model, and the lens.
   void write_input() {
     Bundle absorbed = truth_;
     for (BundleCamera& camera : absorbed.cameras) camera.measured.port.reset();
@@ -103,7 +103,7 @@ TEST_F(RefinePoses, RefinesImagesBehindFlatPortsAndDomesTogether) {
   EXPECT_EQ(report["images"].size(), 12u);
 }
 
-// Of flat ports and domes in one model each kind has its own numbers.
+// Flat ports and domes in one model: each kind has its own numbers.
 TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
   const auto flat = flat_port(2);
   const auto dome = testing::dome_port();
@@ -143,7 +143,7 @@ TEST_F(RefinePoses, FindsTheNumbersOfEachKindOfPort) {
   EXPECT_EQ(report["cameras"][1]["free"].size(), 3u);
   EXPECT_EQ(report["cameras"][1]["free"][2]["name"], "centre z");
 
-  // Of one kind alone: the other's port stays.
+  // With the number of one kind alone, the port of the other kind stays.
   ASSERT_EQ(run(kInput + known + "centre").exit_code, 0);
   bool stays = false;
   for (const auto& [name, port] : io::read_housing(folder_ / "out" / "housing.json").ports)
@@ -168,7 +168,7 @@ TEST_F(RefinePoses, ReportsErrorsAndWhatItKnows) {
   EXPECT_NEAR(free[2]["value"].get<double>(), 20, 3 * free[2]["sigma"].get<double>());
 }
 
-// From poses that absorbed refraction and a port measured badly to the port as it is.
+// Starts from poses that absorbed refraction and a badly measured port, and finds the true port.
 TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
   io::Housing wrong = testing::housing();
   wrong.ports["main"] = flat_port(3, 0.025);
@@ -179,7 +179,7 @@ TEST_F(RefinePoses, FindsAPortThatWasMeasuredBadly) {
   const auto report = io::read_json(folder_ / "out" / "report.json");
   const auto& free = report["cameras"][0]["free"];
   const std::array<double, 3> truth{2, 0, 20};    // degrees, degrees, mm
-  const std::array<double, 3> wrong_by{1, 1, 5};  // what a standard deviation must not hide
+  const std::array<double, 3> wrong_by{1, 1, 5};  // initial errors: sigmas must be smaller
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double value = free.at(i)["value"].get<double>(), sigma = free[i]["sigma"].get<double>();
     EXPECT_NEAR(value, truth[i], 3 * sigma) << free[i]["name"];
@@ -222,8 +222,7 @@ TEST_F(RefinePoses, LeavesKnownPosesAsTheyAre) {
   EXPECT_EQ(report["scale_sigma"], 0);
 }
 
-// Tracks that name an image two or three times, at the same place and at others, tell no more than
-// those that name it once.
+// Repeated observations of a point in an image, at the same pixel or at others, add no information.
 TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
   ASSERT_EQ(run(kInput + "-o once --scale-from " + baseline()).exit_code, 0);
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
@@ -249,7 +248,7 @@ TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
   const auto once = nlohmann::json::parse(read_file(folder_ / "once" / "report.json"));
   const auto more = nlohmann::json::parse(read_file(folder_ / "more" / "report.json"));
   EXPECT_EQ(more["observations_after"], once["observations_after"]);
-  // Adjustments end where steps are small, not at the same bits.
+  // Adjustments end when steps are small, not with the same bits.
   for (const char* number : {"pixel_sigma", "rms_after_px", "scale_sigma"})
     EXPECT_NEAR(more[number].get<double>() / once[number].get<double>(), 1, 1e-3) << number;
 }
@@ -280,10 +279,10 @@ TEST_F(RefinePoses, DropsPointsThatOneImageSees) {
   }
 }
 
-// The same photographs by names with blanks, commas, '#' and quotes.
+// Names with blanks, commas, '#' and quotes give the same result.
 TEST_F(RefinePoses, TakesNamesWithAnySigns) {
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
-  write("sparse", model);  // reading and writing again rounds
+  write("sparse", model);  // writing and reading again rounds numbers
   ASSERT_EQ(run(kInput + "-o plain --scale-from " + baseline()).exit_code, 0);
   model.images[0].name = "dive 1/a,b.jpg";
   model.images[5].name = "#5 of 7.jpg";
@@ -319,7 +318,7 @@ TEST_F(RefinePoses, TakesNamesWithAnySigns) {
   }
 }
 
-// Where two files carry a port or a lens, a line names both if they differ, and none if they agree.
+// If two files have a port or a lens, a line names both if they differ, and no line if they agree.
 TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
   ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1").exit_code, 0);
   io::ColmapCamera camera = testing::kLens;
@@ -377,8 +376,8 @@ TEST_F(RefinePoses, TakesLensAndPortFromCalibmar) {
   expect_the_same("--lens lens/cameras.txt --housing calibration.yaml", "two");
 }
 
-// The lens file says 4 % too short, with the distortion of the true one. Close range and a given
-// length tell the focal length.
+// The lens file has a focal length 4 % too short, with the true distortion. Close range and a known
+// length determine the focal length.
 TEST_F(RefinePoses, FindsTheFocalLengthOfADistortingLens) {
   io::ColmapModel lens;
   lens.cameras = {testing::kLens};
@@ -424,7 +423,7 @@ TEST_F(RefinePoses, TakesAModelOfColmapUnderwater) {
   EXPECT_EQ(io::read_housing(folder_ / "again" / "housing.json").ports.size(), 1u);
 }
 
-// The stated index bends all rays by more than poses can make good.
+// The stated index bends all rays by more than poses can compensate.
 TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
   const Outcome right = run(kInput + "-o right --scale-from " + baseline());
   ASSERT_EQ(right.exit_code, 0) << right.output;
@@ -442,7 +441,7 @@ TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
   }
 }
 
-// Of photographs with few observations each, most are left out: no fault of the housing.
+// Most photographs have few observations and are left out, which is no fault of the housing.
 TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
   io::ColmapModel model = io::read_colmap_model(folder_ / "sparse");
   std::map<std::uint32_t, int> kept;
@@ -463,7 +462,7 @@ TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
   EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("is this the housing")));
 }
 
-// A model that carries ports, aligned to centres in another unit.
+// A model with ports, aligned to centres in another unit.
 TEST_F(RefinePoses, AlignModelWarnsOfAUnitThatDoesNotFitThePorts) {
   ASSERT_EQ(run(kInput + "-o out --colmap-underwater 1 --scale-from " + baseline()).exit_code, 0);
   io::ColmapModel reference = io::read_colmap_model(folder_ / "out" / "sparse");

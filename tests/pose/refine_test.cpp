@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what a pinhole engine makes of underwater photographs to refractive poses.
+// Turns the poses of a pinhole engine for underwater photographs into refractive poses.
 #include "pose/refine.h"
 
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ struct Case {
   const char* name;
   refractive::Port<double> port;
   double distance;          // of the scene [m]
-  bool tells_scale = true;  // to half of it; a dome around the camera does not
+  bool tells_scale = true;  // to 50 %; a dome centred at the camera does not determine it
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& one) {
   return out << one.name;
 }
 
-// The survey as a pinhole engine with a free focal length knows it, in a scale of its own.
+// The survey as a pinhole engine with a free focal length reconstructs it, at an arbitrary scale.
 Bundle absorbed(const Bundle& truth) {
   Bundle bundle = truth;
   for (BundleCamera& camera : bundle.cameras) camera.measured.port.reset();
@@ -41,7 +41,7 @@ Bundle absorbed(const Bundle& truth) {
   return bundle;
 }
 
-// The length between the survey's ends is given, which tells the scale.
+// The known length between the survey's ends determines the scale.
 RefineOptions with_known_length(const Bundle& truth) {
   RefineOptions options;
   const double length = (truth.images[0].pose.centre - truth.images[11].pose.centre).norm();
@@ -68,9 +68,9 @@ TEST_P(RefineBehind, FindsPosesFromAbsorbedOnes) {
   EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
 }
 
-// With true tracks what is left is the noise, less what the unknowns take away: six numbers of each
-// image but the first (its place is the frame's), and three of each point; the length that is given
-// stands for the scale. A tenth is what is asked; the noise of so many residuals scatters by 1 %.
+// With true tracks the remaining error is the noise, minus one residual for each unknown: six of
+// each image but the first (which fixes the frame), and three of each point; the known length
+// determines the scale. The tolerance is 10 %; the noise of so many residuals scatters by 1 %.
 TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
   constexpr double kNoise = 0.5;
   const Bundle truth = survey(camera_behind(GetParam().port),
@@ -87,7 +87,7 @@ TEST_P(RefineBehind, LeavesTheErrorsThatTheNoiseMakes) {
   EXPECT_GT(report.observations_after, report.observations_before * 98 / 100);
 }
 
-// The scale comes out within what its standard deviation says, from refraction alone.
+// From refraction alone, the scale is right within its standard deviation.
 TEST_P(RefineBehind, SaysHowWellItKnowsTheScale) {
   const Bundle truth = survey(camera_behind(GetParam().port),
                               {.distance = GetParam().distance, .points = 400, .noise = 0.2});
@@ -110,7 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Ports, RefineBehind,
                                            Case{"Dome", dome_port(), 2.5, false}),
                          [](const auto& tested) { return tested.param.name; });
 
-// Half of the images behind a flat port, the others behind a dome: each by its own camera.
+// Half of the images are taken behind a flat port, the others behind a dome, each with its own
+// camera.
 TEST(RefineBehindFlatPortsAndDomes, FindsPosesFromAbsorbedOnes) {
   const Bundle truth = mixed_survey(camera_behind(flat_port(3)), camera_behind(dome_port()),
                                     {.distance = 0.8, .points = 400, .noise = 0.2});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// RefinePoses writes its model before it knows how well it is known.
+// RefinePoses writes its model before it computes standard deviations.
 #include "../../apps/RefinePoses/results.h"
 
 #include <gmock/gmock.h>
@@ -70,7 +70,7 @@ TEST_F(WriteResults, ModelIsThereWholeWhileStandardDeviationsAreComputed) {
   EXPECT_DOUBLE_EQ(report()["cameras"][0]["free"][0]["sigma"].get<double>(), 1);  // [mm]
 }
 
-// Whatever a run before left: no report of another model stays.
+// An earlier run may have left a folder: no report of another model remains in it.
 TEST_F(WriteResults, OutOfMemoryLeavesTheModelAndOneLine) {
   for (const bool again : {false, true}) {
     if (again) write_atomically(out_ / "report.json", "{\"scale_sigma\": 7}");
@@ -104,7 +104,7 @@ TEST_F(WriteResults, WithoutAModelThereIsNoFolder) {
   EXPECT_FALSE(fs::exists(out_));
 }
 
-// No percentage where nothing tells the scale, or where what was given for it is not used.
+// No percentage where nothing determines the scale, or where the given scale is not used.
 TEST_F(WriteResults, AModelWithoutScaleSaysSo) {
   Uncertainty none = known();
   none.scale_sigma = none.camera_sigmas[0](2) = std::numeric_limits<double>::infinity();

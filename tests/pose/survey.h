@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A survey with known poses and points, seen through any camera: true tracks, with as much noise as
-// is asked for.
+// A survey with known poses and points, imaged by any camera: exact tracks with a given noise.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -28,7 +27,7 @@ inline CameraModel camera_behind(std::optional<refractive::Port<double>> port) {
   return {1024, 768, {610, 615, 511.5, 383.5}, std::move(port)};
 }
 
-// A camera at `centre` that looks at `target`, turned about its axis by `roll` [rad].
+// A camera at `centre` that looks at `target`, rotated about its axis by `roll` [rad].
 inline Pose looking_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target, double roll) {
   const Eigen::Vector3d z = (target - centre).normalized();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitY().cross(z).normalized();
@@ -88,7 +87,7 @@ inline Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
   return bundle;
 }
 
-// As survey(), with every second image taken by `second` in place of `first`.
+// As survey(), but `second` takes every second image instead of `first`.
 inline Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
                            const SurveyOptions& options) {
   Bundle bundle = survey(first, options);
@@ -126,11 +125,11 @@ inline void disturb(Bundle& bundle, double angle, double shift, unsigned seed) {
   for (BundlePoint& point : bundle.points) point.position += shift * vector();
 }
 
-// How far the centres and rotations are from the truth after the best similarity.
+// Errors of centres and rotations after the best similarity to the truth.
 struct PoseErrors {
   double centre_rms = 0;     // [m]
   double largest_angle = 0;  // [degrees]
-  double scale = 1;          // of the similarity that was taken away
+  double scale = 1;          // of the best similarity
 };
 
 inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool with_scale = true) {

@@ -61,7 +61,7 @@ TEST(Filter, DropsWhatDoesNotFitAndKeepsTheRest) {
   EXPECT_EQ(filter(bundle, {4, 0, 1}), 0u);
 }
 
-// Copies of observations moved at random, put anywhere: what is left is what was there before.
+// Inserts copies of observations, moved at random, at any index: the original observations remain.
 TEST(DropRepeated, KeepsTheNearestOfEachImage) {
   const Bundle truth = survey(camera_behind(flat_port()), {.points = 100});
   Bundle bundle = truth;
@@ -83,7 +83,7 @@ TEST(DropRepeated, KeepsTheNearestOfEachImage) {
   EXPECT_EQ(drop_repeated(bundle), 0u);
 }
 
-// Two places in one image are no two views of a point, whatever angle is asked for.
+// Two pixels in one image are not two views of a point, even if no angle is required.
 TEST(Filter, DropsPointsThatOneImageSees) {
   Bundle bundle = survey(camera_behind(flat_port()), {});
   const std::size_t points = bundle.points.size();
