@@ -21,6 +21,11 @@ struct ReferencePatch {
   float mean;      // weighted mean of the intensities, 0 to 255: keeps the source's sums small
   float variance;  // sum of weight * (intensity - mean)^2, weights summing to 1
   float texture;   // the same with weights of at most 1: what OpenMVS's threshold means
+
+  // weight * (intensity - mean)^2 of a texel.
+  float square(std::size_t k) const {
+    return weight[k] > 0 ? deviation[k] * deviation[k] / weight[k] : 0.0f;
+  }
 };
 
 inline constexpr float kOutsideCost = 1.2f;  // of a patch without a correlation
