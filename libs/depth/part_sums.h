@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Correlation of a matching window that leaves the source image, over the texels inside. T: float,
-// or a pack of lanes.
+// ZNCC of a matching window that lies partly outside the source image, over the texels inside. T is
+// float or a SIMD pack.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace axial::depth {
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// How much a texel at pixel (x, y) counts, 0 to 1 (kLeastWeight's comment); 0 if x or y is not a
-// number. `right`, `bottom`: the image's last column and row.
+// The factor of the weight of a texel at (x, y) [px]: its distance to the image's edge, from 0 to 1
+// (see kLeastWeight). 0 if x or y is NaN. `right`, `bottom`: the image's last column and row.
 template <class T>
 T share_inside(const T& x, const T& y, const T& right, const T& bottom) {
   using refractive::lesser;
@@ -22,13 +22,12 @@ T share_inside(const T& x, const T& y, const T& right, const T& bottom) {
   return select(inside, lesser(least, T(1)), T(0));
 }
 
-// The sums of ZNCC with weights of their own: those of the reference patch times the texels'
-// shares.
+// The sums of ZNCC, weighted by the reference patch's weights times the texels' share_inside().
 template <class T>
 class PartSums {
  public:
-  // `weight` and `deviation`: the reference patch's, weight > 0. `value`: the source's grey level,
-  // less any constant.
+  // Adds one texel. `weight`, `deviation`: from the ReferencePatch; precondition: weight > 0.
+  // `value`: the source's grey level minus a constant, which can be any number.
   void add(const T& share, float weight, float deviation, const T& value) {
     const T counted = share * T(weight);
     const T reference = share * T(deviation);
@@ -40,7 +39,8 @@ class PartSums {
     cross_ += reference * value;
   }
 
-  // In [-1, 1], or kNoCorrelation.
+  // The correlation in [-1, 1]; kNoCorrelation if the texels inside have too little weight
+  // (kLeastWeight) or if one of the patches is flat (kFlatVariance, kFlatReference).
   T correlation() const {
     using refractive::greater;
     using refractive::lesser;

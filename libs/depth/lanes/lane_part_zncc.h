@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ZNCC of windows that leave their source images: rare, and apart from the loop over whole windows
-// because it does three times the work.
+// ZNCC of windows that lie partly outside their source images. They are rare, and need three times
+// the work of whole windows, so they have their own loop.
 #pragma once
 
 #include "depth/lanes/lane_images.h"
@@ -11,8 +11,8 @@
 
 namespace axial::depth::lanes {
 
-// Where the window of every lane falls in its source image: the pixel of its centre, and the affine
-// warp around the centre.
+// The window of each lane in its source image: the position of its centre [px], and the affine warp
+// around the centre.
 template <class Abi>
 struct LaneWindow {
   Pack<Abi> x, y;
@@ -21,7 +21,7 @@ struct LaneWindow {
 
 namespace {  // one copy per translation unit: the linker would merge those of one instruction set
 
-// Correlation in [-1, 1], or kNoCorrelation. Texels that lie outside are not sampled.
+// The correlation of each lane in [-1, 1], or kNoCorrelation. Texels outside are not sampled.
 template <class Abi>
 [[gnu::noinline]] Pack<Abi> lane_part_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                                            const LaneImages<Abi>& image,
