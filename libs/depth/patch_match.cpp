@@ -28,11 +28,11 @@ struct DepthRange {
   float min = 0, max = 0;
 };
 
-// What one level starts from and is held to.
+// The inputs of one resolution level.
 struct LevelState {
-  PlaneMap planes;
-  cv::Mat1f prior;
-  cv::Mat1b mask;  // empty: all
+  PlaneMap planes;  // initial hypotheses
+  cv::Mat1f prior;  // depths of the coarser level; empty: none
+  cv::Mat1b mask;   // empty: all pixels
 };
 
 Level make_level(const MatchInput& input, int halvings) {
@@ -84,7 +84,7 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
     run_all(Matcher<Camera, Warp>(level.images[0], cameras[0], sources, options));
 }
 
-// Runs `sweeps` sweeps of one level with the camera type and the warp chosen once.
+// Runs `sweeps` sweeps of one level. Camera type and warp are selected once, outside the loops.
 void run_sweeps(const MatchInput& input, const Level& level, std::span<const DepthMap* const> maps,
                 const PatchMatchOptions& options, const SweepInput& first, int sweeps,
                 PlaneMap& planes) {
@@ -131,7 +131,8 @@ DepthRange depth_range(const CameraModel& model, std::span<const Eigen::Vector3f
   return {0.9f * range.min, 1.1f * range.max};
 }
 
-// Every fine pixel takes the plane of the coarse pixel it lies in, met by its own ray (eq. 8).
+// The state of the next finer level. Each pixel gets the plane of the coarse pixel in which it
+// lies; its depth is where its own ray meets this plane (eq. 8).
 LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const DepthRange& range,
                         float keep_cost) {
   LevelState state{PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
@@ -206,7 +207,7 @@ int usable_levels(const MatchInput& input, const PatchMatchOptions& options) {
   return levels;
 }
 
-// Clears the pixels that the lens images no direction at.
+// Clears the pixels at which the distorted lens shows no direction.
 void clear_unseen(const CameraModel& camera, cv::Mat1b& mask) {
   const auto lens = distorted_lens<float>(camera);
   if (lens.shows_all(camera.width, camera.height)) return;

@@ -20,7 +20,7 @@ QuadImage::QuadImage(const cv::Mat1b& image)
   for (int y = 0; y < height_; ++y, words += width_) {
     const std::uint8_t* row = image.ptr<std::uint8_t>(y);
     const std::uint8_t* below = image.ptr<std::uint8_t>(y + 1 < height_ ? y + 1 : y);
-    const int last = width_ - 1;  // apart, so that the others go into vectors
+    const int last = width_ - 1;  // separate, so that the loop can be vectorised
     for (int x = 0; x < last; ++x) words[x] = word(row[x], row[x + 1], below[x], below[x + 1]);
     words[last] = word(row[last], row[last], below[last], below[last]);
   }
@@ -28,7 +28,7 @@ QuadImage::QuadImage(const cv::Mat1b& image)
 
 namespace {
 
-// Grey value. Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
+// The grey level at (x, y). Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
 float bilinear(const QuadImage& source, float x, float y) {
   const int column = static_cast<int>(x);
   const int row = static_cast<int>(y);

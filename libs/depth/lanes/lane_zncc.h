@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ZNCC of one reference patch with a source patch per lane.
+// ZNCC of one reference patch with one source patch per SIMD lane.
 #pragma once
 
 #include "depth/lanes/lane_images.h"
@@ -94,10 +94,12 @@ template <class Abi>
 
 }  // namespace
 
-// Correlation in [-1, 1], or kNoCorrelation as ZnccFunction gives it. A lane's result does not
-// depend on the other lanes. The bounds of a whole window are tested at its corners: the warp is
-// affine. Rounding the centre and the steps to 1/65536 pixel moves no sample by more than 1e-3
-// pixels, and a border of one pixel is kept, so that all samples lie where LaneSampler takes them.
+// The correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as ZnccFunction. The
+// result of a lane does not depend on the other lanes. Whether the whole window is inside the image
+// is tested at its corners, because the warp is affine. Centre and steps are rounded to 1/65536 px,
+// which moves samples by at most 1e-3 px. The window keeps one pixel of distance to the image's
+// edge, so all samples meet the precondition of LaneSampler. `words`: SceneTables::words. `warp`:
+// d(source pixel)/d(reference pixel).
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
