@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the demo's results as a table on the screen, as table.json, and as a self-contained
-page."""
+"""Writes the demo's results as a table on the screen, as table.json, and as a page of one file."""
 
 import argparse
 import base64

@@ -44,8 +44,7 @@ def truth_of(scene, base):
 
 
 def images_of(model):
-    """The poses of a text model by image name, each as the seven numbers (QW .. TZ) in text
-    form."""
+    """The poses of a text model by image name, each as seven numbers (QW .. TZ) in text form."""
     lines = [line for line in (model / "images.txt").read_text().split("\n")
              if not line.startswith("#")]
     return {line.split()[9]: line.split()[1:8] for line in lines[0::2] if line}
@@ -71,8 +70,7 @@ def baseline(truth):
 
 def raw_model(truth, base):
     """COLMAP's model of the photographs under water, with a lens that COLMAP calibrates itself. It
-    is kept as long as the photographs: for scenes in git forever, otherwise in the scene's
-    folder."""
+    is kept as long as the photographs: for good if they are in git, else in the scene's folder."""
     in_git = SCENES[truth.name] is None
     work = base / "colmap" / f"{truth.name}-water-1" if in_git else truth.data / "colmap"
     lens = (truth.data / "sparse" / "cameras.txt").read_text().split("PINHOLE")[1].split()[2:6]
@@ -114,8 +112,7 @@ def at_true_poses(model, truth, output):
 
 def refined(scene, base, work):
     """Refines COLMAP's poses and writes the model, aligned to the truth, to `work`/aligned. Returns
-    align() of COLMAP's and of the refined poses, and refine() of the refined and of the true
-    poses."""
+    align() of COLMAP's and of the refined poses, refine() of the refined and of the true poses."""
     truth = truth_of(scene, base)
     work.mkdir(parents=True, exist_ok=True)
     raw = raw_model(truth, base)

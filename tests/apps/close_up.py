@@ -7,7 +7,7 @@ import tempfile
 
 from programs import ProgramTest, read, run
 
-# One pixel's width at the scene's depth: the median distance (0.7 m) over the focal length (305 px).
+# The width of a pixel at the scene: the median distance (0.7 m) over the focal length (305 px).
 GSD = 0.7 / 305
 # Large enough to show differences in quality, small enough to run often.
 QUICK = ("--resolution-level", "1", "--min-resolution", "200")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes in UTM coordinates: every program gives the same result as for the same scene at the
-origin."""
+"""Scenes in UTM coordinates: every program gives the same result as near the origin."""
 
 import json
 import math

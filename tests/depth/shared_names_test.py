@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Code compiled for one instruction set must not share a name with other code: the linker keeps one
-copy, and a processor without that set would meet its instructions. Arguments: nm, the object files
-of the libraries; those in *_avx2.cpp and *_avx512.cpp are compared with all others."""
+"""Code compiled for one instruction set must not share a name with other code. The linker keeps one
+copy of a shared name, and a processor without that instruction set might execute it. Arguments: nm,
+and the object files of the libraries. The objects of *_avx2.cpp and *_avx512.cpp are compared with
+all others."""
 
 import functools
 import re
@@ -11,7 +12,7 @@ import sys
 
 @functools.cache
 def shared_names(nm, path):
-    """Names that the linker merges with those of other files: weak and unique ones."""
+    """Weak and unique names, which the linker merges with the same names of other files."""
     lines = subprocess.run([nm, "--defined-only", path], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     fields = [line.split() for line in lines]
@@ -19,7 +20,7 @@ def shared_names(nm, path):
 
 
 def has_code(name):
-    """Type information, tables and references to handlers hold no instructions."""
+    """False for type information, tables and references to handlers: they hold no instructions."""
     return not name.startswith(("_ZTI", "_ZTS", "_ZTV", "DW.ref."))
 
 
