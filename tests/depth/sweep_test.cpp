@@ -214,6 +214,7 @@ TEST(SweepSearch, TriesPlanesOfAllDepthsWhereThePlaneIsNotCertain) {
       Eigen::Vector3f(0.13f, 0.07f, -1).normalized();  // parallel to no ray
   PatchMatchOptions options;
   options.certain_cost = 0.05f;  // all costs of FormulaMatcher are higher
+  options.search_pairs = 0;      // all other planes asked about are the neighbours'
   for (const bool first : {true, false})
     for (const float cost : {0.01f, 0.5f}) {
       const FormulaMatcher matcher;
@@ -241,12 +242,12 @@ TEST(SweepSearch, TriesPlanesOfAllDepthsWhereThePlaneIsNotCertain) {
     }
 }
 
-TEST(SweepSearch, TakesTheRoomOfHalfTheTrials) {
+TEST(SweepSearch, AddsNoScoresToACoarseLevelsFirstSweep) {
   const auto scores = [](float cost) {
     const FormulaMatcher matcher;
     PlaneMap map = wall();
     for (PlanePixel& pixel : map.pixels) pixel.cost = cost;
-    SweepInput sweep = input(4);
+    SweepInput sweep = input(PatchMatchOptions().coarse_pairs);
     sweep.first = true;
     return run(matcher, map, sweep);
   };
