@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Compiles through ccache where it is installed and no other launcher is set. ccache accepts
+# Compiles with ccache if it is installed and no other compiler launcher is set. ccache supports
 # precompiled headers only with these settings.
 find_program(AXIAL_CCACHE ccache)
 mark_as_advanced(AXIAL_CCACHE)

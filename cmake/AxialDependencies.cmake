@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every kept library the project stands on, as Debian 12 packages them.
+# All external libraries of the project, in the versions of Debian 12.
 find_package(Eigen3 REQUIRED)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d aruco)
 find_package(JPEG REQUIRED)  # libjpeg-turbo
@@ -11,7 +11,7 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(nanoflann REQUIRED)
 find_package(embree 3 REQUIRED)
-find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as a header alone
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as header-only library
 find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(Ceres REQUIRED)
 if(AXIAL_TESTS)

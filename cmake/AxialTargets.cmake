@@ -1,30 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Three helpers, so that every folder's CMakeLists.txt is a list of files and a list of arrows.
+# Compiler flags, precompiled headers, and the functions add_axial_library(), add_axial_app() and
+# add_axial_test(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
 
 add_library(axial_flags INTERFACE)
 target_compile_features(axial_flags INTERFACE cxx_std_20)
 target_compile_options(axial_flags INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror
-  # Same bytes whatever the optimiser contracts; see "Same input, same options" in CONTRIBUTING.md.
+  # No fused multiply-add, so that results do not depend on what the optimiser would fuse; see "Same
+  # input, same options" in CONTRIBUTING.md.
   -ffp-contract=off
-  # Nobody asks errno or floating-point traps: the same values, and square roots lose their branch.
+  # No code reads errno or uses floating-point traps. The results are the same, and square roots
+  # need no branch.
   -fno-math-errno -fno-trapping-math)
 if(AXIAL_SANITIZE)
-  # Null pointers end under AddressSanitizer anyway, and Eigen asserts alignment itself: these two
-  # checks, at every access, would be a quarter of the compile time. AddressSanitizer's checks as calls
-  # instead of code at every access take a tenth off it, more than the tests then run longer. (-O0 would take
-  # a third off, and tests of Eigen's matrices run five times as long.)
+  # The checks for null pointers and alignment are off, because they would take a quarter of the
+  # compile time: AddressSanitizer detects null pointers anyway, and Eigen asserts alignment itself.
+  # AddressSanitizer's checks are calls instead of inline code. This saves a tenth of the compile
+  # time, which is more than the tests then need in addition. (-O0 would save a third, but tests of
+  # Eigen's matrices would take five times as long.)
   target_compile_options(axial_flags INTERFACE -fsanitize=address,undefined
     -fno-sanitize=null,alignment -fno-sanitize-recover=all -fno-omit-frame-pointer
     --param=asan-instrumentation-with-call-threshold=0)
   target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# What most files include of the libraries, parsed once for all of them: a third of the compile time
-# otherwise. Files still include what they use. Those with options of their own, which the parsed
-# headers do not fit, are named with axial_source_options(). Do not add a header whose inline functions
-# instantiate templates: every file instantiates them again. nlohmann/json.hpp would cost each file
-# 0.4 s, even one that does not use it.
+# Precompiled headers: the external headers that most files include are parsed once for all files,
+# which saves a third of the compile time. Files still include the headers that they use. Files with
+# compile options of their own cannot use precompiled headers; declare them with
+# axial_source_options(). Do not add a header whose inline functions instantiate templates, because
+# every file would instantiate them again. nlohmann/json.hpp would cost each file 0.4 s, even if
+# the file does not use it.
 function(add_axial_parsed_headers name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
   add_library(${name} STATIC ${PROJECT_SOURCE_DIR}/cmake/parsed_headers.cpp)
@@ -41,9 +46,10 @@ add_axial_parsed_headers(axial_parsed
   HEADERS ${AXIAL_PARSED_HEADERS} LINK axial_flags ${AXIAL_PARSED_LIBRARIES})
 
 include(CheckLinkerFlag)
-# Tests are compiled and linked far more often than run: less optimising takes a third off the time to
-# compile one. Of the time to link it, gold takes off a half, and lld two thirds. What a test does not
-# call it need not load: opencv_imgcodecs alone brings a hundred libraries, 0.15 s at each start.
+# Tests are compiled and linked far more often than they are run. -O1 saves a third of a test's
+# compile time. The linker gold saves half of its link time, lld two thirds. --as-needed drops
+# libraries that a test does not use: opencv_imgcodecs alone loads a hundred libraries, which takes
+# 0.15 s at each start.
 add_library(axial_test_flags INTERFACE)
 target_link_libraries(axial_test_flags INTERFACE axial_flags)
 target_compile_options(axial_test_flags INTERFACE -O1)
@@ -61,7 +67,8 @@ if(AXIAL_TESTS)
     LINK axial_test_flags ${AXIAL_PARSED_LIBRARIES} GTest::gmock)
 endif()
 
-# axial_source_options(a.cpp b.cpp OPTIONS -mavx2)
+# axial_source_options(a.cpp b.cpp OPTIONS -mavx2) adds compile options to single source files,
+# which then do not use the precompiled headers.
 function(axial_source_options)
   cmake_parse_arguments(ARG "" "" "OPTIONS" ${ARGN})
   foreach(source IN LISTS ARG_UNPARSED_ARGUMENTS)
@@ -70,15 +77,15 @@ function(axial_source_options)
   endforeach()
 endfunction()
 
-# For files that instantiate the sweep for every camera: beyond its usual budget for one file, the
-# compiler would leave even Eigen's products as calls in the hottest loop.
+# For files that instantiate the sweep for all cameras. With its default limits of growth for one
+# file, the compiler would not even inline Eigen's products in the innermost loop.
 if(NOT AXIAL_SANITIZE)
   set(AXIAL_INLINE_ALL --param=inline-unit-growth=400 --param=large-function-growth=1000
     --param=max-inline-insns-single=400)
 endif()
 
-# add_axial_library(depth SOURCES a.cpp LINK scene OpenCV...) makes libs/<name> as target axial_<name>.
-# Names of our own libraries in LINK are written without the prefix.
+# add_axial_library(depth SOURCES a.cpp LINK scene opencv_core) adds libs/depth as the library
+# axial_depth. In LINK, the project's own libraries are written without the prefix axial_.
 function(axial_link target)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})
@@ -111,16 +118,17 @@ function(add_axial_app name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()
 
-# The unit tests of these folders read files and manage memory: they are built under the sanitizers. The
-# unit tests of the other folders are numeric: they are built in release.
+# The unit tests of these folders read files and manage memory, so they are built with the
+# sanitizers. The unit tests of the other folders are numeric and are built in release.
 set(AXIAL_SANITIZED_FOLDERS base io scene cloud)
 
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
-#                [BUILD release]):
-# tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", under the sanitizers
-# "sanitized/io/ply_test/...". PROGRAMS, which the test runs, are built before it. A test of LABELS unit
-# (the default) is built in its folder's build, or in the build that BUILD names (release or sanitized);
-# with AXIAL_EVERY_TEST in both. Tests of other labels are built in release alone.
+#                [BUILD release] [TIMEOUT 300])
+# adds tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", or with the sanitizers
+# "sanitized/io/ply_test/...". PROGRAMS are the programs that the test runs; they are built first. A
+# test of LABELS unit (the default) is built in the build of its folder (see above), or in the build
+# that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds. Tests with other
+# labels are only built in release.
 add_custom_target(axial_tests)
 function(add_axial_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;BUILD" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
@@ -163,7 +171,7 @@ function(add_axial_test name)
   if(ARG_PROGRAMS)
     add_dependencies(${target} ${ARG_PROGRAMS})
   endif()
-  # Listing the cases under a sanitizer on a busy machine can take longer than the default of 5 s.
+  # With a sanitizer, on a busy machine, listing the cases can take longer than the default of 5 s.
   gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The acceptance points that are too slow for tests/run.sh, each by name, into one table:
+# Measures the acceptance points that are too slow for tests/run.sh, and writes them into one table:
 #
 #   bash tests/acceptance.sh [--list] [POINT...]
 #
-# Resumable: a point measured for this very source is not measured again, and COLMAP's models are
-# kept for good. Table: build/acceptance/table.md. Exit code 1 if a point fails.
+# Without names, measures all points. A point that passed or was reported for the same source is not
+# measured again, so that an interrupted run can be resumed. COLMAP's models are never computed
+# again. The table is build/acceptance/table.md. Exit code 1 if a point fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/pipeline/steps.sh

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, builds, and runs every test under CTest. Each unit test is built once:
-# the tests of base, io, scene and cloud under AddressSanitizer and UndefinedBehaviorSanitizer
-# ("sanitized/..."), the numeric tests in the release build, beside the programs.
+# Installs missing packages, builds, and runs all tests under CTest. Each unit test is built once:
+# the tests of base, io, scene and cloud with AddressSanitizer and UndefinedBehaviorSanitizer
+# ("sanitized/..."), the numeric tests in the release build, like the programs.
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #
-# --all: every unit test in both builds. Other arguments go to ctest: tests/run.sh -R io/. One CTest
-# run covers both builds, so its summary, printed last, counts everything.
+# --all: builds every unit test in both builds. Other arguments go to ctest: tests/run.sh -R io/.
+# One CTest run covers both builds, so its summary at the end counts all tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CTEST_OUTPUT_ON_FAILURE=1

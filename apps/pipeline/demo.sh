@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# From photographs to measured point clouds, three ways: in air; behind a flat port under water with
-# --refractive; and under water as it is done today, with a camera model that calibrates itself.
+# Reconstructs point clouds from photographs in three ways, and measures each cloud against ground
+# truth: in air; under water behind a flat port, with --refractive; and under water as is common
+# today, without refraction, with a lens that COLMAP calibrates itself.
 #
 #   bash apps/pipeline/demo.sh [closeup|reef] [--full]
 #
-# Needs nothing but Debian 12 and a network to install packages from. --full: all pixels instead of
-# half of them in each direction. Results: build/demo/{air,refractive,selfcalibrated}.ply, table.json
-# and report.html. Run again after an interruption: COLMAP's models and the truth are kept.
+# Needs Debian 12, and a network connection to install packages. --full: full resolution; without
+# it, images are halved in width and height. Results:
+# build/demo/{air,refractive,selfcalibrated}.ply, table.json and report.html. Another run keeps
+# COLMAP's models and the ground truth.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source apps/pipeline/steps.sh
@@ -50,7 +52,8 @@ stage "Poses as it is done today: COLMAP calibrates a lens from the photographs 
 colmap_model "$data/water" "$work/poses-today" OPENCV "$lens,0,0,0,0" free
 align_to_truth "$work/poses-today/model" "$data/sparse" "$work/poses-today/metric"
 
-# reconstruct RUN POSES MEDIUM IMPORT-OPTIONS... -- DENSIFY-OPTIONS...
+# reconstruct RUN POSES MEDIUM IMPORT-OPTIONS... -- DENSIFY-OPTIONS...: reconstructs the photographs
+# of MEDIUM from scratch on the COLMAP model POSES, in the folder $work/RUN.
 reconstruct() {
   local run=$work/$1 poses=$2 medium=$3 import=()
   shift 3
@@ -68,8 +71,8 @@ reconstruct refractive "$work/poses/metric" water --housing "$data/housing.json"
 stage "(c) Under water, self-calibrated lens, no refraction"
 reconstruct selfcalibrated "$work/poses-today/metric" water --
 
-# evaluate RUN NAME OPTION...: the cloud against the true mesh: RUN/NAME.json, an error-coloured cloud
-# and its picture.
+# evaluate RUN NAME OPTION...: compares the cloud with the true mesh. Writes RUN/NAME.json, the
+# cloud coloured by error (NAME.ply) and a picture of it (NAME.png).
 evaluate() {
   local run=$work/$1 name=$2
   shift 2
@@ -78,8 +81,8 @@ evaluate() {
     --error-cloud "$run/$name.ply" --picture "$run/$name.png" --picture-width 900 "$@"
 }
 
-# depth_pictures RUN MEDIUM POSES: two depth maps beside the truth. Their files are numbered by
-# COLMAP's image ids, less one.
+# depth_pictures RUN MEDIUM POSES: draws two depth maps beside the truth. The number in a depth
+# map's file name is COLMAP's image id minus one.
 depth_pictures() {
   local run=$work/$1 name id
   for name in 0000 0005; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian 12 packages that building, testing and the demo need. Does nothing, and says
-# nothing, where they all are installed already.
+# Installs the Debian 12 packages that the build, the tests and the demo need. Does nothing and
+# prints nothing if all of them are installed.
 set -euo pipefail
 
 packages=(

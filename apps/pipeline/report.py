@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo's results as a table on the screen, as table.json, and as a page that needs no other file."""
+"""Writes the demo's results as a table on the screen, as table.json, and as a page of one file."""
 
 import argparse
 import base64
@@ -34,7 +34,7 @@ def load(work):
 
 
 def load_best_fit(work):
-    """Run (c) again, without the part of its error that is a motion of the whole cloud."""
+    """The results of run (c) after ICP moved the cloud rigidly onto the true surface."""
     key, _, mark, color, _ = RUNS[2]
     return {"run": key + "_moved", "title": "The same, moved onto the truth by ICP", "mark": mark,
             "color": color, **numbers(work / key, "evaluation-moved.json")}
@@ -79,14 +79,14 @@ def html_table(rows):
 
 
 def nice_step(length, wanted):
-    """1, 2 or 5 times a power of ten, so that about `wanted` steps make up `length`."""
+    """1, 2 or 5 times a power of ten, so that at most `wanted` steps make up `length`."""
     raw = length / wanted
     power = 10 ** math.floor(math.log10(raw))
     return next(m * power for m in (1, 2, 5, 10) if m * power >= raw)
 
 
 def histogram_svg(rows, width=960, height=320):
-    """The share of each cloud's points by distance from the true surface, as lines over one axis."""
+    """The distances of each cloud's points from the true surface as histograms on common axes."""
     left, right, top, bottom = 56, 16, 16, 46
     upper = rows[0]["histogram"]["upper"]
     shares = []

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Steps that the demo and the acceptance tests share; to be sourced. They expect $bin, the folder of
-# the programs, and stop the script when something fails.
+# Steps that the demo and the acceptance tests share. Scripts source this file. The steps expect the
+# folder of the programs in $bin, and end the script if something fails.
 
 started=$SECONDS
 
-# The headline of a stage, with the time since the start.
+# Prints the headline of a stage, with the time since the start.
 stage() { printf '\n[%02d:%02d] %s\n' $(((SECONDS - started) / 60)) $(((SECONDS - started) % 60)) "$*"; }
 
 die() {
@@ -12,7 +12,8 @@ die() {
   exit 1
 }
 
-# logged FILE COMMAND...: the output goes to FILE, and to the screen if the command fails.
+# logged FILE COMMAND...: writes the command's output to FILE; if the command fails, prints the last
+# 20 lines and ends the script.
 logged() {
   local log=$1
   shift
@@ -30,8 +31,8 @@ build_programs() {
     EvaluateReconstruction AlignModel
 }
 
-# make_truth SCENE FOLDER: what data/synthetic/SCENE leaves out of git, made anew from its seed.
-# Does nothing if this very simulator made it before.
+# make_truth SCENE FOLDER: writes the ground truth of data/synthetic/SCENE, which is not in git,
+# simulated again from its seed. Does nothing if the same SimulateUnderwater binary wrote it before.
 make_truth() {
   local made_by
   made_by=$(sha1sum <"$bin/SimulateUnderwater")
@@ -40,14 +41,16 @@ make_truth() {
   echo "$made_by" >"$2/made-by"
 }
 
-# "fx,fy,cx,cy" of the one PINHOLE camera of a text model.
+# pinhole_parameters MODEL: prints "fx,fy,cx,cy" of the only PINHOLE camera of a text model.
 pinhole_parameters() { awk '$2 == "PINHOLE" { print $5 "," $6 "," $7 "," $8 }' "$1/cameras.txt"; }
 
+# registered_images MODEL: prints the number of images in a binary model.
 registered_images() { od -An -tu8 -N8 "$1/images.bin" | tr -d ' '; }
 
-# colmap_model IMAGES WORK MODEL PARAMETERS fixed|free: poses and sparse points from photographs, one
-# camera for all of them, its intrinsics as given or only started from there. The model with the most
-# images becomes WORK/model. Does nothing if it is there: COLMAP gives another one each time.
+# colmap_model IMAGES WORK MODEL PARAMETERS fixed|free: poses and sparse points from photographs.
+# All photographs share one camera of the type MODEL. Its intrinsics stay at PARAMETERS (fixed) or
+# start there (free). The model with the most images becomes WORK/model. Does nothing if WORK/model
+# exists, because COLMAP gives a different model in each run.
 colmap_model() {
   local images=$1 work=$2 model=$3 parameters=$4 refine=1
   [[ -f $work/model/images.bin ]] && { echo "  (kept from an earlier run: $work/model)"; return; }
@@ -77,11 +80,11 @@ colmap_model() {
   echo "  $most images registered"
 }
 
-# Brings the COLMAP model $1 to metres by the true camera centres of the model $2, as $3.
+# align_to_truth MODEL TRUTH OUT: writes MODEL to OUT, aligned to the true camera centres in metres.
 align_to_truth() { "$bin/AlignModel" -i "$1" --reference "$2" -o "$3"; }
 
-# densify FOLDER OPTION...: FOLDER/scene.mvs to FOLDER/scene_dense.ply; the seconds it took go to
-# FOLDER/seconds.
+# densify FOLDER OPTION...: makes FOLDER/scene_dense.ply from FOLDER/scene.mvs. Writes the elapsed
+# seconds to FOLDER/seconds.
 densify() {
   local folder=$1 begin=$EPOCHREALTIME
   shift

@@ -27,7 +27,8 @@ float confidence_at(const DepthMap& map, int y, int x) {
   return map.confidence.empty() ? 1.0f : map.confidence(y, x);
 }
 
-// From one camera frame to another. Composed in double: poses may lie far from the origin.
+// The motion from one camera frame to another. It is computed in double, because poses may lie far
+// from the origin.
 struct Motion {
   Eigen::Matrix3f rotation;
   Eigen::Vector3f translation;
@@ -56,11 +57,11 @@ std::vector<Ray> rays_of(const DepthMap& map) {
   return rays;
 }
 
-// What one neighbour sees, on the reference's pixels.
+// The depth that one neighbour gives to a pixel of the reference.
 struct Splat {
-  float depth = 0;  // lambda on the reference's ray; 0: nothing
+  float depth = 0;  // lambda on the reference's ray; 0: none
   float confidence = 0;
-  float offset2 = 0;  // squared distance of the projected point to the pixel
+  float offset2 = 0;  // squared distance of the projected point from the pixel [px^2]
 };
 
 struct Surface {
@@ -69,9 +70,10 @@ struct Surface {
   float confidence;
 };
 
-// Where the pixel's ray meets the surface's tangent plane. Without that, a splat next to the
-// projected point would carry the depth of a place up to a pixel and a half away, and the z-buffer
-// would always prefer the nearer side of a slope.
+// The depth at which the pixel's ray meets the surface's tangent plane. The depth of the point
+// itself would be the depth of a place up to one and a half pixels away, and the z-buffer would
+// always prefer the nearer side of a slope. Without a normal, or at grazing incidence, it is the
+// point's position along the ray.
 float depth_on(const Ray& ray, const Surface& surface) {
   constexpr float kGrazing = 0.1f;
   const Eigen::Vector3f to_point = surface.point - ray.origin;
@@ -80,7 +82,8 @@ float depth_on(const Ray& ray, const Surface& surface) {
   return to_point.dot(surface.normal) / slope;
 }
 
-// The nearer surface hides the farther; of the same surface the closest sample counts.
+// The z-buffer test: of two surfaces the nearer one is kept; of two samples of the same surface,
+// the sample whose projection is closer to the pixel is kept.
 bool replaces(const Splat& candidate, const Splat& current, float same_surface) {
   if (!(current.depth > 0)) return true;
   if (std::abs(candidate.depth - current.depth) > same_surface * current.depth) {
@@ -97,7 +100,7 @@ class Canvas {
   const Splat& at(std::size_t pixel) const { return splats_[pixel]; }
   Splat& at(std::size_t pixel) { return splats_[pixel]; }
 
-  // Writes to the 4 pixels around the projection.
+  // Draws the surface into the 4 pixels around its projection.
   void draw(const Surface& surface, const Eigen::Vector2f& projection) {
     const float left = std::floor(projection.x()), top = std::floor(projection.y());
     if (!(left >= -1 && top >= -1 && left < static_cast<float>(size_.width) &&
@@ -128,7 +131,8 @@ class Canvas {
   std::vector<Splat> splats_;
 };
 
-// What the neighbour sees in its row y, in the reference's frame: visit(surface).
+// Calls visit(surface) for each valid pixel in row y of the neighbour, with the surface in the
+// reference's frame.
 template <class Visit>
 void each_surface(const DepthMap& neighbour, int y, const Motion& motion,
                   std::span<const Ray> rays_of_row, Visit&& visit) {
@@ -145,7 +149,8 @@ void each_surface(const DepthMap& neighbour, int y, const Motion& motion,
   }
 }
 
-// Row by row, so that neither camera's type has to know of the other's.
+// Alternates between the two cameras row by row. So std::visit is not needed for pairs of camera
+// types.
 void draw_neighbour(const DepthMap& neighbour, const DepthMap& reference, Canvas& canvas) {
   const Motion motion(neighbour.pose, reference.pose);
   const auto from = make_camera<float>(neighbour.camera), to = make_camera<float>(reference.camera);
@@ -168,8 +173,9 @@ void draw_neighbour(const DepthMap& neighbour, const DepthMap& reference, Canvas
   }
 }
 
-// Where the neighbour sees through a point of the reference, what contradicts the point is the
-// neighbour's pixel that looks at it: its confidence replaces that of what was splatted behind.
+// Where the neighbour's surface lies behind a point of the reference, the neighbour sees through
+// the point. The observation that contradicts the point is then the neighbour's pixel onto which
+// the point projects. The confidence of this pixel replaces the confidence of the splat.
 void weigh_contradictions(const DepthMap& neighbour, const DepthMap& reference,
                           const std::vector<Ray>& rays, float same_surface, Canvas& canvas) {
   const Motion motion(reference.pose, neighbour.pose);
@@ -193,7 +199,7 @@ void weigh_contradictions(const DepthMap& neighbour, const DepthMap& reference,
       make_camera<float>(neighbour.camera));
 }
 
-// Votes on one pixel.
+// The sums of the neighbours' weights at one pixel of the reference.
 struct Votes {
   float agreement, contradiction = 0, weighted_depth;
   int agreeing = 0, disagreeing = 0;

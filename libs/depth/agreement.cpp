@@ -9,16 +9,16 @@
 namespace axial::depth {
 namespace {
 
-// A cell with fewer points has no median to speak of.
+// Cells with fewer points are ignored, because their median is not reliable.
 constexpr std::size_t kLeastInCell = 8;
 constexpr double kConsistentPixels = 1;
-// One neighbour alone, with a wrong depth there, would make a right pixel count as inconsistent.
+// With a single neighbour, a wrong depth of the neighbour would make a correct pixel inconsistent.
 constexpr int kLeastNeighbours = 2;
 
 using Ray = refractive::AxialRay<double>;
 using Pixel = Eigen::Vector2d;
 
-// A map with its camera, asked point by point.
+// A map with its camera: projections, rays and values at the nearest pixel.
 class SeenMap {
  public:
   explicit SeenMap(const DepthMap& map)
@@ -27,7 +27,7 @@ class SeenMap {
   int width() const { return size_.width; }
   int height() const { return size_.height; }
 
-  // Whether the image shows `x` [world], and where.
+  // True if `x` [world frame] projects into the image; sets `pixel` to the projection.
   bool shows(const Eigen::Vector3d& x, Pixel& pixel) const {
     bool visible = false;
     const Eigen::Vector3d in_camera = map_.pose.to_camera(x);
@@ -46,7 +46,7 @@ class SeenMap {
   bool has_confidence() const { return !map_.confidence.empty(); }
   float confidence_at(const Pixel& pixel) const { return at(map_.confidence, pixel); }
 
-  // In the world.
+  // The ray of a pixel in the world frame.
   Ray ray(const Pixel& pixel) const {
     const Ray in_camera =
         std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
@@ -72,7 +72,8 @@ int cell_of(const SeenMap& map, const Pixel& pixel) {
   return along(pixel.y(), map.height()) * kCellsAcross + along(pixel.x(), map.width());
 }
 
-// How far apart the first neighbour that shows both sees two points; below 0 if none does.
+// The distance [px] between the images of two points in the first neighbour that shows both; -1 if
+// no neighbour does.
 double pixels_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       std::span<const SeenMap> neighbours) {
   Pixel seen_a, seen_b;
@@ -81,7 +82,8 @@ double pixels_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return -1;
 }
 
-// Asks the neighbours for the surface point `x` of a pixel of `map`.
+// Tests whether the neighbours' depths are consistent with the surface point `x` of a pixel of
+// `map`, and counts the result.
 void ask(const SeenMap& map, const Pixel& pixel, const Eigen::Vector3d& x,
          std::span<const SeenMap> neighbours, MapAgreement& result) {
   int asked = 0;
@@ -127,7 +129,7 @@ double median(std::vector<double>& values) {
 
 struct CellMedian {
   double size;   // |median|
-  double error;  // standard error of it, for a normal distribution
+  double error;  // standard error of the median, for a normal distribution
 };
 
 CellMedian median_of_cell(std::vector<double>& values) {

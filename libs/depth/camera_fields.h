@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera or a projector as plain numbers, to be dealt to lanes.
+// Represents a camera or a projector as an array of numbers, the form in which SIMD lanes take it.
 #pragma once
 
 #include <type_traits>
@@ -18,11 +18,11 @@ concept HasFields = requires(Fielded fielded) {
   fielded.each_field([](auto&) {});
 };
 
-// A camera that can be dealt to lanes, number by number.
+// A camera type that the SIMD code supports.
 template <class Camera>
 concept InLanes = HasFields<Camera> || std::is_same_v<Camera, AnyCamera<float>>;
 
-// One for each camera that lanes know.
+// The CameraKind of each camera type that the SIMD code supports.
 consteval lanes::CameraKind lane_kind(const refractive::PinholeCamera<float>*) {
   return lanes::CameraKind::pinhole;
 }
@@ -44,6 +44,8 @@ consteval lanes::CameraKind lane_kind(const refractive::LensDomePortCamera<float
 template <HasFields Camera>
 inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));
 
+// All numbers of a camera or projector in the order of each_field(). Precondition: at most
+// lanes::kMaxCameraFields floats.
 template <HasFields Fielded>
 lanes::CameraFields fields_of(Fielded from) {
   lanes::CameraFields fields;
@@ -57,7 +59,7 @@ lanes::CameraFields fields_of(Fielded from) {
   return fields;
 }
 
-// visit(camera) with the camera of its own kind.
+// Calls visit(camera) with the concrete camera type, also if `camera` is an AnyCamera.
 template <InLanes Camera, class Visit>
 auto visit_kind(const Camera& camera, Visit&& visit) {
   if constexpr (HasFields<Camera>)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forward-backward error of a point and what it costs (the paper's eq. 7), for floats and for
-// packs. Reference camera's frame.
+// The forward-backward error of a point and its term in the cost (the paper's eq. 7). T is float or
+// a SIMD pack. Points and vectors are in the reference camera's frame.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,11 +10,16 @@
 
 namespace axial::depth {
 
-// How far from its pixel the reference camera sees the point of `ray` at distance `depth` after it
-// has moved by `shift` [px], to first order in the shift across the ray: with F = do/dp + lambda
-// dd/dp at the moved point's lambda, F e + mu d = shift. Against projecting the point it saves the
-// projection; its relative error is about half the result in focal lengths, a fifth of a percent
-// for the 3 px that count. Not finite where rays do not spread.
+// The distance [px] by which the image of a point moves in the reference camera if the point moves
+// by `shift` [m]. Before, the point is at distance `depth` [m] on `ray`, the ray of a pixel;
+// `jacobian` has the ray's derivatives by the pixel. The result is |e| with
+//
+//     F e + mu d = shift,    F = do/dp + lambda dd/dp,    lambda = depth + d . shift,
+//
+// which is the projection to first order in the shift across the ray, but saves the time of a
+// projection. The relative error is about half the result divided by the focal length: at a focal
+// length of 800 px, 0.2 % for the 3 px at which the term of the cost reaches its limit. The result
+// is not finite where neighbouring rays do not diverge.
 template <class T>
 T shift_in_pixels(const refractive::AxialRay<T>& ray,
                   const refractive::AxialRayJacobian<T>& jacobian, const T& depth,
@@ -31,7 +36,7 @@ T shift_in_pixels(const refractive::AxialRay<T>& ray,
   return sqrt(u * u + v * v) / area;
 }
 
-// The term of an error e [px] of forward and backward projection.
+// The term sqrt(e (e + 2)) of a forward-backward error e [px], at most `limit`.
 template <class T>
 T inconsistency_term(const T& error, const T& limit) {
   using refractive::select;

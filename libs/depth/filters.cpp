@@ -7,7 +7,7 @@
 namespace axial::depth {
 namespace {
 
-// The map with its own copies of the images that filters change.
+// A copy of the map with its own depths, normals and confidences.
 DepthMap editable(const DepthMap& map) {
   DepthMap copy = map;
   copy.depth = map.depth.clone();
@@ -22,7 +22,7 @@ void clear_pixel(DepthMap& map, int y, int x) {
   if (!map.confidence.empty()) map.confidence(y, x) = 0;
 }
 
-// Pixels of the segment that contains `seed`; marks them in `seen`.
+// Sets `segment` to the pixels of the segment that contains `seed`, and marks them in `seen`.
 void collect_segment(const DepthMap& map, cv::Point seed, float max_difference, cv::Mat1b& seen,
                      std::vector<cv::Point>& segment) {
   segment.assign(1, seed);
@@ -34,8 +34,8 @@ void collect_segment(const DepthMap& map, cv::Point seed, float max_difference, 
       const cv::Point q = p + step;
       if (q.x < 0 || q.y < 0 || q.x >= map.width() || q.y >= map.height() || seen(q)) continue;
       const float other = map.depth(q);
-      // Relative to the nearer one, so that the relation is symmetric and segments do not depend
-      // on where they are entered.
+      // Relative to the smaller depth. So the test is symmetric, and a segment does not depend on
+      // its first pixel.
       if (!(other > 0) || std::abs(other - depth) >= max_difference * std::min(other, depth)) {
         continue;
       }
@@ -45,7 +45,7 @@ void collect_segment(const DepthMap& map, cv::Point seed, float max_difference, 
   }
 }
 
-// One row or column of a map, addressed along it.
+// One row or column of a map; pixels are addressed by their index along it.
 struct Line {
   DepthMap& map;
   const cv::Mat1b& mask;
@@ -57,7 +57,7 @@ struct Line {
   bool masked(int i) const { return !mask.empty() && mask(at(i)); }
 };
 
-// Fills the invalid pixels strictly between `begin` and `end`, which are valid.
+// Fills the invalid pixels between the valid pixels `begin` and `end`, except for masked ones.
 void fill_run(Line& line, int begin, int end) {
   DepthMap& map = line.map;
   const cv::Point a = line.at(begin), b = line.at(end);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clean-up of finished depth maps (OPENMVS_FACTS 6.6). Pure functions: map in, map out (its images
-// are new, what does not change is shared). An empty confidence counts as 1 everywhere.
+// Filters for finished depth maps: removal of small segments, filling of small gaps, and adjustment
+// to the depth maps of neighbouring views. All functions return a new map and leave their arguments
+// unchanged. The result has its own depths, normals and confidences. Maps may have no normals or no
+// confidences.
 #pragma once
 
 #include <span>
@@ -10,37 +12,55 @@
 namespace axial::depth {
 
 struct SpeckleOptions {
-  float max_difference = 0.007f;  // relative depth step within a segment
-  int min_pixels = 100;           // smaller segments are cleared
+  float max_difference = 0.007f;  // relative depth step between pixels of a segment
+  int min_pixels = 100;           // segments with fewer pixels are cleared
 };
 
-// Clears 4-connected segments of similar depth that are too small.
+// Clears the depth, normal and confidence of small segments. A segment is a set of 4-connected
+// pixels in which the depths of neighbours differ by less than max_difference, relative to the
+// smaller depth.
 DepthMap remove_speckles(const DepthMap& map, const SpeckleOptions& options = {});
 
 struct GapOptions {
   int max_gap = 7;                // pixels
-  float max_difference = 0.025f;  // relative, between the ends of the gap
+  float max_difference = 0.025f;  // of the two ends' depths, relative to the smaller one
 };
 
-// Fills short runs of invalid pixels, first along rows, then along columns: inverse depth linearly
-// (a plane stays a plane), normals linearly and renormalised, confidence the lower of the two ends.
-// Pixels with mask != 0 stay invalid (`mask` empty: none).
+// Fills runs of at most max_gap invalid pixels between two valid pixels of similar depth, first
+// along rows, then along columns. Inverse depth is interpolated linearly, so that a plane is
+// continued as a plane. Normals are interpolated linearly and normalised. Confidence is the smaller
+// one of the two ends. Pixels with mask != 0 stay invalid. Precondition: `mask` is empty (no such
+// pixels) or has the size of the map.
 DepthMap fill_gaps(const DepthMap& map, const GapOptions& options = {},
                    const cv::Mat1b& mask = cv::Mat1b());
 
 struct AdjustOptions {
-  float max_difference = 0.012f;   // relative depth at which two maps agree
+  float max_difference = 0.012f;   // relative difference of depth below which two maps agree
   int min_agreeing = 1;            // neighbours that must agree
   int min_seeing = 2;              // neighbours that must agree or disagree; capped by their number
-  std::size_t max_neighbours = 8;  // the first ones count
+  std::size_t max_neighbours = 8;  // only the first ones are used
 };
 
-// Splats each neighbour's points into the reference by exact projection, then replaces every depth
-// by its confidence-weighted mean with the depths that agree, and its confidence by (agreement -
-// contradiction). Clears pixels with less agreement than contradiction or outside [min_depth,
-// max_depth] (where max_depth > 0). Depths are compared as lambda on the reference's own rays: a
-// splat's tangent plane is met with the ray of each of the 4 pixels around its projection.
-// Pass unfiltered neighbours and swap results in after all maps are done. Error for empty maps.
+// Adjusts the depths of `reference` to the depth maps of neighbouring views.
+//
+// * Each neighbour's points are projected exactly into the reference. A point gives a depth to each
+//   of the 4 pixels around its projection: lambda (eq. 4) at which the pixel's ray meets the
+//   point's tangent plane. A z-buffer keeps one depth per pixel and neighbour.
+// * A neighbour agrees with a pixel if its depth there differs by less than max_difference.
+//   Otherwise it contradicts. Each neighbour has the weight of its confidence (1 without
+//   confidences). If the neighbour sees through the pixel's point, the weight is the confidence of
+//   the neighbour's pixel onto which the point projects.
+// * The new depth is the weighted mean of the reference's depth and of the depths that agree. The
+//   new confidence is the reference's confidence, plus the weights that agree, minus those that
+//   contradict.
+// * A pixel is cleared if its new confidence is not positive, if too few neighbours agree
+//   (min_agreeing) or have a depth there (min_seeing), or if the new depth is outside [min_depth,
+//   max_depth] of `reference` (tested only if max_depth > 0). Without neighbours the result is
+//   empty.
+//
+// To filter all maps of a scene, pass the unfiltered maps and replace them after the last call.
+// Throws an Error for a map that is empty, for a map whose camera, normals or confidences differ in
+// size from its depths, and for a `reference` whose depths are a part of a larger cv::Mat.
 DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const DepthMap> neighbours,
                                 const AdjustOptions& options = {});
 

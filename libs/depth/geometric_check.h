@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forward-backward consistency of a hypothesis with a source view's own depth map: the paper's eq.
-// (7) with exact projection in place of the virtual image.
+// Forward-backward consistency of a hypothesis with the depth map of a source view: the paper's eq.
+// (7), with exact projections in place of virtual images.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,10 @@
 
 namespace axial::depth {
 
-// Depth of the map at a sub-pixel position, bilinear among those of the four corners that lie
-// within `tolerance` (relative) of `expected`; 0 if none does or the position is outside.
+// The depth of a map at a sub-pixel position: the mean, with bilinear weights, of those depths at
+// the four surrounding pixels that differ from `expected` by less than `tolerance` (relative).
+// Returns 0 if no depth does or if the position is outside the map. Precondition: the map is at
+// least 2x2 pixels.
 inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float expected,
                         float tolerance) {
   if (!(at.x() >= 0 && at.y() >= 0 && at.x() <= static_cast<float>(depth.cols - 1) &&
@@ -38,9 +40,11 @@ inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float
   return weight_sum > 0 ? sum / weight_sum : 0;
 }
 
-// sqrt(e (e + 2)) of the forward-backward error e in pixels, at most `limit`; `limit` where no
-// consistent depth is stored at the point's image. `in_source`: the hypothesis' point in the source
-// view's frame, `seen_at`: its image there.
+// The term sqrt(e (e + 2)) of the forward-backward error e [px], at most `limit`. The result is
+// `limit` if `source_depth` has no depth within kSameSurface of the hypothesis' point. `ray`,
+// `jacobian`, `depth`: the reference pixel's ray, its derivatives, and the depth of the hypothesis.
+// `in_source`: the point of the hypothesis in the source camera's frame; `seen_at`: its image
+// there.
 template <class Camera>
 float inconsistency(const refractive::AxialRay<float>& ray,
                     const refractive::AxialRayJacobian<float>& jacobian, float depth,

@@ -66,7 +66,7 @@ void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std:
   for (int y = 0; y < depth.rows; ++y, to += depth.cols) std::copy_n(depth[y], depth.cols, to);
 }
 
-// Precondition: all `sources` are of one kind.
+// Precondition: all `sources` have the same kind of camera.
 template <class Camera>
 std::unique_ptr<lanes::SceneTables> make_tables(Sources<Camera> sources,
                                                 const PatchMatchOptions& options) {
@@ -75,7 +75,7 @@ std::unique_ptr<lanes::SceneTables> make_tables(Sources<Camera> sources,
   tables->smoothness = options.smoothness;
   tables->geometric_weight = options.geometric_weight;
   tables->geometric_limit = options.geometric_limit;
-  // At once: growing step by step would hold everything twice.
+  // Reserved at once, because a growing vector would need twice the memory.
   std::size_t pixels = 0;
   for (const auto* source : sources)
     pixels += static_cast<std::size_t>(source->image->width()) *
@@ -93,7 +93,7 @@ std::unique_ptr<lanes::SceneTables> make_tables(Sources<Camera> sources,
   return tables;
 }
 
-// The numbers of the views by kind of camera.
+// The indices of the views, grouped by kind of camera.
 template <class Camera>
 std::map<lanes::CameraKind, std::vector<std::size_t>> views_by_kind(
     std::span<const SourceView<Camera>> sources) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matcher in SIMD lanes: exact projection and affine warp, for pinholes and both kinds of port,
-// with straight and with distorted lenses. Only source views share lanes, and only those of one
-// kind of camera: the reference view, of which lanes get nothing but rays, may be of another.
+// The matcher with SIMD: exact projection and affine warp, for pinholes, flat ports and dome ports,
+// each with undistorted or distorted lenses. The source views of one register have the same kind of
+// camera. The reference view may have another kind, because the SIMD code only gets its rays.
 #pragma once
 
 #include <array>
@@ -20,8 +20,10 @@ namespace axial::depth {
 template <InLanes Camera>
 class LaneMatcher {
  public:
-  // Images and depth maps of the sources, at most kMaxSources, are copied. Error if those of one
-  // kind of camera have 2^31 pixels or more together.
+  // Copies the images and depth maps of the sources. `image`, the reference image, must outlive the
+  // matcher. Throws an Error if a side of a source image is longer than lanes::kLargestSide, or if
+  // the images of one Group have 2^31 pixels or more together. Preconditions: at most kMaxSources
+  // sources; `set` is available.
   LaneMatcher(const cv::Mat1b& image, Camera camera, std::span<const SourceView<Camera>> sources,
               const PatchMatchOptions& options,
               lanes::InstructionSet set = lanes::fastest_instruction_set());
@@ -30,7 +32,7 @@ class LaneMatcher {
   const PixelSampler<Camera>& pixels() const { return pixels_; }
   void rays(int x, int y, RayTile& tile) const { caster_.rays(x, y, tile); }
 
-  // As Matcher::score. Precondition: at most lanes::kLanes planes.
+  // See Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<ViewScore> scores) const;
@@ -42,6 +44,7 @@ class LaneMatcher {
     std::unique_ptr<const lanes::Scorer> scorer;
   };
 
+  // The group of a source view and its index in this group.
   struct Place {
     std::uint8_t group, lane;
   };

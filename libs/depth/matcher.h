@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores plane hypotheses of one reference view against its source views, for any camera and any
-// warp, one pair at a time. LaneMatcher does the same for a register of them; this one is its
-// reference and serves the paper's own methods.
+// warp. Scores one pair of plane and view at a time. LaneMatcher scores several pairs at once in
+// SIMD registers. Matcher is the reference for its tests, and runs the paper's own methods.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,23 +27,28 @@ struct SourceView {
   Camera camera;
   RelativePose from_reference;
   const QuadImage* image = nullptr;
-  const cv::Mat1f* depth = nullptr;  // of the source view itself; null: photometric only
+  const cv::Mat1f* depth = nullptr;  // the source view's depth map; null: photometric cost only
 };
 
-// One of the hypotheses that are asked about in one of the source views.
+// Indices of a plane hypothesis and of a source view to score it in.
 struct ScorePair {
   std::uint8_t plane, view;
 };
 
 struct ViewScore {
-  float cost;        // photometric, geometric and prior, 0 to kMaxCost
-  float motion;      // of the patch's centre with depth [px/m]; 0 if unseen
-  float smoothness;  // the hypothesis' factor (smoothness.h), the same in all views
+  // 1 - ZNCC (kOutsideCost without a correlation), plus the geometric term, blended with the prior;
+  // 0 to kMaxCost.
+  float cost;
+  // Motion of the patch's centre in the source view per metre of depth [px/m]; 0: not visible.
+  float motion;
+  float smoothness;  // factor of the cost (smoothness.h); the same in all views of a plane
 };
 
 template <class Camera, class Warp>
 class Matcher {
  public:
+  // The images of the reference view and of the sources, and the sources' depth maps, must outlive
+  // the matcher.
   Matcher(const cv::Mat1b& image, Camera camera, std::vector<SourceView<Camera>> sources,
           const PatchMatchOptions& options)
       : pixels_(image, camera, options),
@@ -56,8 +61,9 @@ class Matcher {
   const PixelSampler<Camera>& pixels() const { return pixels_; }
   void rays(int x, int y, RayTile& tile) const { caster_.rays(x, y, tile); }
 
-  // scores[i]: of pairs[i], planes[pairs[i].plane] in source view pairs[i].view. `neighbours`: the
-  // surface around the pixel, for the smoothness factors.
+  // Sets scores[i] to the score of planes[pairs[i].plane] in the source view pairs[i].view. The
+  // smoothness factors compare the planes with `neighbours`, the surface at neighbouring pixels.
+  // Preconditions: all indices are valid; `scores` has at least the size of `pairs`.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<ViewScore> scores) const {

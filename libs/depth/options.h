@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the matching stage. Lengths in pixels of the level that is worked on, angles in
-// radians.
+// Options of the matching stage. Lengths are in pixels of the resolution level that is matched,
+// angles in radians.
 #pragma once
 
 #include <numbers>
@@ -9,10 +9,10 @@
 
 namespace axial::depth {
 
-// How a patch is carried from the reference view into a source view.
+// How the matching window is mapped from the reference view to a source view.
 enum class Warp {
-  affine,     // the exact centre and the exact first derivative (DESIGN section 3)
-  homography  // the paper's virtual-camera homography, eqs. (1)-(3), with rounded lookup
+  affine,     // exact projection of the centre, exact first derivative (docs/refraction.md)
+  homography  // the paper's homography between virtual cameras (eqs. 1-3), at rounded pixels
 };
 
 inline constexpr float radians(float degrees) {
@@ -23,46 +23,54 @@ struct PatchMatchOptions {
   Warp warp = Warp::affine;
   int sub_resolution_levels = 1;  // coarser levels before the working resolution
   int iterations = 2;             // sweeps per level
-  int coarsest_side = 64;         // no level gets a shorter side below this
+  int coarsest_side = 64;         // a coarser level is used if its shorter side is at least this
 
-  float sigma_color = 0.1f;  // bilateral weight: intensity, in [0, 1]
-  float sigma_space = 3.0f;  // and distance [px]
-  // Weighted sum of squared deviations below which a patch is textureless: a standard deviation of
-  // half a grey level. OpenMVS's 4e-4, three times the deviation, gives up nearly three
-  // quarters of sand whose texture is as strong as the camera's noise. Depths of weak texture that
-  // the pixels around them do not confirm are removed afterwards (weak_texture.h).
+  float sigma_color = 0.1f;  // of the bilateral weight, in intensities from 0 to 1
+  float sigma_space = 3.0f;  // of the bilateral weight [px]
+  // A patch is textureless if its ReferencePatch::texture is below this value, which is a standard
+  // deviation of half a grey level. OpenMVS's value of 4e-4 is three times that deviation; with it,
+  // nearly three quarters of the pixels are lost on sand whose texture is as strong as the camera's
+  // noise. Depths of weak texture that are not confirmed by the pixels around them are removed
+  // later (weak_texture.h).
   float min_texture = 3.6e-5f;
 
   SmoothnessOptions smoothness;
 
-  // Texture, as for `min_texture`, at which the pull towards the coarser level's depth (in a
-  // geometric pass: towards the depth so far) has fallen to 1/e. 0.002 is a standard deviation of 3
-  // grey levels, two or three times a camera's noise. OpenMVS's 0.02 holds ground of low contrast,
-  // too, to the coarser level's error (docs/performance.md, "Coarser levels").
+  // The cost of a plane is blended with the difference between its depth and a prior depth. The
+  // prior is the depth of the coarser level; in a geometric pass it is the current depth, for
+  // textureless pixels only. The prior's weight is exp(-texture / prior_texture). The value 0.002
+  // is a standard deviation of 3 grey levels, two or three times a camera's noise. With OpenMVS's
+  // value of 0.02, ground of low contrast takes over the errors of the coarser level
+  // (docs/performance.md, "Coarser levels").
   float prior_texture = 0.002f;
 
-  // Pairs of trials on either side of a pixel's best plane. Few are enough where the plane is good
-  // already; docs/performance.md counts what they cost, "How much there is to do".
-  int first_pairs = 4;                   // in a level's first sweep
-  int later_pairs = 2;                   // after it, also with geometric consistency
+  // Trials are planes near a pixel's best plane. They come in pairs, one on either side of it. If
+  // the plane is good already, few trials are enough (their number and cost: docs/performance.md,
+  // "How much there is to do").
+  int coarse_pairs = 4;                  // in the first sweep of a coarser level
+  int first_pairs = 2;                   // in the first sweep of the working resolution
+  int later_pairs = 2;                   // in later sweeps, and in geometric passes but the last
   int last_pairs = 0;                    // in the last geometric pass, which only propagates
-  float refinement_shrink = 0.65f;       // of the ranges, from pair to pair
-  int restart_trials = 3;                // random planes of a hopeless pixel
-  float refinement_pixels = 2.0f;        // depth trial: largest motion in a source view
-  float refinement_angle = radians(28);  // normal trial
+  float refinement_shrink = 0.65f;       // factor of the ranges from one pair to the next
+  int restart_trials = 3;                // random planes for a pixel whose cost is bad
+  float refinement_pixels = 2.0f;        // range of depth trials: motion in a source view [px]
+  float refinement_angle = radians(28);  // range of normal trials
+  // The ranges are a quarter for costs up to good_cost and a half for costs up to fair_cost. At
+  // bad_cost or above, the pixel tries random planes first.
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
-  // Random planes across the ray, at most 5, that a pixel tries in a level's first sweep in place
-  // of half the trials, if its best plane so far costs more than `certain_cost`. A thin structure
-  // needs them: its pixels see the background at a fair cost, and a coarser level does not resolve
-  // it.
+  // Number of random planes perpendicular to the ray, at most 5, that a pixel tries in a level's
+  // first sweep if its best plane so far costs more than `certain_cost`. Such a pixel has
+  // `search_pairs` pairs of trials. Thin structures need the random planes: their pixels match the
+  // background at a fair cost, and the coarser level does not resolve them.
   int search_planes = 4;
+  int search_pairs = 2;
   float certain_cost = 0.15f;
 
-  float keep_cost = 1.2f;  // hypotheses at or above are cleared
+  float keep_cost = 1.2f;  // hypotheses with this cost or more are removed
 
-  float geometric_weight = 0.25f;
-  float geometric_limit = 4.0f;
+  float geometric_weight = 0.25f;  // of the geometric-consistency term (eq. 7) in the cost
+  float geometric_limit = 4.0f;    // largest value of that term
 };
 
 }  // namespace axial::depth

@@ -9,59 +9,40 @@
 #include "refractive/scalar.h"
 
 namespace axial::depth {
+
+// The sums of ZNCC with weights of their own: the reference patch's weights times the texels'
+// shares (0 to 1, kLeastWeight's comment). With the share s, the patch's weight w and deviation
+// w d, and the source's grey level v, less any constant:
+template <class T>
+struct PartSums {
+  T weights = T(0);           // s w
+  T reference = T(0);         // s w d
+  T reference_square = T(0);  // s w d^2
+  T mean = T(0);              // s w v
+  T square = T(0);            // s w v^2
+  T cross = T(0);             // s w d v
+};
+
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// How much a texel at pixel (x, y) counts, 0 to 1 (kLeastWeight's comment); 0 if x or y is not a
-// number. `right`, `bottom`: the image's last column and row.
+// In [-1, 1], or kNoCorrelation.
 template <class T>
-T share_inside(const T& x, const T& y, const T& right, const T& bottom) {
+T part_correlation(const PartSums<T>& sums) {
+  using refractive::greater;
   using refractive::lesser;
   using refractive::select;
-  const auto inside = x > T(0) && y > T(0) && x < right && y < bottom;
-  const T least = lesser(lesser(x, right - x), lesser(y, bottom - y));
-  return select(inside, lesser(least, T(1)), T(0));
+  using std::sqrt;
+  const auto enough = sums.weights >= T(kLeastWeight);
+  const T all = select(enough, sums.weights, T(1));
+  const T mean = sums.mean / all, reference = sums.reference / all;
+  const T variance = sums.square / all - mean * mean;
+  const T reference_variance = sums.reference_square / all - reference * reference;
+  const auto known =
+      enough && variance > T(kFlatVariance) && reference_variance > T(kFlatReference);
+  const T value = (sums.cross / all - mean * reference) /
+                  sqrt(select(known, T(variance * reference_variance), T(1)));
+  return select(known, lesser(greater(value, T(-1)), T(1)), T(kNoCorrelation));
 }
-
-// The sums of ZNCC with weights of their own: those of the reference patch times the texels'
-// shares.
-template <class T>
-class PartSums {
- public:
-  // `weight` and `deviation`: the reference patch's, weight > 0. `value`: the source's grey level,
-  // less any constant.
-  void add(const T& share, float weight, float deviation, const T& value) {
-    const T counted = share * T(weight);
-    const T reference = share * T(deviation);
-    weights_ += counted;
-    reference_ += reference;
-    reference_square_ += reference * T(deviation / weight);
-    mean_ += counted * value;
-    square_ += counted * value * value;
-    cross_ += reference * value;
-  }
-
-  // In [-1, 1], or kNoCorrelation.
-  T correlation() const {
-    using refractive::greater;
-    using refractive::lesser;
-    using refractive::select;
-    using std::sqrt;
-    const auto enough = weights_ >= T(kLeastWeight);
-    const T all = select(enough, weights_, T(1));
-    const T mean = mean_ / all, reference = reference_ / all;
-    const T variance = square_ / all - mean * mean;
-    const T reference_variance = reference_square_ / all - reference * reference;
-    const auto known =
-        enough && variance > T(kFlatVariance) && reference_variance > T(kFlatReference);
-    const T value = (cross_ / all - mean * reference) /
-                    sqrt(select(known, T(variance * reference_variance), T(1)));
-    return select(known, lesser(greater(value, T(-1)), T(1)), T(kNoCorrelation));
-  }
-
- private:
-  T weights_ = T(0), reference_ = T(0), reference_square_ = T(0);
-  T mean_ = T(0), square_ = T(0), cross_ = T(0);
-};
 
 }  // namespace
 }  // namespace axial::depth

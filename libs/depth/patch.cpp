@@ -23,7 +23,7 @@ void PatchSampler::gather_window(const cv::Mat1b& image, int x, int y,
                                  ReferencePatch& patch) const {
   constexpr int kSide = 2 * kPatchRadius / kPatchStep + 1;
   std::array<float, kTexels> grey;
-  // A sum for every column: one sum would wait for itself at each texel.
+  // One sum per column: with a single sum, each addition would wait for the one before.
   std::array<float, kSide> weights{}, weighted{}, squares{};
   const float* color_weight = color_weight_.data() + 255 - image(y, x);
   std::size_t k = 0;

@@ -28,11 +28,11 @@ struct DepthRange {
   float min = 0, max = 0;
 };
 
-// What one level starts from and is held to.
+// The inputs of one resolution level.
 struct LevelState {
-  PlaneMap planes;
-  cv::Mat1f prior;
-  cv::Mat1b mask;  // empty: all
+  PlaneMap planes;  // initial hypotheses
+  cv::Mat1f prior;  // depths of the coarser level; empty: none
+  cv::Mat1b mask;   // empty: all pixels
 };
 
 Level make_level(const MatchInput& input, int halvings) {
@@ -84,7 +84,7 @@ void run_sweeps_with(const MatchInput& input, const Level& level,
     run_all(Matcher<Camera, Warp>(level.images[0], cameras[0], sources, options));
 }
 
-// Runs `sweeps` sweeps of one level with the camera type and the warp chosen once.
+// Runs `sweeps` sweeps of one level. Camera type and warp are selected once, outside the loops.
 void run_sweeps(const MatchInput& input, const Level& level, std::span<const DepthMap* const> maps,
                 const PatchMatchOptions& options, const SweepInput& first, int sweeps,
                 PlaneMap& planes) {
@@ -131,7 +131,8 @@ DepthRange depth_range(const CameraModel& model, std::span<const Eigen::Vector3f
   return {0.9f * range.min, 1.1f * range.max};
 }
 
-// Every fine pixel takes the plane of the coarse pixel it lies in, met by its own ray (eq. 8).
+// The state of the next finer level. Each pixel gets the plane of the coarse pixel in which it
+// lies; its depth is where its own ray meets this plane (eq. 8).
 LevelState refine_level(const PlaneMap& coarse, const CameraModel& fine, const DepthRange& range,
                         float keep_cost) {
   LevelState state{PlaneMap(fine.width, fine.height), cv::Mat1f(fine.height, fine.width, 0.0f), {}};
@@ -206,7 +207,7 @@ int usable_levels(const MatchInput& input, const PatchMatchOptions& options) {
   return levels;
 }
 
-// Clears the pixels that the lens images no direction at.
+// Clears the pixels at which the distorted lens shows no direction.
 void clear_unseen(const CameraModel& camera, cv::Mat1b& mask) {
   const auto lens = distorted_lens<float>(camera);
   if (lens.shows_all(camera.width, camera.height)) return;
@@ -227,7 +228,8 @@ cv::Mat1b mask_at(const MatchInput& input, const CameraModel& camera) {
 void check(const MatchInput& input, const PatchMatchOptions& options) {
   if (input.sources.empty() || input.sources.size() > kMaxSources)
     fail("a reference view needs 1 to {} source views, not {}", kMaxSources, input.sources.size());
-  const int pairs = std::max({options.first_pairs, options.later_pairs, options.last_pairs});
+  const int pairs = std::max({options.coarse_pairs, options.first_pairs, options.later_pairs,
+                              options.last_pairs, options.search_pairs});
   constexpr int kMost = kMaxCandidates;
   if (2 * pairs > kMost || options.restart_trials > kMost || 3 + options.search_planes > kMost)
     fail(
@@ -261,7 +263,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     sweep.mask = state.mask.empty() ? nullptr : &state.mask;
     sweep.first = true;
     sweep.many_views = halvings > 0;
-    sweep.trial_pairs = options.first_pairs;
+    sweep.trial_pairs = halvings > 0 ? options.coarse_pairs : options.first_pairs;
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);
   }

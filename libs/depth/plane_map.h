@@ -11,17 +11,18 @@
 
 namespace axial::depth {
 
-// The surface near a pixel: it meets the pixel's ray at distance `depth` (eq. 4) and has this
-// normal, unit, in the reference camera's frame, facing the camera (normal . direction < 0).
+// The surface at a pixel: a plane that meets the pixel's ray at distance `depth` (lambda of eq. 4).
+// The normal has unit length, is in the reference camera's frame and faces the camera
+// (normal . direction < 0).
 struct PlaneHypothesis {
-  float depth = 0;  // 0: none
+  float depth = 0;  // [m]; 0: no hypothesis
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
 };
 
 inline constexpr std::uint8_t kNoView = 255;
 
-// The two source views that see a plane best, best first; the same one twice where there is but
-// one, kNoView where that is not known.
+// The two source views in which a plane has the lowest costs, best first. The same view twice if
+// the plane was scored in one view only; kNoView if the best views are not known.
 using BestViews = std::array<std::uint8_t, 2>;
 
 struct PlanePixel {
@@ -29,7 +30,8 @@ struct PlanePixel {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // origin + depth * direction
   float cost = 2;                                   // aggregated, 0 (perfect) to 2
   BestViews views{kNoView, kNoView};
-  float motion = 0;  // of its image in the best view with depth [px/m]; 0: not known, or unseen
+  // Motion of the point in the best view per metre of depth [px/m]; 0: unknown or not visible.
+  float motion = 0;
 };
 
 struct PlaneMap {

@@ -11,8 +11,8 @@
 
 namespace axial::depth {
 
-// Random numbers keyed by image, pixel and sweep: the n-th number of a key is always the same,
-// whichever thread asks and whatever was asked before.
+// Random numbers with a key of image, pixel and sweep. The n-th number of a key is always the same.
+// So results do not depend on the number of threads and on the order of pixels.
 class KeyedRandom {
  public:
   KeyedRandom(std::uint64_t image, std::uint64_t pixel, std::uint64_t sweep)
@@ -20,7 +20,8 @@ class KeyedRandom {
 
   float unit() { return unit_float(scramble(key_ + ++count_)); }  // [0, 1)
 
-  // A normal facing the camera, uniform over the directions at most 80 degrees off the ray.
+  // A random unit normal that faces the camera, uniform over the directions within 80 degrees of
+  // -ray_direction.
   Eigen::Vector3f facing_normal(const Eigen::Vector3f& ray_direction) {
     const float cosine = 1.0f - unit() * (1.0f - 0.17365f);
     return tilted(-ray_direction, cosine, unit());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rays of a camera's pixels, a tile of a row at a time: in lanes for cameras that can be dealt
-// to them, else one by one.
+// Computes the rays of a camera's pixels, kRayTile pixels of a row at a time: with SIMD for camera
+// types that the SIMD code supports, otherwise one ray after the other.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,8 @@ class RayCaster {
  public:
   explicit RayCaster(Camera camera) : camera_(std::move(camera)) {}
 
-  // Of the pixels from (x, y) on, inside the image or not.
+  // Sets `tile` to the rays of the pixels (x, y) to (x + kRayTile - 1, y), with their derivatives.
+  // The pixels may lie outside the image.
   void rays(int x, int y, RayTile& tile) const {
     for (int k = 0; k < kRayTile; ++k) {
       PixelRay& pixel = tile[static_cast<std::size_t>(k)];
@@ -28,7 +29,8 @@ class RayCaster {
   Camera camera_;
 };
 
-// With the bytes of the camera's own rays.
+// The version with SIMD. Its rays are bit-identical to those of the camera's ray(). Precondition:
+// `set` is available.
 template <InLanes Camera>
 class RayCaster<Camera> {
  public:
@@ -42,7 +44,7 @@ class RayCaster<Camera> {
   std::unique_ptr<const lanes::Scorer> scorer_;
 };
 
-// visit(x, ray) for the first `width` pixels of a row.
+// Calls visit(x, ray) for the first `width` pixels of row y, from left to right.
 template <class Camera, class Visit>
 void each_ray_of_row(const RayCaster<Camera>& caster, int y, int width, Visit&& visit) {
   RayTile tile;
@@ -52,7 +54,7 @@ void each_ray_of_row(const RayCaster<Camera>& caster, int y, int width, Visit&& 
   }
 }
 
-// visit(x, y, ray) for every pixel, in reading order.
+// Calls visit(x, y, ray) for every pixel, row by row.
 template <class Camera, class Visit>
 void each_ray(const Camera& camera, int width, int height, Visit&& visit) {
   const RayCaster<Camera> caster(camera);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The smoothness factor of a hypothesis: eq. (6) with d_v = n . (X_n - X), for floats and for
-// packs.
+// The smoothness factor of a hypothesis: the paper's eq. (6) with d_v = n . (X_n - X). T is float
+// or a SIMD pack.
 #pragma once
 
 #include <array>
@@ -12,18 +12,20 @@
 namespace axial::depth {
 
 struct SmoothnessOptions {
-  float depth_sigma = 0.02f;  // relative distance of the neighbour to the plane
-  float depth_bonus = 0.07f;
+  float depth_sigma = 0.02f;  // of the neighbour's distance to the plane, divided by |X|
+  float depth_bonus = 0.07f;  // largest reduction of the factor by one neighbour's distance
   float normal_sigma = 13 * std::numbers::pi_v<float> / 180;  // [rad]
-  float normal_bonus = 0.0672f;
+  float normal_bonus = 0.0672f;  // largest reduction by one neighbour's normal
 };
 
-// The surface at a neighbouring pixel: a point and its unit normal, reference camera's frame.
+// The surface at a neighbouring pixel: a point [m] and a unit normal in the reference camera's
+// frame.
 struct SurfacePoint {
   std::array<float, 3> point, normal;
 };
 
-// exp(-x) for x >= 0 as (1 - x/16)^16, zero beyond 16: at most 0.017 off.
+// Approximates exp(-x) for x >= 0 by (1 - x/16)^16, and by 0 for x > 16. The error is at most
+// 0.017.
 template <class T>
 T fading(const T& x) {
   using refractive::select;
@@ -35,7 +37,9 @@ T fading(const T& x) {
   return y * y;
 }
 
-// Multiplicative bonus, below 1, for agreeing with the neighbours.
+// The factor of the cost, at most 1, of the plane through `point` [m] with the unit normal
+// `normal`. It is smaller the better the neighbours' points lie on the plane and the better their
+// normals agree, and 1 without neighbours.
 template <class T>
 T smoothness(const refractive::Vector3<T>& point, const refractive::Vector3<T>& normal,
              std::span<const SurfacePoint> neighbours, const SmoothnessOptions& options) {
@@ -51,7 +55,7 @@ T smoothness(const refractive::Vector3<T>& point, const refractive::Vector3<T>& 
                        normal.z() * (T(p[2]) - point.z());
     const T cosine = normal.x() * T(n[0]) + normal.y() * T(n[1]) + normal.z() * T(n[2]);
     const T versine = T(1) - select(cosine < T(1), cosine, T(1));
-    const T angle2 = versine * (T(2) + versine * T(1.0f / 3.0f));  // angle^2 up to the 6th order
+    const T angle2 = versine * (T(2) + versine * T(1.0f / 3.0f));  // angle^2, error of 6th order
     factor *= T(1) - T(options.depth_bonus) * fading<T>(distance_scale * distance * distance);
     factor *= T(1) - T(options.normal_bonus) * fading<T>(angle_scale * angle2);
   }

@@ -31,7 +31,7 @@ std::vector<Corner> visible_corners(const Camera& camera, const CameraModel& mod
   return corners;
 }
 
-// Signed double area of (a, b, p).
+// Twice the signed area of the triangle (a, b, p).
 float edge(const cv::Point2f& a, const cv::Point2f& b, const cv::Point2f& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
@@ -66,8 +66,8 @@ void rasterise(const Camera& camera, const std::array<const Corner*, 3>& triangl
   }
 }
 
-// OpenCV's triangulation keeps single-precision vertices exactly as given, so they name the
-// corners.
+// OpenCV's triangulation returns the single-precision vertices exactly as they were inserted, so a
+// vertex identifies its corner.
 using CornerByPixel = std::map<std::pair<float, float>, const Corner*>;
 
 std::vector<std::array<const Corner*, 3>> triangulate(const CameraModel& model,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// First hypotheses from the sparse cloud.
+// Initial hypotheses from the sparse points.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,10 +10,13 @@
 
 namespace axial::depth {
 
-// The Delaunay triangulation of the points' images, each pixel on its triangle's plane: depth where
-// the pixel's ray meets the plane (eq. 8) if within [min_depth, max_depth], normal facing the
-// camera. `points`: in the reference camera's frame [m]; those not visible are ignored. Pixels
-// outside the triangulation have no hypothesis. `camera`: at the map's resolution.
+// Makes a Delaunay triangulation of the points' images. A pixel inside a triangle gets the plane of
+// the triangle's three points: its depth is where the pixel's ray meets the plane (eq. 8), its
+// normal faces the camera. A pixel has no hypothesis if it is outside the triangulation, if the
+// depth is outside [min_depth, max_depth] [m], or if the ray is within about 3 degrees of the
+// plane. `camera`: at the resolution of the result. `points`: in the camera's frame [m]; points
+// that do not project into the image are ignored. With fewer than 3 such points, no pixel has a
+// hypothesis.
 PlaneMap planes_from_points(const CameraModel& camera, std::span<const Eigen::Vector3f> points,
                             float min_depth, float max_depth);
 

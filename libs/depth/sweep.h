@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One PatchMatch sweep: rows in strips of fixed height, each walked in reading order (or
-// backwards), so that a good hypothesis runs through a whole strip; strips are independent of each
-// other, because across a strip's edge they read the state from before the sweep. Same bytes for
-// any thread count.
+// One PatchMatch sweep. The image is divided into strips of rows. The pixels of a strip are visited
+// row by row, forwards or backwards, so that a good hypothesis propagates through the whole strip.
+// Across the edge of a strip, pixels read the state before the sweep. So strips are independent,
+// and the results are bit-identical for any number of threads.
 //
 // A visit scores the pixel's own plane in at most four views, and the planes of the two neighbours
-// that were visited before it in the two views which see these best: eight scores however many
-// views there are, one AVX2 register. Trials follow around the best of these planes; where there
-// are few, they are scored together with the planes, around the one that cost least when it was
-// scored before: one AVX-512 register. In a level's first sweep a pixel whose plane is not certain
-// tries random planes in place of half the trials (PatchMatchOptions::search_planes). On coarse
-// levels, where there is little to do and little known, every plane is scored in five views, and
-// trials follow.
+// visited before in the two best views of each plane. These are at most eight scores (one AVX2
+// register), whatever the number of views. Trials around the best plane follow. Few trials are
+// scored together with these planes (one AVX-512 register), around the plane with the lowest
+// earlier cost. In a level's first sweep, a pixel whose plane is not certain also tries random
+// planes (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
+// because the best views are not known yet and these levels have few pixels.
 #pragma once
 
 #include <algorithm>
@@ -35,29 +34,29 @@ namespace axial::depth {
 
 inline constexpr int kStripHeight = 32;
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
-inline constexpr std::size_t kOwnViews = 4;       // for a pixel's own plane
-// For all planes of a pixel in coarse levels, and for random planes. More views find no better
-// planes: the views take turns from pixel to pixel, and a plane that is good in one view spreads
-// together with that view.
+inline constexpr std::size_t kOwnViews = 4;       // number of views for a pixel's own plane
+// Number of views for all planes of a pixel on coarse levels, and for random planes. More views do
+// not find better planes: the views alternate from pixel to pixel, and a plane that is good in one
+// view is propagated together with this view.
 inline constexpr std::size_t kManyViews = 5;
 
-// Mean of the two smallest costs; the second only counts below kOutsideCost.
+// The mean of the two smallest costs; the smallest alone if the second is kOutsideCost or more.
 inline float aggregate(float smallest, float second) {
   return second < kOutsideCost ? 0.5f * (smallest + second) : smallest;
 }
 
 struct SweepInput {
   std::uint32_t image_id = 0;
-  std::uint32_t sweep = 0;  // unique over levels and passes; odd ones run backwards
+  std::uint32_t sweep = 0;  // unique over levels and passes; odd sweeps run backwards
   float min_depth = 0;
   float max_depth = 0;
-  const cv::Mat1f* prior = nullptr;  // depth from the coarser level, of the map's size
-  // Depth that textureless pixels are held to where there is no `prior`: a geometric pass must not
-  // lose what the coarser levels filled in.
+  const cv::Mat1f* prior = nullptr;  // depths of the coarser level, of the map's size; null: none
+  // Prior depths for textureless pixels only, in place of `prior`; null: none. A geometric pass
+  // needs them to keep the depths that these pixels have from the coarser levels.
   const cv::Mat1f* textureless_prior = nullptr;
-  const cv::Mat1b* mask = nullptr;  // non-zero: work on this pixel
-  int trial_pairs = 0;              // trials around the best hypothesis, at most 4 pairs
-  bool first = false;               // fill pixels without a hypothesis at random
+  const cv::Mat1b* mask = nullptr;  // non-zero: visit this pixel; null: all pixels
+  int trial_pairs = 0;              // pairs of trials around the best hypothesis, at most 4
+  bool first = false;               // give pixels without a hypothesis a random one
   bool many_views = false;          // score all planes in kManyViews views
 };
 
@@ -70,7 +69,7 @@ class Sweep {
     for (std::size_t i = 0; i < matcher.views(); ++i) all_views_[i] = static_cast<std::uint8_t>(i);
   }
 
-  // The number of scores computed: of one plane in one view.
+  // Runs the sweep on all threads. Returns the number of scores (of one plane in one view).
   std::uint64_t run() {
     prepare();
     std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips()));
@@ -79,7 +78,7 @@ class Sweep {
     return std::accumulate(scores.begin(), scores.end(), std::uint64_t{0});
   }
 
-  // run() in steps: first prepare(), then run_strip() for each of strips(), in any order.
+  // The steps of run(): first prepare(), then run_strip() for each strip, in any order.
   int strips() const { return (map_.height + kStripHeight - 1) / kStripHeight; }
 
   void prepare() {
@@ -106,7 +105,7 @@ class Sweep {
   }
 
  private:
-  // The pixel next to a strip's own: across the edge, as it was before the sweep.
+  // A pixel of the strip or next to it. Outside the strip, its state before the sweep.
   const PlanePixel& neighbour(int strip, int x, int y) const {
     const int top = strip * kStripHeight;
     if (y >= top && y < top + kStripHeight) return map_.at(x, y);
@@ -117,7 +116,7 @@ class Sweep {
 
   // The rays of the tile of pixels that was visited last.
   struct Rays {
-    int x = -1, y = -1;  // where it begins
+    int x = -1, y = -1;  // first pixel of the tile
     RayTile tile;
   };
 
@@ -171,8 +170,8 @@ class Sweep {
     return {root * root, random.facing_normal(pixel.ray.direction)};
   }
 
-  // Facing the camera, and uniform in inverse depth, which is about uniform in the source images:
-  // what is close before the rest takes up most of them.
+  // A random plane perpendicular to the ray. Its depth is uniform in inverse depth, which is about
+  // uniform in the source images.
   PlaneHypothesis facing_plane(const ReferencePixel& pixel, KeyedRandom& random) const {
     const float nearest = 1 / input_.min_depth, farthest = 1 / input_.max_depth;
     return {1 / (farthest + random.unit() * (nearest - farthest)), -pixel.ray.direction};
@@ -180,7 +179,7 @@ class Sweep {
 
   void clear(PlanePixel& pixel) const { pixel = PlanePixel(); }
 
-  // A hypothesis with its cost and the views that see it best.
+  // A hypothesis with its cost and its best views.
   struct Best {
     PlaneHypothesis plane;
     float cost = std::numeric_limits<float>::max();
@@ -188,7 +187,7 @@ class Sweep {
     float motion = 0;  // in the best view [px/m]
   };
 
-  // What every hypothesis of one pixel is judged by.
+  // The data that all hypotheses of one pixel are scored with.
   struct Visit {
     const ReferencePixel& pixel;
     const Neighbourhood& around;
@@ -215,7 +214,7 @@ class Sweep {
     }
     if (!(current.plane.normal.dot(pixel.ray.direction) < 0)) {
       current.plane.normal = random.facing_normal(pixel.ray.direction);
-      current.motion = 0;  // what it cost and who saw it was said of the old plane
+      current.motion = 0;  // cost and views are those of the old plane
     }
 
     const Neighbourhood around = neighbourhood(strip.number, x, y);
@@ -240,7 +239,7 @@ class Sweep {
         input_.first && options_.search_planes > 0 &&
         std::min(current.cost, likely ? likely->cost : kMaxCost) > options_.certain_cost;
     if (search) add_facing_planes(pixel, random, candidates);
-    const Visit at{pixel, around, search ? input_.trial_pairs / 2 : input_.trial_pairs,
+    const Visit at{pixel, around, search ? options_.search_pairs : input_.trial_pairs,
                    strip.scores};
     const bool at_once = likely && trials_fit(candidates, at.trial_pairs);
     if (at_once) add_trials(at, *likely, random, candidates);
@@ -262,8 +261,8 @@ class Sweep {
     }
   };
 
-  // All views if they are few; else those that see the pixel and then its neighbours best, and
-  // others in turn, lest a view that was hidden from the plane before stay so.
+  // The views for the pixel's own plane: all, or the best views of the pixel and its neighbours and
+  // some others. These take turns, so that a view that was occluded can be chosen again.
   Views own_views(int x, int y, const PlanePixel& current,
                   std::span<const PlanePixel* const> before) const {
     Views own;
@@ -281,12 +280,12 @@ class Sweep {
     add_in_turn(own, turn, wanted, matcher_.views());
   }
 
-  // In turn of the first `of` views.
+  // Adds views from the first `of` views, starting with number `turn`, until there are `wanted`.
   void add_in_turn(Views& own, std::size_t turn, std::size_t wanted, std::size_t of) const {
     for (; own.count < wanted; ++turn) own.add(all_views_[turn % of]);
   }
 
-  // Planes, and the views that each is scored in.
+  // Planes and the views in which each plane is scored.
   struct Candidates {
     std::array<PlaneHypothesis, kMaxCandidates> planes;
     std::array<ScorePair, kMaxCandidates * kMaxSources> pairs;
@@ -305,7 +304,8 @@ class Sweep {
     return {views.data(), views[0] == views[1] ? 1u : 2u};
   }
 
-  // Eq. (8): where this pixel's ray meets the neighbour's plane.
+  // The neighbour's plane where this pixel's ray meets it (eq. 8). No value without a plane of good
+  // cost (below keep_cost), at grazing incidence, or if the depth is out of range.
   std::optional<PlaneHypothesis> carried(const ReferencePixel& pixel,
                                          const PlanePixel& from) const {
     if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return {};
@@ -316,7 +316,7 @@ class Sweep {
     return PlaneHypothesis{depth, from.plane.normal};
   }
 
-  // Adds a neighbour's plane, if it is news.
+  // Adds a neighbour's plane unless it equals a candidate.
   void propagate(const PlaneHypothesis& plane, const PlanePixel& from, const Views& own,
                  Candidates& candidates) const {
     for (const PlaneHypothesis& other : candidates.all())
@@ -331,8 +331,8 @@ class Sweep {
       candidates.add(plane, distinct(from.views));
   }
 
-  // Adds planes from the whole range of depths, for what no neighbour knows: a thin structure
-  // before a background that its pixels have a fair cost at.
+  // Adds random planes from the whole depth range. They find surfaces that no neighbour has: thin
+  // structures whose pixels match the background at a fair cost.
   void add_facing_planes(const ReferencePixel& pixel, KeyedRandom& random,
                          Candidates& candidates) const {
     const std::size_t of = std::min(matcher_.views(), kManyViews);
@@ -345,9 +345,9 @@ class Sweep {
     }
   }
 
-  // Makes `plane` the likely best one of a pixel, if it cost less where it comes `from`. Only
-  // planes that this level or pass has scored, whose motion is known: after a depth map was read,
-  // none but those of the neighbours visited before.
+  // Sets `likely`, the expected best plane of a pixel, to `plane` if its cost at pixel `from` is
+  // lower. Only planes that this level or pass has scored count (their motion is known). At the
+  // start of a geometric pass, these are only the planes of the neighbours visited before.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
              std::optional<Best>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))
@@ -359,13 +359,13 @@ class Sweep {
            candidates.count + 2 * static_cast<std::size_t>(pairs) <= kMaxCandidates;
   }
 
-  // Scores the candidates and keeps the best, if it is better than `best`.
+  // Scores the candidates. Sets `best` to the best candidate if its cost is lower.
   void keep_best(const Visit& at, const Candidates& candidates, Best& best) const {
     std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
     matcher_.score(at.pixel, candidates.all(), pairs, at.around.all(), scores);
     at.scores += pairs.size();
-    std::size_t winner = pairs.size();  // its first pair
+    std::size_t winner = pairs.size();  // first pair of the best plane
     for (std::size_t i = 0; i < pairs.size();) {
       constexpr float kNone = std::numeric_limits<float>::max();
       float smallest = kNone, second = kNone;
@@ -391,7 +391,7 @@ class Sweep {
     best.motion = scores[first].motion;
   }
 
-  // Trials around the best plane, all scored at once in its two best views.
+  // Scores trials around the best plane, all at once in its two best views.
   void refine(const Visit& at, KeyedRandom& random, Best& best) const {
     if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
     if (at.trial_pairs == 0) return;
@@ -400,15 +400,15 @@ class Sweep {
     keep_best(at, trials, best);
   }
 
-  // How far the first trials go: less, the better the plane is already.
+  // The factor of the ranges of the first trials: smaller for better planes.
   float trial_scale(float cost) const {
     if (cost <= options_.good_cost) return 0.25f;
     return cost <= options_.fair_cost ? 0.5f : 1.0f;
   }
 
-  // Pairs of trials on either side of a plane, in turn along the ray and of the normal, ever
-  // closer. A trial that moved both at once would seldom be better: near the optimum what one
-  // gains the other loses.
+  // Adds pairs of trials, one on either side of the plane. Pairs change depth and normal in turn,
+  // with decreasing ranges. A trial that changed both would seldom be better: near the optimum, one
+  // change loses what the other gains.
   void add_trials(const Visit& at, const Best& best, KeyedRandom& random,
                   Candidates& trials) const {
     const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
@@ -439,8 +439,8 @@ class Sweep {
     }
   }
 
-  // A hopeless pixel tries random planes in many views, without the neighbours' say. False if it
-  // stays hopeless.
+  // For a pixel with a bad cost: tries random planes in many views, without the smoothness factors.
+  // False if the cost stays bad.
   bool restart(const Visit& at, KeyedRandom& random, Best& best) const {
     Candidates candidates;
     const std::size_t views = matcher_.views();
@@ -462,7 +462,7 @@ class Sweep {
   const PatchMatchOptions& options_;
   SweepInput input_;
   std::array<std::uint8_t, kMaxSources> all_views_{};
-  std::vector<PlanePixel> edges_;  // rows above and below each inner strip edge, before the sweep
+  std::vector<PlanePixel> edges_;  // the two rows at each inner strip edge, before the sweep
 };
 
 }  // namespace axial::depth

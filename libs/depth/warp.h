@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Carries the reference window into a source view, under a plane hypothesis.
+// Maps the reference window to a source view under a plane hypothesis.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,8 @@ struct RelativePose {
   Eigen::Vector3f apply(const Eigen::Vector3f& x) const { return rotation * x + translation; }
 };
 
-// The hypothesis' surface point at the window's centre and its derivative by the reference pixel.
+// The surface point of a hypothesis at the window's centre and the point's derivative by the
+// reference pixel [m/px], in the reference camera's frame.
 struct PatchDerivative {
   Eigen::Vector3f point;
   refractive::Matrix32<float> by_pixel;
@@ -40,15 +41,17 @@ inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
           refractive::plane_point_derivative(ray, jacobian, plane.depth, plane.normal)};
 }
 
-// A warp policy computes, per hypothesis and source view, a Map (`between`) and from it where the
-// texels fall (`texels`). Two steps, so that the projections of all views can run side by side.
+// A warp policy has two functions. `between` computes the Map of a hypothesis and a source view;
+// `texels` computes the positions of the texels in the source view from this Map. They are separate
+// so that the projections into several views can run in parallel in the processor.
 
-// Exact centre and exact first derivative: no division per texel.
+// The exact projection of the centre and the exact first derivative (docs/refraction.md, "The
+// warp"). Needs no division per texel.
 struct AffineWarp {
   struct Map {
-    Eigen::Vector2f centre;  // where the source view sees the surface point
-    bool visible;            // false: it does not; nothing else means anything
-    Eigen::Matrix2f linear;
+    Eigen::Vector2f centre;  // image of the surface point in the source view [px]
+    bool visible;            // false: the other members have no meaning
+    Eigen::Matrix2f linear;  // source pixels per reference pixel
   };
 
   template <class Camera>
@@ -70,12 +73,13 @@ struct AffineWarp {
   }
 };
 
-// The paper's warp: the homography between the virtual cameras of the reference pixel and of the
-// rounded pixel it is seen at (eqs. 1-3). For a pinhole, the plain homography.
+// The paper's warp (eqs. 1-3): the homography between the virtual camera of the reference pixel and
+// the virtual camera of the source pixel, which is rounded to integers. For a pinhole camera it is
+// the usual homography of a plane.
 struct HomographyWarp {
   struct Map {
-    Eigen::Vector2f centre;
-    bool visible;
+    Eigen::Vector2f centre;  // image of the surface point in the source view [px], not rounded
+    bool visible;            // false: the other members have no meaning
     Eigen::Matrix3f homography;
   };
 

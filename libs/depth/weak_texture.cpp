@@ -9,16 +9,16 @@ namespace axial::depth {
 namespace {
 
 constexpr int kSide = 9;      // of the matching window
-constexpr float kUnit = 255;  // a confidence of 1, as a byte
+constexpr float kUnit = 255;  // the byte for a confidence of 1
 
-// Of bytes, so that sums are exact however they are formed.
+// The sums over all windows. Sums of bytes are exact, whatever the order of summation.
 cv::Mat1i window_sum(const cv::Mat1b& image) {
   cv::Mat1i sum;
   cv::boxFilter(image, sum, CV_32S, {kSide, kSide}, {-1, -1}, false);
   return sum;
 }
 
-// 1 where there is a depth and weak texture, else 0.
+// 1 for pixels with a depth and weak texture, otherwise 0.
 cv::Mat1b weak_pixels(const DepthMap& map, const cv::Mat1b& grey, float deviation) {
   cv::Mat1f mean, square;
   cv::boxFilter(grey, mean, CV_32F, {kSide, kSide});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depths where the photograph shows little more than the camera's noise: sand, haze, open water.
+// Removes unreliable depths where the photograph shows little more than the camera's noise: sand,
+// haze, open water.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,17 +10,19 @@
 namespace axial::depth {
 
 struct WeakTextureOptions {
-  float deviation = 1.5f;  // of a 9x9 window's grey levels, below which its texture is weak
-  // Mean confidence of the pixels with weak texture in a 9x9 window. In
-  // SimulateUnderwater's preset sand 95 % of the windows have 0.68 or more; with a texture of a
-  // twentieth of that, half of them have less than 0.62.
+  // Texture is weak if the standard deviation of the grey levels in a 9x9 window is below this.
+  float deviation = 1.5f;
+  // Smallest mean confidence of the pixels with weak texture in a 9x9 window. On the preset `sand`
+  // of SimulateUnderwater, the mean is at least 0.68 in 95 % of the windows. With a twentieth of
+  // that texture, it is below 0.62 in half of the windows.
   float least_confidence = 0.6f;
 };
 
-// Clears depths of weak texture that the photographs do not confirm: those around which the pixels
-// with a depth and weak texture have too little confidence in the mean. One pixel cannot tell: the
-// best of many planes correlates even with noise. `grey`: the map's image, of the map's size (Error
-// otherwise). A map without confidence is returned as it is.
+// Clears a depth if its texture is weak and if the mean confidence of all pixels with a depth and
+// weak texture in the 9x9 window around it is below least_confidence. The confidence of a single
+// pixel is not enough for this decision, because the best of many planes correlates even with
+// noise. `grey`: the image of the map; throws an Error if it does not have the map's size. A map
+// without confidences is returned unchanged.
 DepthMap remove_unconfirmed(const DepthMap& map, const cv::Mat1b& grey,
                             const WeakTextureOptions& options = {});
 

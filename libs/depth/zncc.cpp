@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "depth/zncc.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "depth/part_sums.h"
@@ -19,7 +20,7 @@ QuadImage::QuadImage(const cv::Mat1b& image)
   for (int y = 0; y < height_; ++y, words += width_) {
     const std::uint8_t* row = image.ptr<std::uint8_t>(y);
     const std::uint8_t* below = image.ptr<std::uint8_t>(y + 1 < height_ ? y + 1 : y);
-    const int last = width_ - 1;  // apart, so that the others go into vectors
+    const int last = width_ - 1;  // separate, so that the loop can be vectorised
     for (int x = 0; x < last; ++x) words[x] = word(row[x], row[x + 1], below[x], below[x + 1]);
     words[last] = word(row[last], row[last], below[last], below[last]);
   }
@@ -27,7 +28,7 @@ QuadImage::QuadImage(const cv::Mat1b& image)
 
 namespace {
 
-// Grey value. Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
+// The grey level at (x, y). Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
 float bilinear(const QuadImage& source, float x, float y) {
   const int column = static_cast<int>(x);
   const int row = static_cast<int>(y);
@@ -45,22 +46,34 @@ float bilinear(const QuadImage& source, float x, float y) {
   return top + fy * (bottom - top);
 }
 
+// How much a texel at (x, y) counts, 0 to 1; 0 if x or y is not a number.
+float share_inside(const QuadImage& source, float x, float y) {
+  const auto right = static_cast<float>(source.width() - 1);
+  const auto bottom = static_cast<float>(source.height() - 1);
+  if (!(x > 0 && y > 0 && x < right && y < bottom)) return 0;
+  return std::min({x, y, right - x, bottom - y, 1.0f});
+}
+
 }  // namespace
 
 namespace detail {
 
 float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at) {
-  const auto right = static_cast<float>(source.width() - 1);
-  const auto bottom = static_cast<float>(source.height() - 1);
-  const auto share = [&](std::size_t k) { return share_inside(at.x[k], at.y[k], right, bottom); };
-  if (!(share(kCentreTexel) > 0)) return kNoCorrelation;
+  if (!(share_inside(source, at.x[kCentreTexel], at.y[kCentreTexel]) > 0)) return kNoCorrelation;
   PartSums<float> sums;
   for (std::size_t k = 0; k < kTexels; ++k) {
-    if (!(share(k) > 0) || !(patch.weight[k] > 0)) continue;
-    sums.add(share(k), patch.weight[k], patch.deviation[k],
-             bilinear(source, at.x[k], at.y[k]) - patch.mean);
+    const float share = share_inside(source, at.x[k], at.y[k]);
+    if (!(share > 0)) continue;
+    const float value = bilinear(source, at.x[k], at.y[k]) - patch.mean;
+    const float weight = share * patch.weight[k], deviation = share * patch.deviation[k];
+    sums.weights += weight;
+    sums.reference += deviation;
+    sums.reference_square += share * patch.square(k);
+    sums.mean += weight * value;
+    sums.square += weight * value * value;
+    sums.cross += deviation * value;
   }
-  return sums.correlation();
+  return part_correlation(sums);
 }
 
 }  // namespace detail

@@ -9,7 +9,8 @@
 namespace axial::depth {
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// Per-lane sums of eight; intensities from 0 to 255.
+// Weighted sums over the texels, with one partial sum for each of eight SIMD lanes. Source grey
+// levels are from 0 to 255, less ReferencePatch::mean.
 struct ZnccSums {
   alignas(32) std::array<float, 8> mean{};
   alignas(32) std::array<float, 8> square{};

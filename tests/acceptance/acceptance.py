@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The slow acceptance points: run by tests/acceptance.sh, which says how."""
+"""The slow acceptance points. tests/acceptance.sh runs this script and explains its use."""
 
 import hashlib
 import json
@@ -32,11 +32,11 @@ def point(wanted):
     return register
 
 
-# What is measured.
+# Sources and runs.
 
 def source_state():
-    """The commit, for people, and a hash of all files but texts and figures, which names what was
-    measured."""
+    """The commit, for the reader of the table, and a hash of all files except documentation.
+    Results are kept under the hash."""
     git = lambda *arguments: subprocess.run(["git", *arguments], cwd=ROOT, check=True,
                                             capture_output=True, text=True).stdout
     names = git("ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate")
@@ -53,7 +53,8 @@ def truth_of(scene):
 
 
 def densified(folder, model, images, housing, *options):
-    """InterfaceCOLMAP and DensifyPointCloud; what the latter cost. Kept if there."""
+    """Runs InterfaceCOLMAP and DensifyPointCloud. Returns the cost of DensifyPointCloud. If
+    `folder` holds a cost already, nothing is run."""
     cost = folder / "cost.json"
     if cost.exists():
         return json.loads(cost.read_text())
@@ -65,7 +66,8 @@ def densified(folder, model, images, housing, *options):
 
 
 def poses(scene, medium, number):
-    """A COLMAP run, brought to metres. It does not depend on this source, and is kept for good."""
+    """The folder of COLMAP's poses of a run, aligned to the truth in metres. A run does not depend
+    on this source and is never repeated."""
     data, work = truth_of(scene).data, BASE / "colmap" / f"{scene}-{medium}-{number}"
     lens = subprocess.run(
         ["bash", "-c", f'source apps/pipeline/steps.sh; pinhole_parameters "{data}/sparse"'],
@@ -182,13 +184,13 @@ def fountain_points(work):
     return seen, cost["points"] >= 615564
 
 
-# Beyond this angle view selection pairs no two views: there the check is reported, not judged.
+# View selection pairs no two views beyond this angle. There the check is reported but not judged.
 WIDEST_ANGLE = 65  # [degrees]
 
 
 def photo_check(work, cloud, a, b):
-    """What share of the points that images a and b see looks the same in both, how many they see,
-    and under what angle."""
+    """Of the points of `cloud` that the images a and b see: the fraction that looks the same in
+    both, the number, and the median angle [degrees] between the two rays."""
     log = cloud / f"check-{a}-{b}.log"
     measured(log, BIN / "held_out_check", work / "fountain" / "scene.mvs",
              cloud / "scene_dense.ply", a, b, 2)
@@ -239,7 +241,7 @@ def scene_v6(work):
 def speed(work):
     data, seen, worst = truth_of("closeup").data, [], 0
     for medium, housing in (("air", None), ("water", data / "housing.json")):
-        # At 1024 x 768 the defaults are level 0: --min-resolution 640 forbids to halve.
+        # At 1024 x 768 the default is level 0, because --min-resolution 640 forbids halving.
         cost = densified(work / f"closeup-true-{medium}", data / "sparse", data / medium, housing,
                          "--resolution-level", 0)
         per = cost["cpu"] / cost["megapixels"]
@@ -257,14 +259,14 @@ def beside_sift(programs, pairs, limit, least_points):
         ours["of_sift"] <= limit and ours["points"] >= least_points
 
 
-# A tenth of what OpenMVS takes, on another machine, by the same measure.
+# The limits relative to SIFT are a tenth of OpenMVS's, which were measured on another machine.
 @point("at most 0.306 times SIFT's CPU time (OpenMVS: 3.06), median of 5 rounds of both; at least "
        "615,564 points (OpenMVS)")
 def speed_fountain(work):
     return beside_sift(end_to_end.fountain(work / "speed"), 5, 0.306, 615564)
 
 
-# Runs of seconds: five in a row may all fall into a minute in which SIFT is a fifth faster.
+# One run takes seconds. Five rounds may all fall into one minute in which SIFT runs a fifth faster.
 @point("at most 2.43 times SIFT's CPU time (OpenMVS: 24.3), median of 15 rounds of both; at least "
        "183,051 points (OpenMVS)")
 def speed_scene_v6(work):
@@ -300,14 +302,14 @@ def third_scene():
                           "--height", 1536)
 
 
-# What the matcher reached before it was made faster: mean distance [mm] and F-score, default options
-# and true poses. It is no longer in the tree, and the figures were kept to these digits.
+# Mean distance [mm] and F-score of the matcher before it was made faster, with default options and
+# true poses. That matcher is no longer in the source, and only these digits were kept.
 BEFORE = {"closeup air": (0.178, 0.8456), "closeup water": (0.148, 0.8932),
           "reef air": (1.317, 0.8390), "reef water": (0.726, 0.8642),
           "closeup-7 air": (0.180, 0.8893), "closeup-7 water": (0.146, 0.9048)}
 
-# One unit of the last digit: rounding moved the figures above by up to half of one, and as little
-# is nothing that could be told from them.
+# One unit of the last digit: rounding changed the figures above by up to half a unit, so that
+# smaller differences cannot be detected.
 TOLERANCE = (0.001, 0.0001)
 
 
@@ -316,7 +318,8 @@ def no_worse(before, now):
 
 
 def quality_at_defaults(work, truth, medium):
-    """What a run gives beside what it costs and what was given before; whether it is no worse."""
+    """Quality and cost of a run with default options, with the quality in BEFORE, as text; and
+    whether the quality is no worse."""
     name, folder = f"{truth.name} {medium}", work / f"{truth.name}-defaults-{medium}"
     cost = densified(folder, truth.data / "sparse", truth.data / medium, truth.housing(medium))
     now, before = runs.evaluate(folder, truth, medium), BEFORE[name]
@@ -346,8 +349,8 @@ def quality_third(work):
 
 
 def dome_scene():
-    """The reef behind a dome 5 mm off its place, with the field that the flat port leaves of the
-    reef's 80 degrees."""
+    """The reef behind a dome that is decentred by 5 mm. The field of view is what the flat port
+    leaves of the reef's 80 degrees."""
     field = math.degrees(2 * math.asin(math.sin(math.radians(40)) / 1.333))
     return runs.simulated("reef-dome-as-flat", BASE, "--preset", "reef", "--medium", "water",
                           "--truth", 0, "--fov-degrees", round(field, 2), *refined.SCENES["reef-dome"],
@@ -398,7 +401,7 @@ def demo(work):
         cost["wall"] <= 1200
 
 
-# Poses from raw photographs: a point for each scene's poses, and one for its cloud.
+# Poses from raw photographs: one point for the poses of each scene, and one for its cloud.
 
 for scene in refined.SCENES:
     POINTS[f"refined-{scene}"] = (
@@ -412,7 +415,8 @@ for scene in refined.SCENES:
 # From raw photographs to the cloud in one command.
 
 def pipeline(truth, out):
-    """apps/pipeline/reconstruct on the photographs under water; only the camera centres are known."""
+    """The command line of apps/pipeline/reconstruct for the photographs under water. Of the poses,
+    it gets only the true camera centres."""
     positions = out.with_name(f"{out.name}-positions.txt")
     poses = refined.images_of(truth.data / "sparse")
     positions.parent.mkdir(parents=True, exist_ok=True)
@@ -425,8 +429,8 @@ def pipeline(truth, out):
 
 
 def killed_in_densify(log, out, command):
-    """Kills the script, and it alone, when about half of the reef's ten views have a depth map; the
-    seconds until then."""
+    """Kills the script, without its children, when about half of the reef's ten views have a depth
+    map. Returns the seconds until then."""
     begin = time.monotonic()
     with open(log, "w") as said:
         process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT,
@@ -458,10 +462,11 @@ def pipeline_reef(work):
             kept == 5 and ratio <= refined.LIKE_TRUE_POSES)
 
 
-# Memory: a survey of 0.3 megapixels a view.
+# Memory, on a survey with 0.3 megapixels per view.
 
 def survey_run(work, views, *options):
-    """A run over the survey and what it cost, in a folder of its own."""
+    """Densifies the first `views` views of the survey. Returns the folder, which is different for
+    other options, and the cost."""
     model, images = runs.survey(views, BASE)
     folder = work / "-".join(["survey", str(views), *map(str, options[1::2])])
     return folder, densified(folder, model, images, None, *runs.ONE_SWEEP, *options)
@@ -480,7 +485,7 @@ def memory_growth(work):
 
 
 def results_of(folder):
-    """Fingerprints of the cloud and the depth maps."""
+    """Hashes of the cloud and of the depth maps by file name."""
     files = [folder / "scene_dense.ply", *sorted(folder.glob("depth????.dmap"))]
     def fingerprint(file):
         with open(file, "rb") as content:

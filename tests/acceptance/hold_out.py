@@ -4,7 +4,8 @@
 
 Usage: hold_out.py MODEL_DIR OUT_DIR IMAGE_NAME...
 
-Points keep their place and lose the held-out observations; a point with fewer than two views left goes.
+The positions of points stay the same. Observations in the held-out images are removed, and so are
+points that are then observed in fewer than two images.
 """
 import pathlib
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RefinePoses on what COLMAP makes of raw underwater photographs alone: how near the poses come to the
-truth, and what that does to the dense cloud."""
+"""RefinePoses on COLMAP's poses of raw underwater photographs: how close the refined poses are to
+the truth, and how they affect the dense cloud."""
 
 import json
 import math
@@ -12,7 +12,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import runs  # noqa: E402
 from support.runs import BIN, measured, step  # noqa: E402
 
-# In git, or as SimulateUnderwater is to make them. A dome 5 mm off its place, in all three axes.
+# None: the scene is in git. Otherwise: SimulateUnderwater's options for it. The dome is decentred
+# by 5 mm, along all three axes.
 SCENES = {
     "reef": None,
     "closeup": None,  # 0.5 to 0.9 m away
@@ -20,11 +21,12 @@ SCENES = {
     "reef-far-port": ["--port-distance", 0.1],
     "reef-dome": ["--dome-radius", 0.06, "--dome-x", 0.003, "--dome-y", 0.0023, "--dome-z", 0.0033],
 }
-# What was promised; on some scenes COLMAP's own centres are within a millimetre, so that ours must also
-# be nearer than those.
+# The required accuracy. On some scenes COLMAP's own centres are within a millimetre; therefore the
+# refined centres must also be closer to the truth than COLMAP's.
 RMS, TURN = 1.0, 0.02  # [mm], [degrees]
 LIKE_TRUE_POSES = 1.1
-KEPT = 0.95     # of the observations that true poses keep: else errors would be small by omission
+# Of the observations that true poses keep. With fewer, errors could be small by omission.
+KEPT = 0.95
 LESS_F = 0.02
 WANTED = (f"COLMAP's poses of raw photographs, refined: centres within {RMS} mm RMS and nearer than "
           f"COLMAP's, rotations within {TURN} degrees, errors at most {LIKE_TRUE_POSES} times those "
@@ -42,14 +44,14 @@ def truth_of(scene, base):
 
 
 def images_of(model):
-    """Of a text model: by name the seven numbers of a pose, as text."""
+    """The poses of a text model by image name, each as seven numbers (QW .. TZ) in text form."""
     lines = [line for line in (model / "images.txt").read_text().split("\n")
              if not line.startswith("#")]
     return {line.split()[9]: line.split()[1:8] for line in lines[0::2] if line}
 
 
 def centre(pose):
-    """-R^T t, by the quaternion's own formula."""
+    """The camera centre -R^T t of a pose. The rows are those of R^T."""
     w, x, y, z, *t = map(float, pose)
     rows = ((1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
             (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
@@ -58,8 +60,8 @@ def centre(pose):
 
 
 def baseline(truth):
-    """--scale-from's word for the true distance between the first image and the one farthest from
-    it."""
+    """The argument of --scale-from: the true distance between the first image and the image
+    farthest from it."""
     centres = {name: centre(pose) for name, pose in images_of(truth.data / "sparse").items()}
     first = min(centres)
     far = max(centres, key=lambda name: math.dist(centres[first], centres[name]))
@@ -67,8 +69,8 @@ def baseline(truth):
 
 
 def raw_model(truth, base):
-    """What COLMAP makes of the photographs under water, with a lens that it calibrates itself. Kept
-    as long as the photographs are: those in git for good, others beside their scene."""
+    """COLMAP's model of the photographs under water, with a lens that COLMAP calibrates itself. It
+    is kept as long as the photographs: for good if they are in git, else in the scene's folder."""
     in_git = SCENES[truth.name] is None
     work = base / "colmap" / f"{truth.name}-water-1" if in_git else truth.data / "colmap"
     lens = (truth.data / "sparse" / "cameras.txt").read_text().split("PINHOLE")[1].split()[2:6]
@@ -77,6 +79,7 @@ def raw_model(truth, base):
 
 
 def refine(truth, model, output, *options):
+    """Runs RefinePoses. Returns the RMS reprojection error [px] and the number of observations."""
     measured(output.parent / f"{output.name}.log", BIN / "RefinePoses", "-i", model, "--lens",
              truth.data / "sparse", "--housing", truth.data / "housing.json", "-o", output, *options)
     report = json.loads((output / "report.json").read_text())
@@ -84,7 +87,8 @@ def refine(truth, model, output, *options):
 
 
 def align(model, reference, output):
-    """Scale, RMS of the centres [mm] and largest turn [degrees]."""
+    """Runs AlignModel. Returns the scale, the RMS distance of the centres [mm] and the largest
+    rotation error [degrees]."""
     log = output.parent / f"{output.name}.log"
     measured(log, BIN / "AlignModel", "-i", model, "--reference", reference, "-o", output)
     text = log.read_text()
@@ -93,7 +97,7 @@ def align(model, reference, output):
 
 
 def at_true_poses(model, truth, output):
-    """The text model `model` with its tracks, at the poses of the truth."""
+    """Writes the text model `model` to `output` with its tracks and the true poses."""
     poses = images_of(truth.data / "sparse")
     output.mkdir(parents=True, exist_ok=True)
     for name in ("cameras.txt", "points3D.txt"):
@@ -107,8 +111,8 @@ def at_true_poses(model, truth, output):
 
 
 def refined(scene, base, work):
-    """The refined model in `work`, in the truth's place; what COLMAP's poses and ours are off; errors
-    [px] and observations with ours and with true poses."""
+    """Refines COLMAP's poses and writes the model, aligned to the truth, to `work`/aligned. Returns
+    align() of COLMAP's and of the refined poses, refine() of the refined and of the true poses."""
     truth = truth_of(scene, base)
     work.mkdir(parents=True, exist_ok=True)
     raw = raw_model(truth, base)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Four views of 512 x 384 of the close-up scene, simulated once for a test's cases."""
+"""Four views of 512 x 384 of the close-up scene, simulated once for all cases of a test class."""
 
 import json
 import os
@@ -7,17 +7,17 @@ import tempfile
 
 from programs import ProgramTest, read, run
 
-# One pixel's width at the scene's depth: the median distance (0.7 m) over the focal length (305 px).
+# The width of a pixel at the scene: the median distance (0.7 m) over the focal length (305 px).
 GSD = 0.7 / 305
-# Enough to see differences, small enough to run often.
+# Large enough to show differences in quality, small enough to run often.
 QUICK = ("--resolution-level", "1", "--min-resolution", "200")
-# Recall is then known to 0.004 (one standard deviation); errors are of all points of the cloud.
+# Recall then has a standard deviation of 0.004. Errors use all points of the cloud.
 RECALL_SAMPLES = 20000
 
 
 class SceneTest(ProgramTest):
-    """The close-up scene, photographed in air and through what SCENE says."""
-    SCENE = ()  # None: a base of other tests, without a scene
+    """The close-up scene. SCENE holds further options of SimulateUnderwater."""
+    SCENE = ()  # None: base class of other tests, without a scene
 
     @classmethod
     def setUpClass(cls):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""InterfaceCOLMAP exports a scene back to COLMAP."""
+"""InterfaceCOLMAP exports a scene as a COLMAP model."""
 
 import os
 import re
@@ -11,7 +11,7 @@ from programs import cloud_size, main, read, write
 
 
 def moved(scene, folder):
-    """The bytes of a scene whose images lie in `folder`."""
+    """The bytes of the scene with the images' folder replaced by `folder`."""
     for path in set(re.findall(rb"[^\0]*/\d{4}\.jpg", scene)):
         before = struct.pack("<Q", len(path)) + path
         after = os.path.join(folder, path[-8:].decode()).encode()
@@ -21,11 +21,10 @@ def moved(scene, folder):
 
 
 class Export(Scene):
-    """A scene back to COLMAP."""
     SAMPLES = 1
 
     def model(self, folder):
-        """Cameras by id, images by name, points by position; no program of ours reads them here."""
+        """Cameras by id, images by name, and points of a text model, read without our programs."""
         lines = lambda name: [line.split() for line in read(os.path.join(folder, name)).decode()
                               .splitlines() if not line.startswith("#")]
         cameras = {line[0]: line[1:] for line in lines("cameras.txt")}
@@ -62,7 +61,7 @@ class Export(Scene):
         largest = 0
         for (xyz, color, track), (found, found_color, found_track) in zip(points, again[2]):
             for a, b in zip(xyz, found):
-                self.assertAlmostEqual(a, b, 5)  # a scene's points are float32
+                self.assertAlmostEqual(a, b, 5)  # points of a scene are float32
             self.assertEqual(found_color, color)
             self.assertEqual(sorted({name for name, _ in found_track}),
                              sorted({name for name, _ in track}))
@@ -74,7 +73,7 @@ class Export(Scene):
         return largest
 
     def test_in_air(self):
-        # Observations of the truth have noise of about a pixel at most, ours none.
+        # The true observations have noise of up to about a pixel; the exported ones have none.
         self.assertLess(self.check_round_trip("air", True), 3)
 
     def test_only_an_export_is_overwritten(self):
@@ -94,7 +93,8 @@ class Export(Scene):
         self.refuses("images.bin", *command)
 
     def test_run_from_another_folder(self):
-        """A scene's relative paths count from there: the line says where, and what sets it."""
+        """Relative image paths start at the working folder. The message names the folder of the
+        images, and if images are missing, also the working folder and -w."""
         folder = self.copy("air")
         for name in ("0000.jpg", "0001.jpg"):
             os.makedirs(os.path.join(folder, "there"), exist_ok=True)
@@ -131,7 +131,7 @@ class Export(Scene):
         said = self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder).stdout
         self.assertIn("5 of 5 images are behind ports", said)
         self.assertIn("FLATPORT", read(os.path.join(folder, "sparse", "cameras.txt")).decode())
-        # And in again: the ports are those of the housing.
+        # The exported model is imported again: its ports replace the housing file.
         os.remove(os.path.join(folder, "scene.housing.json"))
         self.succeeds("InterfaceCOLMAP", "-i", folder, "-o", os.path.join(folder, "scene.mvs"),
                       "--image-folder", os.path.join(self.truth, "water"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`ReproducePaper completeness` as its users meet it: a small strip through the port."""
+"""`ReproducePaper completeness` as users run it, on a small strip of images behind the port."""
 
 import json
 import os
@@ -15,7 +15,7 @@ NAME = "completeness_transect_water_true"
 
 
 class Strip(unittest.TestCase):
-    """One run, looked at from all sides."""
+    """All cases check the results of one run."""
 
     @classmethod
     def setUpClass(cls):

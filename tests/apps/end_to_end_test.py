@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From simulated photographs to evaluated clouds, in air and behind a tilted port under water: four
-views of 512 x 384 of the close-up scene, on true poses."""
+"""From simulated photographs to evaluated clouds, in air and behind a tilted port under water. Four
+views of 512 x 384 of the close-up scene, with true poses."""
 
 import json
 import os
@@ -14,17 +14,17 @@ from close_up import GSD, QUICK, SceneTest
 from programs import BIN, cloud_size, depth_rows, files_below, grey_png, main, read, write
 
 
-# With the filter that the default leaves out: a stage more.
+# All three filters of depth maps: the adjusting filter, which is off by default, is one more stage.
 ALL_STAGES = ("--postprocess-dmaps", "7", *QUICK)
 
 
 class EndToEnd(SceneTest):
     def check_cloud(self, result):
-        # OpenMVS's mean on such scenes is half a GSD at full resolution; a quarter was measured here.
+        # OpenMVS has a mean of half a GSD on such scenes at full resolution, this run a quarter.
         self.assertLess(result["accuracy"]["mean"], 0.4 * GSD)
         self.assertLess(result["accuracy"]["median"], 0.25 * GSD)
         self.assertGreater(result["scores"][0]["precision"], 0.95)
-        # Four views leave much of the object unseen: recall is far below one in any medium.
+        # Four views do not see much of the object, so recall is far below one in air and in water.
         self.assertGreater(result["scores"][0]["recall"], 0.4)
         self.assertGreater(result["accuracy"]["count"], 60000)
 
@@ -45,7 +45,7 @@ class EndToEnd(SceneTest):
         self.import_scene("water", "obeyed")
         self.densify("obeyed", "--refractive", "--number-views-fuse", "2", *QUICK)
         obeyed = self.evaluate("water", "obeyed")["accuracy"]
-        # 3 cm of air gap and the tilt shift rays by centimetres; matching leaves a millimetre.
+        # The air gap of 3 cm and the tilt shift rays by centimetres. Matching errs by about 1 mm.
         self.assertGreater(ignored["median"], 5 * obeyed["median"])
 
     def outputs(self, folder):
@@ -66,7 +66,7 @@ class EndToEnd(SceneTest):
 
         self.kill_when_finished("killed", "depth0001.photometric.dmap")
         self.assertNotIn("scene_dense.ply", files_below(self.path("killed")))
-        # As a kill in the moment between two renames leaves it; no process has this number.
+        # The leftover of a process that was killed between two renames. No process has this id.
         write(self.path("killed", "depth0000.photometric.4194999.tmp.4194999.tmp.dmap"), b"half")
         resumed = self.densify("killed", "--refractive", *ALL_STAGES)
         self.assertRegex(resumed, r"Estimated depth maps: [123] maps were there already")
@@ -134,7 +134,7 @@ class EndToEnd(SceneTest):
         self.densify("damaged", "--refractive", *QUICK)
         expected = self.outputs("damaged")
         first = self.path("damaged", "depth0000.dmap")
-        # The last is whole, and so might be another program's.
+        # The last wrong map is complete, so that it might be another program's.
         for wrong, asked in ((read(first)[:1000], ()), (b"", ()),
                              (read(self.path("damaged", "depth0001.dmap")),
                               ("--overwrite-dmaps", "1"))):
@@ -194,7 +194,7 @@ class EndToEnd(SceneTest):
         process = subprocess.Popen(
             [os.path.join(BIN, "DensifyPointCloud"), "-i", "scene.mvs", "-w", self.path(folder),
              "--refractive", *ALL_STAGES], stdout=subprocess.DEVNULL)
-        # No file can be waited for without looking; a test that never sees it fails below.
+        # Polls for the file. If it never appears, the assertion below fails.
         for _ in range(30000):
             if os.path.exists(self.path(folder, file)) or process.poll() is not None:
                 break
@@ -204,8 +204,8 @@ class EndToEnd(SceneTest):
 
 
 class ThroughTheWaterSurface(SceneTest):
-    """Cameras in the air over the same scene, ten times as large: 3 to 4 m above a calm surface, and
-    4 m of water."""
+    """Cameras in air above the same scene, ten times as large: 3 to 4 m above a calm water surface,
+    with 4 m of water below it."""
     SCENE = ("--scale", "10", "--water-level", "4")
 
     def densify_quickly(self, folder, *arguments):
@@ -220,12 +220,14 @@ class ThroughTheWaterSurface(SceneTest):
         air = self.reconstructed("air", "air")
         obeyed = self.reconstructed("water", "obeyed", "--refractive")
         ignored = self.reconstructed("water", "ignored", "--camera-model", "pinhole")
-        # Water takes a quarter off the parallax over a part of the way, and makes pixels smaller.
+        # On the part of the ray in water the parallax is a quarter smaller. Pixels on the object
+        # are smaller, too.
         self.assertLess(obeyed["mean"], 1.25 * air["mean"])
         self.assertGreater(obeyed["count"], 0.8 * air["count"])
-        # Four metres of water look one metre shallower from above; matching leaves a centimetre.
+        # From above, 4 m of water look 1 m shallower. Matching errs by about 1 cm.
         self.assertGreater(ignored["median"], 20 * obeyed["median"])
-        # A surface further away than any housing's glass is read again from beside the maps.
+        # A resumed run accepts the side files of its maps, although a water surface is farther away
+        # than the glass of any housing.
         self.assertIn("All 4 depth maps are there already",
                       self.densify_quickly("obeyed", "--refractive"))
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes in UTM coordinates: what every program makes of them is what it makes of the same scene at
-the origin."""
+"""Scenes in UTM coordinates: every program gives the same result as near the origin."""
 
 import json
 import math
@@ -12,7 +11,7 @@ import tempfile
 import tiny_scene
 from programs import ProgramTest, cloud_size, main, read, run, write
 
-FAR = (534000.0, 3378500.0, 30.0)  # whole tens: a scene near the origin has this offset there
+FAR = (534000.0, 3378500.0, 30.0)  # multiples of 10, as a geo_offset is
 FAR_AND_ODD = (534012.34567, 3378487.65432, 30.0)
 QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--geometric-iters", "1")
 
@@ -22,7 +21,7 @@ def added(x, shift):
 
 
 def rotated(q, v):
-    """R(q) v of a unit quaternion (w, x, y, z)."""
+    """R(q) v for a unit quaternion q = (w, x, y, z)."""
     w, x, y, z = q
     rows = ((1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
             (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
@@ -36,13 +35,13 @@ def records(path):
 
 
 def image_lines(path):
-    """Pairs of lines of images.txt; those of observations may be empty."""
+    """Pairs of lines of images.txt: pose and observations. A line of observations may be empty."""
     lines = [line for line in read(path).decode().split("\n") if not line.startswith("#")]
     return [(lines[i], lines[i + 1]) for i in range(0, len(lines) - 1, 2)]
 
 
 def move_model(source, target, shift):
-    """A COLMAP text model with all places shifted: T = -R C."""
+    """Writes a COLMAP text model with all centres and points shifted. T = -R C."""
     write(os.path.join(target, "cameras.txt"), read(os.path.join(source, "cameras.txt")))
     out = []
     for pose, observations in image_lines(os.path.join(source, "images.txt")):
@@ -60,7 +59,7 @@ def move_model(source, target, shift):
 
 
 def centres_of(model):
-    """By name, C = -R^T T."""
+    """Camera centres C = -R^T T by image name."""
     result = {}
     for pose, _ in image_lines(os.path.join(model, "images.txt")):
         words = pose.split(" ")
@@ -85,7 +84,8 @@ def split_ply(data):
 
 
 def positions(data):
-    """Of a cloud with colours, normals, views and weights, as DensifyPointCloud writes it."""
+    """World positions of a cloud with colours, normals, views and weights, as DensifyPointCloud
+    writes it."""
     header, offset, body = split_ply(data)
     kind = "d" if "property float64 x" in header else "f"
     fixed, at, result = struct.Struct("<3" + kind), 0, []
@@ -99,7 +99,7 @@ def positions(data):
 
 
 def move_mesh(source, target, shift):
-    """The simulator's mesh (float32 positions and triangles) as float64 elsewhere."""
+    """Writes the simulator's mesh (float32 positions and triangles) shifted, in float64."""
     data = read(source)
     end = data.index(b"end_header\n") + len(b"end_header\n")
     count = cloud_size(data)
@@ -110,7 +110,7 @@ def move_mesh(source, target, shift):
 
 
 def share_near(points, others, within):
-    """How many of `points` have one of `others` closer than `within`."""
+    """The fraction of `points` that have one of `others` closer than `within`."""
     cells = {}
     key = lambda p: tuple(math.floor(c / within) for c in p)
     for point in others:
@@ -122,7 +122,7 @@ def share_near(points, others, within):
 
 
 class BitForBit(ProgramTest):
-    """Centres and points on a grid of 1/4096 m, cameras along the axes: shifting loses no bit."""
+    """Centres and points on a grid of 1/4096 m, cameras along the axes: the shift is exact."""
 
     def setUp(self):
         super().setUp()
@@ -192,7 +192,7 @@ class BitForBit(ProgramTest):
         self.assertIsNone(split_ply(read(self.path("far", "scene_dense.ply")))[1])
 
     def test_a_scene_of_another_program(self):
-        """Its poses are double, its points float: the frame is taken on reading."""
+        """Its poses are double, its points float. Reading moves both into a local frame."""
         folder = self.path("other")
         centres = [added(c, FAR) for c in tiny_scene.CENTRES]
         points = [(added(x, FAR), views) for x, views in tiny_scene.sparse_points()]
@@ -216,7 +216,7 @@ class BitForBit(ProgramTest):
 
 
 class FarScene(ProgramTest):
-    """The close-up scene, at the origin and elsewhere."""
+    """The close-up scene at the origin and at two other places."""
     SHIFTS = {"near": (0.0, 0.0, 0.0), "far": FAR, "odd": FAR_AND_ODD}
 
     @classmethod
@@ -238,7 +238,7 @@ class FarScene(ProgramTest):
 
     @classmethod
     def make(cls, name):
-        """The cloud under water, once for all cases."""
+        """Makes the cloud under water, once for all cases."""
         for command in (("InterfaceCOLMAP", "-i", cls.at(name), "--image-folder",
                          cls.at("scene", "water"), "--housing", cls.at("scene", "housing.json"),
                          "-o", cls.at(name, "scene.mvs")),
@@ -249,7 +249,7 @@ class FarScene(ProgramTest):
             assert "known to" not in result.stdout, result.stdout
 
     def evaluated(self, cloud, truth, *options):
-        """The printed table, and all numbers."""
+        """The printed table, and the numbers of the JSON file."""
         result = self.succeeds(
             "EvaluateReconstruction", "-i", self.at(cloud), "-m", self.at(truth, "mesh.ply"),
             "--cameras", self.at(truth, "sparse"), "--housing", self.at("scene", "housing.json"),
@@ -259,15 +259,15 @@ class FarScene(ProgramTest):
                 json.loads(read(self.path("result.json"))))
 
     def says_nearly_the_same(self, lines, others):
-        """Where an odd shift makes float round anew, and so other samples be drawn: to one of the
-        last digit, or 0.5 %."""
+        """An odd shift changes the rounding of float and so the samples that are drawn. Numbers may
+        differ by one unit of the last digit, or by 0.5 %."""
         for line, other in zip(lines, others):
             numbers = lambda text: [float(word) for word in text.split() if "." in word]
             for a, b in zip(numbers(line), numbers(other), strict=True):
                 self.assertAlmostEqual(a, b, delta=max(0.00101, 0.005 * b), msg=(line, other))
 
     def test_the_same_cloud(self):
-        """As nearly as poses of ten digits tell: shifting the near model by 3 nm does as much."""
+        """Equal up to the rounding of poses, which changes a cloud as much as a shift by 3 nm."""
         near = positions(read(self.at("near", "scene_dense.ply")))
         self.assertGreater(len(near), 5000)
         for name in ("far", "odd"):
@@ -279,14 +279,14 @@ class FarScene(ProgramTest):
             self.assertGreater(share_near(moved, near, 1e-3), 0.95, name)
 
     def test_evaluation_says_the_same(self):
-        """Of local clouds with an offset and of world clouds, with the truth in doubles."""
+        """Clouds are local with a geo_offset; the truth is in world coordinates in double."""
         table, numbers = self.evaluated("near/scene_dense.ply", "near")
         self.assertEqual(len(table), 3, table)
         for name in ("far", "odd"):
             result = self.evaluated(f"{name}/scene_dense.ply", name)[1]
             self.assertEqual(result["views"], 5)
             self.assertAlmostEqual(result["accuracy"]["mean"], numbers["accuracy"]["mean"], delta=2e-6)
-            # The very same cloud and truth elsewhere: the same digits.
+            # The same cloud and truth at another place give the same digits.
             header, _, body = split_ply(read(self.at("near", "scene_dense.ply")))
             offset = "comment geo_offset " + " ".join(map(repr, self.SHIFTS[name]))
             write(self.at(name, "moved.ply"),
@@ -305,7 +305,7 @@ class FarScene(ProgramTest):
             self.says_nearly_the_same(self.evaluated(f"{name}/mesh.ply", name)[0], table)
 
     def test_alignment_goes_from_place_to_place(self):
-        """--align centres: a cloud at one place onto the truth at another."""
+        """--align centres moves a cloud at one place onto the truth at another place."""
         table = self.evaluated("near/scene_dense.ply", "near", "--align", "centres",
                                "--estimated", self.at("near", "sparse"))[1]["accuracy"]
         for cloud, truth in (("far", "near"), ("near", "odd"), ("odd", "far"), ("odd", "odd")):
@@ -313,7 +313,7 @@ class FarScene(ProgramTest):
                                     "--estimated", self.at(cloud, "sparse"))[1]
             self.assertAlmostEqual(result["accuracy"]["mean"], table["mean"], delta=2e-6)
             self.assertLess(result["align"]["rms_residual"], 1e-8)
-            # World to world: what it does to a point at the cloud's place is known.
+            # The transform maps world to world, so the image of a point near the cloud is known.
             rows = result["align"]["transform"]
             source = added(self.SHIFTS[cloud], (0.1, 0.2, 0.3))
             moved = [math.fsum([*(a * b for a, b in zip(row, source)), row[3]]) for row in rows[:3]]
@@ -340,7 +340,7 @@ class FarScene(ProgramTest):
                       result.stderr)
 
     def test_refined_poses(self):
-        """The same steps, and the same model."""
+        """The same model at every place, after the same number of iterations, give or take one."""
         centres = centres_of(self.at("near", "sparse"))
         first, *_, last = sorted(centres)
         known = f"images:{first},{last},{math.dist(centres[first], centres[last])!r}"
@@ -371,7 +371,7 @@ class FarScene(ProgramTest):
                                 name)
 
     def test_known_positions_place_a_model(self):
-        """A model anywhere, brought to where a survey's positions are."""
+        """A model at any place is moved to the positions of a survey."""
         results = {}
         for name in ("near", "far"):
             survey = "".join(f"{image} {x!r} {y!r} {z!r}\n" for image, (x, y, z) in
@@ -402,7 +402,7 @@ class FarScene(ProgramTest):
 
 
 class WaterSurface(ProgramTest):
-    """Its place in the housing is one of the world, and goes with the scene's offset."""
+    """A housing file gives the water surface in world coordinates. It moves with the scene."""
 
     def test_the_same_ports(self):
         shared = self.path("scene")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Depth maps that other programs left in the working folder: kept, told from ours, fused."""
+"""Depth maps of other programs in the working folder are kept, recognised as foreign, and fused."""
 
 import os
 import struct
@@ -23,7 +23,7 @@ class ForeignMaps(Scene):
                                            *(name + ".json" for name in which))
                         self.assert_refused_and_kept(folder, which[0], "--fusion-mode", mode)
         self.assert_refused_and_kept(folder, "--overwrite-dmaps 1")
-        write(os.path.join(folder, "depth0003.dmap"), b"")  # of whom?
+        write(os.path.join(folder, "depth0003.dmap"), b"")  # of an unknown program
         self.assert_refused_and_kept(folder, "depth0003.dmap")
 
     def test_are_told_from_ours_by_their_content(self):
@@ -69,7 +69,7 @@ class ForeignMaps(Scene):
 
 class FusingWhatExists(Scene):
     def test_maps_of_others_give_the_cloud_that_ours_give(self):
-        # Side files of dry cameras say nothing that the maps do not.
+        # For cameras in air, the side files hold nothing that the maps do not hold.
         folder = self.copy("air", "_dense.ply", "_dense.mvs", ".dmap.json")
         said = self.fuse(folder)
         self.assertIn("5 of 5 images have a depth map, 5 by other programs", said)
@@ -87,7 +87,7 @@ class FusingWhatExists(Scene):
 
     def test_our_own_maps_behind_a_port(self):
         folder = self.copy("water", "_dense.ply")
-        self.fuse(folder, "--iters", "7")  # whatever the options of matching
+        self.fuse(folder, "--iters", "7")  # options of matching do not matter
         self.assertEqual(self.cloud(folder), read(self.densified("water", "scene_dense.ply")))
 
     def test_foreign_content_beside_our_side_file(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks while depth maps that exist are fused (--fusion-mode -1): a masked pixel has no depth."""
+"""Masks in the fusion of existing depth maps (--fusion-mode -1): a masked pixel has no depth."""
 
 import os
 import random
@@ -14,7 +14,7 @@ NAMES = [f"{i:04}" for i in range(Scene.VIEWS)]
 
 
 def random_labels(seed):
-    """Blocks of 8 x 8 pixels of a map with the labels 0, 5 and 9."""
+    """Labels 0, 5 and 9 of a map's pixels, the same within each block of 8 x 8 pixels."""
     rng = random.Random(seed)
     blocks = [[rng.choice((0, 5, 9)) for _ in range(WIDTH // 8)] for _ in range(HEIGHT // 8)]
     return [bytes(row[x // 8] for x in range(WIDTH)) for row in blocks for _ in range(8)]
@@ -26,7 +26,7 @@ def enlarged(rows, factor):
 
 
 def without(dmap, rows, label):
-    """The map's bytes without depth and normal where `rows` have the label."""
+    """The map's bytes with depth and normal set to zero where `rows` have the label."""
     dmap.depths, dmap.normals = bytearray(dmap.depths), bytearray(dmap.normals)
     for y, row in enumerate(rows):
         for x, found in enumerate(row):
@@ -84,7 +84,7 @@ class Fusing(Scene):
         write(os.path.join(folder, "scene.mvs"), scene)
         self.fuse(folder, "--ignore-mask-label", "0")
         self.assertEqual(self.cloud(folder), expected)
-        self.fuse(folder)  # masks are not asked for
+        self.fuse(folder)  # without any option for masks, they are not used
         self.assertEqual(self.cloud(folder), read(self.densified("air", "scene_dense.ply")))
 
     def test_behind_a_port(self):
@@ -98,12 +98,12 @@ class Fusing(Scene):
         self.fuse(folder, *masks)
         masked = cloud_size(self.cloud(folder))
         self.assertLess(masked, 0.9 * cloud_size(read(self.densified("water", "scene_dense.ply"))))
-        # What matching left out is left out once more.
+        # Fusion masks the pixels that matching masked, so the cloud does not change.
         self.succeeds(*self.command(folder, *masks))
         matched = self.cloud(folder)
         self.fuse(folder, *masks)
         self.assertEqual(self.cloud(folder), matched)
-        # And what it did not leave out: nothing is left.
+        # With inverted masks, fusion masks all pixels that matching kept. No point is left.
         self.put(folder, [[bytes(255 * (label == 0) for label in row) for row in rows]
                           for rows in labels])
         self.fuse(folder, *masks)

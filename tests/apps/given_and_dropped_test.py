@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the user gives is used, refused, or said to be unused."""
+"""Every input that the user gives is used, refused, or reported as not used."""
 
 import json
 import math
@@ -14,7 +14,7 @@ from programs import ProgramTest, cloud_size, files_below, main, read, run, writ
 
 
 def thin(source, target, step):
-    """A model with every so manieth of the points: enough, and quickly refined."""
+    """Copies a text model with every `step`-th point only, so that refining it is fast."""
     kept = [line for line in read(os.path.join(source, "points3D.txt")).decode().split("\n")
             if line and line[0] != "#"][::step]
     ids = {line.split(" ")[0] for line in kept}
@@ -29,7 +29,7 @@ def thin(source, target, step):
 
 
 class Scales(ProgramTest):
-    """RefinePoses with known lengths and places whose images or points do not fit."""
+    """RefinePoses with --scale-from that names images or points that are missing or left out."""
 
     @classmethod
     def setUpClass(cls):
@@ -45,7 +45,8 @@ class Scales(ProgramTest):
         cls.names = sorted(cls.centres)
 
     def model(self, spoiled):
-        """The model with the observations of the image `spoiled` given to other points."""
+        """A copy of the model in which the pixels of the image `spoiled` belong to the wrong
+        points, so that RefinePoses leaves it out. An empty name spoils no image."""
         folder = self.path("model")
         for part in ("cameras.txt", "points3D.txt"):
             write(os.path.join(folder, part), read(os.path.join(self.sparse, part)))
@@ -88,7 +89,7 @@ class Scales(ProgramTest):
                 self.assertIn(f"image '{spoiled}' is left out", said)
         result = self.succeeds(*self.command(model, "out", "--allow-missing", "--scale-from", known))
         self.assert_has_no_scale(result, "out")
-        # As good as without it, and not begun from a scale that the bad image made.
+        # The same model as without --scale-from: the bad image does not affect the initial scale.
         self.succeeds(*self.command(model, "without"))
         for name in ("images.txt", "points3D.txt", "cameras.txt"):
             self.assertEqual(read(self.path("out", "sparse", name)),
@@ -153,7 +154,7 @@ class Scales(ProgramTest):
         self.succeeds(*self.command(self.sparse, "allowed", "--scale-from", known, "--allow-missing"))
         for name in files_below(self.path("out")):
             self.assertEqual(read(self.path("out", name)), read(self.path("allowed", name)), name)
-        # The standard deviations come when the model is there.
+        # The standard deviation is reported after the refined model.
         self.assertLess(plain.stdout.index("Refined model in"),
                         plain.stdout.index("All lengths are known"))
 
@@ -185,7 +186,7 @@ class Scales(ProgramTest):
 
 
 def tiny(folder, shift=None):
-    """A scene in air and its import; with a shift, one in world coordinates that far away."""
+    """Writes a COLMAP model in air, with all places moved by `shift`, and imports it."""
     tiny_scene.write_colmap(folder)
     if shift:
         move_model(os.path.join(folder, "sparse"), os.path.join(folder, "moved"), shift)
@@ -225,7 +226,7 @@ class Housings(ProgramTest):
 
 
 class Clouds(ProgramTest):
-    """-p, exports, and what goes with them."""
+    """The cloud given with -p, exports, and the files written beside them."""
 
     def densify(self, *arguments, name="near"):
         return self.succeeds("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path(name),
@@ -278,10 +279,11 @@ class Clouds(ProgramTest):
             world = split_ply(read(self.path("far", f"scene_dense{names[0]}.ply")))
             self.assertIsNone(world[1])
             self.assertIn("property float64 x", world[0])
-            self.assertEqual(len(world[2]) - len(far[2]), 12 * 60)  # its points
+            self.assertEqual(len(world[2]) - len(far[2]), 12 * 60)  # 60 points, 12 bytes more each
 
     def test_a_cloud_given_to_a_far_scene_counts_from_its_own_offset(self):
-        """Local with a comment, double in the world, local without a comment: the same points."""
+        """A local cloud with a comment geo_offset, a local cloud without it, and a world cloud in
+        double are read as the same points."""
         tiny(self.path("far"), FAR)
         self.densify(name="far")
         write(self.path("far", "local.ply"), read(self.path("far", "scene_dense.ply")))
@@ -349,7 +351,7 @@ class Clouds(ProgramTest):
 
 
 class NoEffect(ProgramTest):
-    """An option that changes nothing with the others is named in a warning."""
+    """A warning names each option that has no effect together with the other options."""
 
     def said(self, *command):
         return [line for line in self.succeeds(*command).stdout.split("\n")
@@ -402,7 +404,7 @@ class NoEffect(ProgramTest):
         self.assertEqual(self.said(*command), [])
         self.assertEqual(len(self.said(*command, "--min-views", "3", "--picture-width", "100")), 2)
         self.refuses("--estimated", *command, "--estimated", self.path("near"))
-        # Which of two models is read is said once.
+        # If there are two models, one message names the model that is read.
         for part in ("cameras", "images", "points3D"):
             write(self.path("near", "sparse", "0", part + ".txt"),
                   read(self.path("near", "sparse", part + ".txt")))

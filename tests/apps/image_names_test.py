@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images of one base name in several folders: what files beside a scene say of one goes to it alone."""
+"""Images with the same base name in several folders: an entry of a housing or lens file applies to
+one image only, or is refused."""
 
 import json
 import os
@@ -10,7 +11,7 @@ from programs import ProgramTest, files_below, main, read, write
 
 FLAT = {"type": "flat", "distance_m": 0.02, "thickness_m": 0.01, "normal": [0, 0, 1], "n_glass": 1.5,
         "n_water": 1.33}
-# In place of 0000.png, 0001.png and 0002.png.
+# These names replace 0000.png, 0001.png and 0002.png.
 NAMES = ("cam0/0000.png", "cam1/0000.png", "cam1/0001.png")
 
 
@@ -42,7 +43,8 @@ class Base(ProgramTest):
                 *arguments)
 
     def ports(self):
-        """Of the scene's images in the order of their names, by DensifyPointCloud's rule."""
+        """The ports of self.names in the imported housing file; images without an entry get the
+        default."""
         housing = json.loads(read(self.path("scene.housing.json")))
         return [housing.get("images", {}).get(name, housing["default"]) for name in self.names]
 
@@ -59,7 +61,8 @@ class Names(Base):
                     "cam1/0000.png")
         for images in ({"0000.png": "main"}, {"0000.png": "none", "0001.png": "main"}):
             self.refuses(expected, *self.command(*self.housing(images, "other")))
-        # In a scene images go by their paths.
+        # Without a housing the import succeeds. A scene names images by their paths, so there the
+        # base name is ambiguous, too.
         self.succeeds(*self.command())
         before = files_below(self.folder)
         self.refuses(f"{self.path('port.json')}: housing.images.0000.png could be ",
@@ -83,7 +86,7 @@ class Names(Base):
     def test_names_that_tell_images_apart(self):
         self.assertEqual(self.imported(NAMES, {"cam0/0000.png": "main", "0001.png": "other"}),
                          ["main", "none", "other"])
-        # What is left of two images is one.
+        # The first image has an entry of its own, so 0000.png can only mean the second image.
         self.assertEqual(self.imported(NAMES, {"cam0/0000.png": "none", "0000.png": "main"}),
                          ["none", "main", "none"])
 
@@ -100,7 +103,7 @@ class Names(Base):
 
 class Lines(Base):
     def test_lines_about_ports_name_file_field_and_value(self):
-        """Of ports beyond the scene, whichever program reads them."""
+        """The warning about a port that reaches behind the scene."""
         self.make(NAMES)
         far = {**FLAT, "distance_m": 0.995, "thickness_m": 0.4}
         write(self.path("port.json"), json.dumps(

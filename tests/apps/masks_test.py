@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks: which file is taken, and that none is passed over without a word."""
+"""Masks: which file is used; a mask that is missing or not used is reported."""
 
 
 import tiny_scene
@@ -9,7 +9,7 @@ LEFT, RIGHT = bytes([0] * 48 + [255] * 48), bytes([255] * 48 + [0] * 48)
 
 
 class Masks(ProgramTest):
-    """Pixels at the left are left out by LEFT, at the right by RIGHT."""
+    """LEFT masks the left half of an image, RIGHT the right half."""
 
     def setUp(self):
         super().setUp()
@@ -33,7 +33,7 @@ class Masks(ProgramTest):
         return self.succeeds(*self.arguments(*more)).stdout
 
     def matched(self, image):
-        """Whether any pixel of the left half, and of the right half, has a depth."""
+        """Whether any pixel has a depth: in the left half, in the right half."""
         rows = depth_rows(read(self.path(f"depth{image:04}.dmap")))
         middle = len(rows[0]) // 2
         return tuple(any(depth > 0 for row in rows for depth in half(row))

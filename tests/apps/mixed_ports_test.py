@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One scene photographed behind a flat port, behind a dome and in air: five views of 320 x 240 of the
-close-up scene, on true poses."""
+"""One scene photographed behind a flat port, behind a dome and in air. Five views of 320 x 240 of
+the close-up scene, with true poses."""
 
 import json
 import os
@@ -52,7 +52,7 @@ class MixedPortsTest(ProgramTest):
                              "--refractive", *arguments).stdout
 
     def result(self, truth, folder):
-        """Median distance to the true surface [m], recall at 4 mm, which is one pixel's width."""
+        """Median distance to the true surface [m], and recall at 4 mm, the width of one pixel."""
         self.succeeds("EvaluateReconstruction", "-i", self.path(folder, "scene_dense.ply"), "-m",
                       os.path.join(self.flat, "mesh.ply"), "--cameras",
                       os.path.join(truth, "sparse"), "--housing",
@@ -82,9 +82,9 @@ class MixedPortsTest(ProgramTest):
         (flat_median, flat_recall), (dome_median, dome_recall) = results["flat"], results["dome"]
         median, recall = results["mixed"]
         self.assertLess(median, 1.1 * max(flat_median, dome_median))
-        # The views' fields differ with their ports, and with them what is seen twice.
+        # Fields of view depend on the ports, and so does the part of the scene that is seen twice.
         self.assertGreater(recall, 0.95 * min(flat_recall, dome_recall))
-        # And it is each view's own port that does it.
+        # With flat port and dome swapped, the error is much larger.
         self.assertGreater(results["swapped"][0], 5 * median)
 
     def test_the_same_bytes_for_any_number_of_threads_and_when_taken_up_again(self):
@@ -98,9 +98,11 @@ class MixedPortsTest(ProgramTest):
             self.assertEqual(read(self.path("one", name)), read(self.path("two", name)), name)
 
     def test_views_whose_sources_are_of_their_kind_have_the_maps_of_a_scene_of_that_kind(self):
-        """Each view has one source view of its own kind, beside images of other kinds."""
+        """Each view is matched with one view behind the same kind of port. The scene also holds
+        images of other kinds."""
         write(self.path("neighbours.txt"), "0 3\n1 4\n3 0\n4 1\n")
-        # Depth maps begin with the sparse points: the same for all, whoever else sees them.
+        # Depth maps start from the sparse points. With 1, a point counts however many views see it,
+        # so that all scenes start from the same points.
         write(self.path("dense.ini"), "Min Views Trust Point = 1\n")
         for name in ("mixed", "flat", "dome"):
             self.import_scene(getattr(self, name), name, model=self.flat)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DensifyPointCloud's options that scripts of OpenMVS pass."""
+"""Options of DensifyPointCloud that scripts written for OpenMVS use."""
 
 import os
 import struct
@@ -9,11 +9,11 @@ from programs import cloud_size, files_below, main, read, run, write
 
 
 class Options(Scene):
-    """What scripts of OpenMVS pass."""
     MEDIA = ("air",)
 
     def same_cloud(self, folder, *arguments):
-        """Runs; the cloud must be the one without these options. Returns what was said."""
+        """Runs DensifyPointCloud with these options, which must not change the cloud. Returns its
+        output."""
         said = self.succeeds(*self.command(folder, *arguments)).stdout
         self.assertEqual(self.cloud(folder), read(self.densified("air", "scene_dense.ply")))
         return said
@@ -56,7 +56,8 @@ class Options(Scene):
         self.assertIn("Depth Diff Threshold = 0.005", read(file).decode())
         self.assertIn("All 5 depth maps are there already", self.same_cloud(folder, *config))
 
-        # OpenMVS's options replace these titles' values, and it knows nothing of the last ones.
+        # As in OpenMVS, options take precedence over the first two titles. Random Iters has no
+        # effect here, and the last two titles are unknown.
         write(file, "[Densify]\n# of 2.3\nEstimation Iters = 9\nMin Views Fuse = 5\n"
                     "Random Iters = 6\nDepth Dif Threshold = 1\nNo Such = 2\n")
         said = self.same_cloud(folder, *config)
@@ -186,7 +187,7 @@ class Options(Scene):
                       os.path.join(self.truth, "air"), "-o", self.path("copy", "scene.mvs"),
                       "--normalize", "1")
         scene = read(self.path("copy", "scene.mvs"))
-        # Header, one platform and its name, one camera and its names: then the resolution and K.
+        # Skips the header and the names of platform and camera, up to the resolution and K.
         at = 12 + 8
         for _ in range(3):
             at += 8 + struct.unpack_from("<Q", scene, at)[0]

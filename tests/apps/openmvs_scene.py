@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small scene beside OpenMVS: densified folders, its depth maps and clouds field by field, all that
-several test scripts share."""
+"""Shared by several test scripts: a small densified scene, and depth maps in OpenMVS's format and
+clouds, read field by field."""
 
 import os
 import shutil
@@ -77,8 +77,8 @@ class Scene(ProgramTest):
         return os.path.join(cls.shared.name, medium, *name)
 
     def copy(self, medium, *leave_out):
-        """The densified folder, without files whose names end in one of `leave_out`."""
-        self.folder = self.shared.name  # maps hold the way from their folder to their image
+        """A copy of the densified folder without files whose names end in one of `leave_out`."""
+        self.folder = self.shared.name  # maps hold relative image paths
         folder = self.path("copy")
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(self.densified(medium), folder)
@@ -101,7 +101,8 @@ class Scene(ProgramTest):
         return read(os.path.join(folder, "scene_dense.ply"))
 
     def fuse(self, folder, *arguments):
-        """Fuses; no map may change, appear or go."""
+        """Fuses the existing maps, and checks that no map changes, appears or disappears. Returns
+        the output."""
         before = self.maps(folder)
         said = self.succeeds(*self.command(folder, *self.FUSE, *arguments)).stdout
         self.assertEqual(self.maps(folder), before)
@@ -113,7 +114,7 @@ def dmap_names():
 
 
 class Cloud:
-    """The vertices of a PLY of ours as dictionaries of tuples."""
+    """The vertices of a PLY that our programs wrote, as dictionaries of tuples."""
     SIZES = {"float32": "f", "uint8": "B", "uint32": "I"}
 
     def __init__(self, data):
@@ -139,7 +140,7 @@ def position(point):
 
 
 def ascii_ply(points, with_views=True):
-    """`points`: (x, y, z), [images]."""
+    """An ASCII PLY. `points`: pairs of (x, y, z) and [image indices]."""
     lists = "property list uchar uint view_indices\n" if with_views else ""
     lines = [" ".join(map(str, (*xyz, *((len(views), *views) if with_views else ()))))
              for xyz, views in points]

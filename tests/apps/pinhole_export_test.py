@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""--pinhole-export: what a pinhole's programs make of it is what we make of the refractive scene."""
+"""--pinhole-export: programs for pinhole cameras reach the quality of the refractive scene."""
 
 import json
 import os
@@ -16,7 +16,7 @@ QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--iters", "1",
 
 
 class Reader:
-    """A scene of version 7, field by field (docs/formats.md)."""
+    """Reads a .mvs scene of version 7 field by field (docs/formats.md)."""
 
     def __init__(self, data):
         assert data[:8] == b"MVSI" + struct.pack("<I", 7)
@@ -56,7 +56,7 @@ class Reader:
         return name, mask, ids
 
     def camera(self, image):
-        """Size, K, R, C; None without calibration."""
+        """Size, K, R and C of an image; None if the image has no pose."""
         platform, camera, pose, _ = self.images[image][2]
         if pose == 0xFFFFFFFF:
             return None
@@ -69,7 +69,7 @@ def image_size(scene, image):
 
 
 def project(camera, point):
-    """Pixel and z-depth."""
+    """The pixel (x, y) and the z-depth of a point."""
     _, k, r, c = camera
     x, y, z = (sum(r[3 * i + j] * (point[j] - c[j]) for j in range(3)) for i in range(3))
     return k[0] * x / z + k[2], k[4] * y / z + k[5], z
@@ -112,7 +112,8 @@ class Exports(ProgramTest):
         return ("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK, *arguments)
 
     def copy(self, *names, leave_out=()):
-        """A folder of the shared ones, for this test alone; maps hold relative paths of images."""
+        """A copy of a shared folder for one test. It lies beside the shared folder, because maps
+        hold relative image paths."""
         target = self.at(f"copy_{self._testMethodName}")
         self.addCleanup(shutil.rmtree, target, True)
         shutil.copytree(self.at(*names), target,
@@ -129,10 +130,10 @@ class Exports(ProgramTest):
 
 
 class Taken(Exports):
-    """By programs that know pinholes alone: ours, without a housing."""
+    """The export as input of a program for pinhole cameras: DensifyPointCloud without a housing."""
 
     def error_of(self, cloud):
-        """Mean distance to the true surface [mm], and the number of points."""
+        """Mean distance of the points to the true surface [mm], and the number of points."""
         report = os.path.join(os.path.dirname(cloud), "evaluation.json")
         self.succeeds("EvaluateReconstruction", "-i", cloud, "-m",
                       os.path.join(self.truth, "mesh.ply"), "--cameras",
@@ -156,7 +157,7 @@ class Taken(Exports):
         refractive, refractive_points = self.error_of(self.at("work", "scene_dense.ply"))
         print(f"\nfused {error:.3f} mm, {points} points; refractive {refractive:.3f} mm, "
               f"{refractive_points}")
-        # Each depth is a mean of three now, and the image has 0.8 times the pixels.
+        # An exported depth interpolates three depths. The image has 0.8 times as many pixels.
         self.assertLess(error, 1.15 * refractive)
         self.assertGreater(points, 0.65 * refractive_points)
 
@@ -170,7 +171,7 @@ class Taken(Exports):
         self.succeeds(*self.command(folder))
         error, points = self.error_of(os.path.join(folder, "scene_dense.ply"))
         refractive, refractive_points = self.error_of(self.at("work", "scene_dense.ply"))
-        # What a pinhole's program makes of the photographs as they are.
+        # The photographs themselves, matched as if a pinhole camera had taken them.
         as_they_are = self.copy_of_photographs()
         ignored, _ = self.error_of(as_they_are)
         print(f"\nrematched {error:.3f} mm, {points} points; refractive {refractive:.3f} mm, "
@@ -192,7 +193,7 @@ class Taken(Exports):
         self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 10000)
 
     def test_poses_and_maps_agree_with_the_points_of_the_scene(self):
-        """The simulated points, which no depth map made, lie where the maps say."""
+        """The simulated points, which do not depend on depth maps, have the depths of the maps."""
         folder = self.at("work", "pinholes")
         scene = Reader(read(os.path.join(folder, "scene.mvs")))
         ratios, shown = [], 0
@@ -203,7 +204,7 @@ class Taken(Exports):
             for point, views in scene.points:
                 if image not in views:
                     continue
-                # Observed in air, where cameras see more.
+                # Points were observed in air, where the field of view is wider.
                 u, v, z = project(scene.camera(image), point)
                 x, y = round((u + 0.5) * scale[0] - 0.5), round((v + 0.5) * scale[1] - 0.5)
                 if not (0 <= x < len(rows[0]) and 0 <= y < len(rows)):
@@ -226,7 +227,7 @@ class Files(Exports):
         self.assertEqual(files_below(folder),
                          names | {"scene.mvs", "scene.ply", "pinhole_export.json"})
         scene = Reader(read(os.path.join(folder, "scene.mvs")))
-        self.assertEqual(len(scene.platforms), 1)  # one lens behind one port: one pinhole
+        self.assertEqual(len(scene.platforms), 1)  # one lens and port: one pinhole
         for i, (name, mask, ids) in enumerate(scene.images):
             self.assertEqual((name, mask, ids[3]), (f"images/{i:04}.jpg", f"images/{i:04}.mask.png", i))
             png = read(os.path.join(folder, mask))
@@ -277,7 +278,7 @@ class Files(Exports):
         command = self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1")
         before = self.contents(folder)
         self.assertEqual(run(*command, file_size_limit=20000).returncode, 1)
-        self.assertEqual(self.contents(folder), before)  # a full disk: all of the earlier one
+        self.assertEqual(self.contents(folder), before)  # the earlier export survives
         said = self.succeeds(*command).stdout
         self.assertEqual(said.count("depth0003.dmap: is not as the earlier export wrote it"), 1)
         found = self.contents(folder)
@@ -334,7 +335,8 @@ class Files(Exports):
                              read(self.at("work", "pinholes", "images", name)))
 
     def assert_same_points(self, a, b):
-        """Bodies of clouds; a double in world coordinates holds 5e-10 of a metre there."""
+        """Compares bodies of clouds. Positions may differ by rounding: a double has a resolution of
+        5e-10 m at these world coordinates."""
         self.assertEqual(len(a), len(b))
         at = 0
         while at < len(a):
@@ -381,7 +383,7 @@ class Refusals(Exports):
         write(os.path.join(work, "other", "notes.txt"), "mine\n")
         write(os.path.join(work, "a_file"), "mine\n")
         os.symlink(work, os.path.join(work, "link"))
-        write(os.path.join(self.truth, "pinhole_export.json"), "{}\n")  # as if it were ours
+        write(os.path.join(self.truth, "pinhole_export.json"), "{}\n")  # as in an export
         for folder, expected in (("other", "holds other files"), (".", "inputs lie there"),
                                  ("link", "inputs lie there"), ("a_file", "is a file"),
                                  ("a_file/below", "a_file"),

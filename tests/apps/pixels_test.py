@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pixels are what a file holds: 12 bits in 16, orientation, alpha; and one answer of all programs."""
+"""How pixels are read: 12 bits in 16, orientation, alpha. All programs refuse a bad file alike."""
 
 import random
 import re
@@ -20,7 +20,7 @@ def pixels_of(png):
 
 
 def png(rows, bits, color_type):
-    """A PNG; `rows` hold bytes as the format orders them."""
+    """The bytes of a PNG. Each of `rows` holds its samples in the byte order of the format."""
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
@@ -31,7 +31,7 @@ def png(rows, bits, color_type):
 
 
 def tiff(rows, orientation=1, sample_format=1, bits=8):
-    """An RGB TIFF of one strip."""
+    """The bytes of an RGB TIFF of one strip."""
     pixels = b"".join(rows)
     entries = [(256, 4, 1, WIDTH), (257, 4, 1, HEIGHT), (258, 3, 3, 0), (259, 3, 1, 1),
                (262, 3, 1, 2), (273, 4, 1, 0), (274, 3, 1, orientation), (277, 3, 1, 3),
@@ -124,7 +124,7 @@ class Pixels(ProgramTest):
 
     def test_the_first_bad_image_is_named(self):
         for path, picture in zip(self.images, self.stored):
-            # Whole by its chunks; the pixels are damaged.
+            # All chunks are there, but the pixels are damaged.
             write(path, picture[:60] + bytes(40) + picture[100:])
         for threads in (1, 8) * 4:
             self.refuses(f"{self.images[0]}: cannot be decoded: ",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`DensifyPointCloud --estimate-uncertainty`: points that say what they are worth."""
+"""`DensifyPointCloud --estimate-uncertainty`: each point gets an error and a confidence."""
 
 import json
 
@@ -33,7 +33,7 @@ class Worth(Scene):
                     self.assertLessEqual(confidence, 1)
                     self.assertEqual(point, same)
 
-    # Maps of a single sweep at 160 x 120 pixels are not what the errors were fitted to.
+    # Wide bounds: the errors were not fitted to maps like these, of one sweep and 160 x 120 pixels.
     def test_errors_are_those_that_the_truth_shows(self):
         for medium in self.MEDIA:
             with self.subTest(medium=medium):

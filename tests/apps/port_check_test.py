@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Port, lens, scale and poses that do not belong together, and no word of those that do: what
-InterfaceCOLMAP says of the simulated scene, whose tracks are of the photographs in air."""
+"""InterfaceCOLMAP warns if port, lens, scale and poses do not belong together, and gives no warning
+if they do. The tracks of the simulated scene are observations in air."""
 
 import json
 import os
@@ -23,7 +23,7 @@ class Import(ProgramTest):
         assert made.returncode == 0, made.stderr
 
     def said(self, medium="water", housing=None, model=None, threads=0):
-        """What the import says; `housing`: changes to the port, none for no housing."""
+        """The output of an import. `housing`: changes to the true port; None: no housing."""
         arguments = []
         if housing is not None:
             content = json.loads(read(os.path.join(self.scene, "housing.json")))
@@ -61,7 +61,7 @@ class Import(ProgramTest):
         self.is_silent(medium="air")
 
     def pair_of(self, first):
-        """The model of the images `first` and the next one, and of the points that both see."""
+        """The model of the images `first` and `first` + 1, with the points that both see."""
         lines = {part: [line for line in read(os.path.join(self.scene, "sparse", part + ".txt"))
                         .decode().splitlines() if not line.startswith("#")]
                  for part in ("cameras", "images", "points3D")}
@@ -86,7 +86,7 @@ class Import(ProgramTest):
         return model
 
     def test_correct_pairs_of_images(self):
-        """Whichever of a pair's points are looked at, the port moves some out of the image."""
+        """No pair of images gives a warning, although the port moves points out of the images."""
         for first in range(4):
             self.is_silent(housing={}, model=self.pair_of(first))
             os.remove(self.path("scene.mvs"))
@@ -111,8 +111,8 @@ class Import(ProgramTest):
             shutil.rmtree(self.path("model"))
 
     def test_photographs_that_no_port_was_before(self):
-        """Poses and photographs of a pinhole, and a housing: what COLMAP's poses from photographs
-        under water are, too."""
+        """Poses and photographs of a pinhole camera, with a housing. COLMAP's poses from
+        photographs under water are solved without a port, too."""
         self.warns("The poses were solved without the port", medium="air", housing={})
 
     def test_a_housing_that_is_forgotten(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the program tests share: running programs, and judging how they fail."""
+"""Shared by the program tests: running programs, and checking how they fail."""
 
 import os
 import re
@@ -18,11 +18,12 @@ BIN = os.environ.get("AXIAL_BIN", "")
 
 
 def run(program, *arguments, file_size_limit=None, cwd=None, timeout=600):
-    """Runs a program to its end; `file_size_limit` [bytes] stands for a full disk. A scene that
-    SimulateUnderwater rendered before from the same arguments is copied (scenes.py)."""
+    """Runs a program to its end. `file_size_limit` [bytes] simulates a full disk. If
+    SimulateUnderwater rendered a scene from the same arguments before, the scene is copied
+    (scenes.py)."""
 
     def limit():
-        # A write beyond the limit then fails with an error, as on a full disk, instead of a signal.
+        # With the signal ignored, a write beyond the limit fails with an error, as on a full disk.
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (file_size_limit, file_size_limit))
 
@@ -93,7 +94,8 @@ class ProgramTest(unittest.TestCase):
         return result
 
     def refuses(self, expected, program, *arguments, **options):
-        """Exit code 1, one line on standard error that holds `expected`, and no new file."""
+        """Checks for exit code 1, one line on standard error that contains `expected`, no new
+        file."""
         before = files_below(self.folder)
         result = run(program, *arguments, **options)
         said = f"{program} {arguments}: exit code {result.returncode}, said: {result.stderr!r}"
@@ -106,7 +108,7 @@ class ProgramTest(unittest.TestCase):
 
 
 def main():
-    """Runs the script's cases, or those of the classes that are named; --list names the classes."""
+    """Runs all cases, or those of the classes on the command line. --list prints the classes."""
     if sys.argv[1:] == ["--list"]:
         loader = unittest.defaultTestLoader
         print("\n".join(name for name, value in vars(sys.modules["__main__"]).items()

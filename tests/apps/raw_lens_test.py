@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Photographs of distorted lenses behind a flat port, matched as they are and undistorted: four views
-of 512 x 384 of the close-up scene, on true poses."""
+"""Photographs of distorted lenses behind a flat port, matched as they are and undistorted. Four
+views of 512 x 384 of the close-up scene, with true poses."""
 
 import os
 
@@ -30,11 +30,11 @@ class LensTest(SceneTest):
             self.densify(folder, "--refractive", "--resolution-level", "0")
         mean, recall = self.errors("raw")
         mean_undistorted, recall_undistorted = self.errors("undistorted")
-        # No tolerance: neither varies from run to run, and to resample costs more than rounding.
-        # The mean was 1 to 2 % better and the recall 7 to 17 %.
+        # No tolerance, because runs are deterministic and resampling costs more than rounding.
+        # Measured: the mean of raw images was 1 to 2 % better, their recall 7 to 17 %.
         self.assertLessEqual(mean, mean_undistorted)
         self.assertGreaterEqual(recall, recall_undistorted)
-        self.assertLess(mean, 0.4)  # as the end-to-end test of straight lenses asks
+        self.assertLess(mean, 0.4)  # as in the end-to-end test
 
 
 class OpencvLens(LensTest):
@@ -47,13 +47,13 @@ class OpencvLens(LensTest):
         self.import_scene("water", "scene")
         self.assertIn("4 images have distorted lenses", self.densify("scene", "--refractive", *QUICK))
         obeyed, _ = self.errors("scene")
-        # The dense scene has the lenses, too: its maps are those that are there.
+        # The dense scene has the lenses, too, so that a run on it keeps the existing maps.
         self.assertEqual(read(self.path("scene", "scene_dense.lenses.json")),
                          read(self.path("scene", "scene.lenses.json")))
         again = self.succeeds("DensifyPointCloud", "-i", "scene_dense.mvs", "-w",
                               self.path("scene"), "--refractive", *QUICK).stdout
         self.assertIn("All 4 depth maps are there already", again)
-        # Without them: the corners are 30 pixels off.
+        # Without the lenses, the image corners are off by 30 pixels.
         os.remove(self.path("scene", "scene.lenses.json"))
         ignored = self.densify("scene", "--refractive", *QUICK)
         self.assertNotIn("there already", ignored, "maps of another lens were taken over")

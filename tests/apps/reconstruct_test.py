@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From raw underwater photographs to a cloud in one command, killed at every step."""
+"""apps/pipeline/reconstruct: from raw underwater photographs to a cloud in one command, which goes
+on after it was killed at any step."""
 
 import contextlib
 import importlib.machinery
@@ -27,7 +28,7 @@ STEPS = ["features", "matches", "poses", "refine", "import", "densify", "evaluat
 
 
 def camera_centres(images):
-    """-R^T t of every image of a COLMAP model, as a position file's lines."""
+    """The lines of a position file with the centre -R^T t of every image of a COLMAP text model."""
     lines = [line.split() for line in images.read_text().splitlines() if not line.startswith("#")]
     for _, w, x, y, z, *rest in lines[::2]:
         w, x, y, z, *t = map(float, (w, x, y, z, *rest[:3]))
@@ -47,7 +48,7 @@ def loaded():
 
 
 class WithAnotherColmap(unittest.TestCase):
-    """Parts of the script, with a stand-in for COLMAP and its models."""
+    """Functions of the script, with a stand-in for COLMAP and its models."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
@@ -131,10 +132,10 @@ class WithAnotherColmap(unittest.TestCase):
         self.assertNotIn("more", self.largest_of(4)[1])
 
 
-# All programs of the pipeline in one, told apart by their names; to be run in the folder above `out`.
-# Each notes its command and makes what the next one takes. Where there is a pipe named like the
-# program, it holds that open for as long as it lives, and lives on; with "child" in the pipe's name a
-# child of the program does.
+# A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
+# above `out`. It appends its command line to the file `commands` and writes the files that the next
+# program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the pipe
+# closes when the program ends. With `child-pipe-NAME`, a child of the program does so.
 STAND_IN = """#!/bin/sh
 [ "$2" = --help ] && exit
 name=${0##*/}
@@ -156,7 +157,7 @@ esac
 
 
 class WithStandIns(unittest.TestCase):
-    """The whole script, with programs that do nothing but end at once or never."""
+    """The whole script, with stand-in programs that end at once or sleep."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
@@ -185,7 +186,7 @@ class WithStandIns(unittest.TestCase):
         return subprocess.CompletedProcess([], process.returncode, said, complaint)
 
     def held_at(self, program, prefix="pipe"):
-        """A run that stays in the step of this program, and the program's pipe."""
+        """Starts a run that stays in the step of this program. Returns the run and the pipe."""
         os.mkfifo(self.folder / f"{prefix}-{program}")
         pipe = os.open(self.folder / f"{prefix}-{program}", os.O_RDONLY | os.O_NONBLOCK)
         self.addCleanup(os.close, pipe)
@@ -194,7 +195,7 @@ class WithStandIns(unittest.TestCase):
         return process, pipe
 
     def next_of(self, pipe):
-        """What the program says next; nothing if it is gone."""
+        """What the program writes next to its pipe; empty if the program has ended."""
         self.assertTrue(select.select([pipe], [], [], 30)[0], "neither said anything nor ended")
         return os.read(pipe, 100)
 
@@ -208,7 +209,7 @@ class WithStandIns(unittest.TestCase):
         self.assertEqual(again.stdout.count("done before"), 5, again.stdout)
 
     def test_takes_a_wrappers_child_along_however_it_ends(self):
-        """Of every program, the first to the last."""
+        """Tried with the first program, a middle one and the last one."""
         for program in ("colmap", "RefinePoses", "DensifyPointCloud"):
             for end in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
                 process, pipe = self.held_at(program, "child-pipe")
@@ -265,7 +266,7 @@ class Reconstruct(unittest.TestCase):
         cls.folder.cleanup()
 
     def start(self, out, *more, **options):
-        """In the folder above `out`, which is given as seen from there."""
+        """Starts the script in the folder above `out`, with a relative path to `out`."""
         return subprocess.Popen(self.command(out, *more), cwd=out.parent, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, **options)
 
@@ -282,8 +283,8 @@ class Reconstruct(unittest.TestCase):
                 "--programs", BIN, *more]
 
     def killed_at(self, step, out):
-        """What the pipeline said until it was killed, with all its children, soon after `step`
-        began."""
+        """Kills the pipeline with all its children soon after `step` began. Returns its output
+        until then."""
         process = self.start(out, start_new_session=True)
         said = ""
         for line in process.stdout:
@@ -299,7 +300,7 @@ class Reconstruct(unittest.TestCase):
         out = pathlib.Path(self.folder.name) / "killed"
         for number, step in enumerate(STEPS):
             said = self.killed_at(step, out)
-            # The step before was finished in this same run.
+            # The step before this one was killed, so this run had to finish it.
             self.assertGreaterEqual(said.count("done before"), number - 1, said)
         ended = self.ended(out)
         self.assertEqual(ended.returncode, 0, ended.stderr)

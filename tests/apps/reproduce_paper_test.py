@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ReproducePaper as its users meet it: all experiments quickly, judged by the numbers they write."""
+"""ReproducePaper as users run it: all experiments with --quick, judged by their numbers."""
 
 import base64
 import json
@@ -18,7 +18,7 @@ PROGRAM = "ReproducePaper"
 
 
 class Quick(unittest.TestCase):
-    """One run of everything, looked at from all sides."""
+    """All cases check the results of one run of all experiments."""
 
     @classmethod
     def setUpClass(cls):
@@ -50,7 +50,7 @@ class Quick(unittest.TestCase):
                 self.assertEqual(sum(method["bins"]) + method["beyond_bins"], method["count"])
 
     def test_run_times_stand_beside_errors(self):
-        """Only their order: other programs may run on this machine."""
+        """Only the order of the times is checked, because other programs may run on the machine."""
         parts = self.results("runtime")
         self.assertEqual(len(parts), 10)
         for name, part in parts.items():
@@ -98,19 +98,20 @@ class Quick(unittest.TestCase):
         self.assertEqual({name for name, cloud in colmap["clouds"].items() if "complete" in cloud},
                          {"air", "ours", "papers"})
         for name, cloud in colmap["clouds"].items():
-            # The motion is found on the median, among fewer points.
+            # ICP minimises the errors of a subset of points, so the mean of all may grow a little.
             self.assertLess(cloud["moved"]["mean"], 1.05 * cloud["mean"], name)
             self.assertGreater(cloud["points"], 10_000, name)
-            # A pixel is 1 cm wide there.
+            # One pixel is 1 cm wide on the scene.
             self.assertLess(cloud["mean"], 0.02, name)
             if "complete" in cloud:
                 self.assertEqual(set(cloud["complete"]), {"2", "3", "4"}, name)
                 self.assertLess(cloud["complete"]["2"], cloud["complete"]["4"], name)
-            # COLMAP's poses are never twice the same, and may move a whole cloud: then the median is
-            # no smaller than the mean. Of any distribution they lie within a standard deviation.
+            # COLMAP's poses differ in each run and may move a whole cloud; then the median may
+            # exceed the mean. In any distribution they differ by at most one standard deviation.
             self.assertLessEqual(abs(cloud["median"] - cloud["mean"]),
                                  math.sqrt(cloud["variance"]), name)
-        # Water magnifies and narrows the view; what the paper's method loses drowns in images this small.
+        # Water magnifies and narrows the view. In images this small, the loss of the paper's method
+        # is hidden by other errors.
         self.assertLess(true["clouds"]["ours"]["mean"], 1.1 * true["clouds"]["air"]["mean"])
         self.assertLess(true["clouds"]["ours"]["median"], 0.004)
         self.assertGreater(true["scene_distance"], 2)
@@ -128,21 +129,21 @@ class Quick(unittest.TestCase):
             self.assertEqual(len(maps["phases"]), 8)
             self.assertGreater(sum(phase["count"] for phase in maps["phases"]), 10_000, name)
             for phase in maps["phases"]:
-                # The largest seen is a hundredth; what is off by half a pixel is not counted.
+                # The largest shift measured is 0.01 px. Pixels off by over 0.5 px are left out.
                 self.assertLess(abs(phase["shift"]), 0.05, name)
             self.assertEqual(len(maps["rings"]), 8)
         rings = [ring for ring in zip(*(true["maps"][name]["rings"] for name in maps_in_order))
                  if min(of["count"] for of in ring) >= 5000]
         self.assertGreater(len(rings), 5)
         for air, *refracted in rings:
-            # A port that is ignored bends depths by a quarter.
+            # If the port is ignored, depths change by a quarter.
             for ring in (air, *refracted):
                 self.assertLess(abs(ring["median"]), 2e-3)
             for ring in refracted:
                 self.assertLess(abs(ring["median"] - air["median"]), 1e-3)
 
     def test_every_bound_has_its_verdict(self):
-        """Times and poses are not judged here: other programs may run, and COLMAP varies."""
+        """Times and poses may miss their bounds: other programs may run, and COLMAP varies."""
         for experiment, asked in (("figure2", 2), ("runtime", 3), ("figure4", 5),
                                   ("reconstruction", 5)):
             rows = read(os.path.join(self.folder, experiment + "_verdicts.md")).decode().splitlines()
@@ -169,7 +170,7 @@ class Quick(unittest.TestCase):
         self.assertEqual(set(parts), {"near_none", "near_distance_20mm", "near_tilt_2"})
         for name, part in parts.items():
             self.assertAlmostEqual(part["scene_distance"], 1, delta=0.2, msg=name)
-            # The motion is found on the median, among fewer points.
+            # ICP minimises the errors of a subset of points, so the mean of all may grow a little.
             self.assertLess(part["moved"]["mean"], 1.05 * part["as_it_lies"]["mean"], name)
         right = parts["near_none"]
         for name in ("near_distance_20mm", "near_tilt_2"):
@@ -190,7 +191,7 @@ class Quick(unittest.TestCase):
             self.assertEqual(today["images"] == 0, today["centre_rms"] is None, name)
             if today["images"] == 0:
                 self.assertIsNone(today["moved"], name)
-        # No lens model absorbs a port tilted that far.
+        # No lens model can absorb a port that is tilted by 6 degrees.
         tilted = parts["tilt_degrees_6"]
         self.assertGreater(tilted["today"]["moved"]["mean"], 1.2 * tilted["ours"]["mean"])
         self.assertAlmostEqual(parts["second_survey_0.5"]["scene_distance"],
@@ -221,7 +222,7 @@ class Quick(unittest.TestCase):
             self.assertIn(f" | {part['as_it_lies']['points']} | ", table)
 
     def test_nothing_finished_is_computed_again(self):
-        """Times would never come out the same twice."""
+        """Measured times never repeat, so equal files show that nothing was measured again."""
         before = {name: read(os.path.join(self.folder, name)) for name in files_below(self.folder)}
         self.assertEqual(run(PROGRAM, "all", "-o", self.output, "--quick").returncode, 0)
         for name, content in before.items():
@@ -230,7 +231,7 @@ class Quick(unittest.TestCase):
 
 
 class WithoutPoses(ProgramTest):
-    """A mapper that finds no poses is a result; one that breaks is none."""
+    """If COLMAP's mapper finds no poses, that is a result. If the mapper breaks, the run fails."""
 
     def put_script(self, script, *names):
         write(self.path(*names), f"#!/bin/sh\n{script}\n")
@@ -258,7 +259,8 @@ class WithoutPoses(ProgramTest):
                                  "moved": None})
 
     def other_programs(self, **scripts):
-        """The path of a ReproducePaper beside which these scripts stand for programs."""
+        """A copy of ReproducePaper beside which `scripts` replace the programs of these names.
+        Returns its path."""
         os.makedirs(self.path("other"))
         for name in os.listdir(BIN):
             os.symlink(os.path.join(BIN, name), self.path("other", name))
@@ -280,7 +282,7 @@ class WithoutPoses(ProgramTest):
         self.assertEqual([len(names) for names in kept], [1, 1, 2])
 
     def test_another_program_repeats_its_own_step_and_not_colmaps(self):
-        """COLMAP is not reproducible, so that its poses are kept while they can be."""
+        """COLMAP's poses are not reproducible; they are kept as long as they are valid."""
         count = "echo >> " + self.path("aligned") + "; exec " + os.path.join(BIN, "AlignModel")
         import_one = "exec " + os.path.join(BIN, "InterfaceCOLMAP") + ' "$@"'
         other = self.other_programs(
@@ -302,14 +304,14 @@ class WithoutPoses(ProgramTest):
 
 
 class Figure3(ProgramTest):
-    """The smallest experiment: parts, threads and pages."""
+    """Parts, threads and pages, tested with the smallest experiment."""
 
     def part(self):
         folder = self.path("a", "parts", "figure3")
         return os.path.join(folder, sorted(os.listdir(folder))[0])
 
     def all_bytes(self, folder):
-        """Of all but times."""
+        """The contents of all files except the measured times."""
         return {name: read(self.path(folder, name)) for name in files_below(self.path(folder))
                 if not name.endswith(".seconds")}
 

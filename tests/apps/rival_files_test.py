@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that could be taken for one another: of two that answer one is named, and what a program
-reads it does not write over. And the memory that importing many cameras takes."""
+"""Files that could be confused: of two possible inputs, the program names the one that it reads,
+and it never overwrites an input. Also the memory for an import of many cameras."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ class Import(ProgramTest):
                              self.path("scene.mvs"), *arguments).stdout
 
     def test_a_stale_text_file_beside_a_model(self):
-        """cameras.txt alone, beside a whole model in the other form, is named and not read."""
+        """A cameras.bin alone, beside a complete model in text form, is named and not read."""
         text = self.imported()
         self.assertNotIn("differ", text)
         scene = read(self.path("scene.mvs"))
@@ -70,7 +70,7 @@ class Import(ProgramTest):
                       self.imported("--housing", self.path("port.json")))
 
     def test_nothing_that_is_read_is_written_over(self):
-        """By any name: its own, a link's, and the names of files that go with the scene."""
+        """Under any name: its own, that of a link, and that of a file written beside the scene."""
         sparse, images = self.path("colmap", "sparse"), self.path("colmap", "images")
         write(self.path("lake.housing.json"), PORT % 0.02)
         os.symlink(os.path.join(images, "0001.png"), self.path("symbolic.mvs"))
@@ -98,7 +98,7 @@ class Import(ProgramTest):
                                 f"{tiny_scene.CY} -0.05")
         path = self.path("colmap", "sparse", "images.txt")
         write(path, read(path).replace(b"0000.png", b"a.jpg").replace(b"0001.png", b"a.JPG"))
-        for name in ("a.jpg", "a.JPG"):  # what an image holds says its kind
+        for name in ("a.jpg", "a.JPG"):  # the content tells an image's format
             write(self.path("colmap", "images", name), tiny_scene.picture((0, 0, 0)))
         self.refuses("the images a.jpg and a.JPG would both be undistorted to",
                      "InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
@@ -109,7 +109,7 @@ class ManyCameras(ProgramTest):
     WIDTH, HEIGHT, COUNT = 1200, 900, 12
 
     def peak_of_import(self, cameras):
-        """[bytes] of undistorting COUNT images that have so many cameras."""
+        """Peak memory [bytes] of undistorting COUNT images that have `cameras` cameras."""
         folder = self.path(f"with_{cameras}")
         write(os.path.join(folder, "sparse", "cameras.txt"), "".join(
             f"{i + 1} SIMPLE_RADIAL {self.WIDTH} {self.HEIGHT} 1000 {self.WIDTH / 2} "
@@ -121,7 +121,7 @@ class ManyCameras(ProgramTest):
         picture = tiny_scene.png(self.WIDTH, self.HEIGHT, [bytes(3 * self.WIDTH)] * self.HEIGHT)
         for i in range(self.COUNT):
             write(os.path.join(folder, "images", f"{i}.png"), picture)
-        # Through a process of its own, whose only child it is.
+        # RUSAGE_CHILDREN covers all children, so the import is the only child of another process.
         measure = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, " \
                   "stdout=subprocess.DEVNULL); " \
                   "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes that several tests need, rendered once and copied. SimulateUnderwater makes the same bytes from
-the same arguments; rendering takes seconds, and a copy a hundredth of one."""
+"""Scenes that several tests need are rendered once and then copied. SimulateUnderwater writes the
+same bytes for the same arguments. Rendering takes seconds, a copy a hundredth of a second."""
 
 import fcntl
 import hashlib
@@ -9,7 +9,7 @@ import pickle
 import shutil
 import tempfile
 
-# A folder in the build tree, which CTest gives. Without it each call renders.
+# A folder in the build tree, set by CTest. Without it every call renders.
 SCENES = os.environ.get("AXIAL_SCENES", "")
 
 
@@ -19,7 +19,7 @@ def content_hash(path):
 
 
 def folder_of_program(program):
-    """The folder of what this very program rendered; what other programs rendered goes."""
+    """The folder of scenes that this binary rendered. Scenes of other binaries are deleted."""
     current = content_hash(program)
     os.makedirs(os.path.join(SCENES, current), exist_ok=True)
     for other in os.listdir(SCENES):
@@ -29,14 +29,16 @@ def folder_of_program(program):
 
 
 def can_be_shared(command):
-    """Whether the command makes a new folder from nothing but its arguments."""
+    """Whether the command simulates into a new folder that its last argument names. Then the result
+    depends on the other arguments only."""
     return (bool(SCENES) and os.path.basename(command[0]) == "SimulateUnderwater" and command[-2:-1] == ["-o"]
             and os.path.isabs(command[-1]) and not os.path.exists(command[-1]))
 
 
 def rendered(command, render):
-    """Fills the folder that the command's last argument names. Returns what `render` returns for a
-    command that ends with a folder: what the program said. A render that fails is not kept."""
+    """Writes the scene to the folder that is the last word of the command, and returns the finished
+    process with its output. If the scene is not kept yet, `render` runs the command with another
+    folder. A rendering that fails is not kept."""
     *arguments, output = command
     folder = folder_of_program(command[0])
     kept = os.path.join(folder, hashlib.sha256("\0".join(arguments[1:]).encode()).hexdigest()[:16])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sharing rendered scenes between tests changes no test's scene."""
+"""A test gets the same scene whether it is rendered or copied from another test."""
 
 import os
 import subprocess

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Programs without standard streams, with little memory or disk, killed, and told to write over what
-they read: outputs are whole or absent, inputs stay, and what is said is one line."""
+"""Programs without standard streams, with little memory or disk, killed, or told to overwrite their
+inputs. Outputs are complete or absent, inputs stay unchanged, and an error is one line."""
 
 import itertools
 import os
@@ -29,7 +29,7 @@ def dead_process():
 
 
 class TinyScene(ProgramTest):
-    """images/, work/scene.mvs, colmap/{images,sparse}."""
+    """Writes colmap/{images,sparse} and work/scene.mvs."""
 
     def setUp(self):
         super().setUp()
@@ -95,7 +95,7 @@ class ClosedStreams(TinyScene):
 
 
 class Overwriting(TinyScene):
-    """By any name that the input has."""
+    """An input is not overwritten under any of its names: its path, a symbolic or a hard link."""
 
     def names_of(self, path, link):
         os.symlink(path, link + ".soft" + os.path.splitext(path)[1])
@@ -130,7 +130,7 @@ class Overwriting(TinyScene):
             for output in taken:
                 self.refuses_and_keeps(f"{option} {output}: is ",
                                        *self.densify(*masked, option, output))
-        # Where files of this run will be.
+        # Paths of files that the run itself will write are refused, even if no file is there yet.
         os.remove(taken[2])
         os.remove(taken[5])
         for output in (taken[2], taken[5]):
@@ -165,7 +165,7 @@ class Overwriting(TinyScene):
             self.refuses_and_keeps("--output-folder", "AlignModel", "-i", sparse, "--reference",
                                    reference, "-o", output)
         self.succeeds("AlignModel", "-i", sparse, "--reference", reference, "-o", self.path("new"))
-        # Whoever reads the folder would take the binary model.
+        # A program that reads the folder would take the binary model.
         for part in ("cameras", "images", "points3D"):
             write(self.path("new", part + ".bin"), "of COLMAP")
         self.refuses_and_keeps("holds a binary model", "AlignModel", "-i", sparse, "--reference",
@@ -224,7 +224,7 @@ class Overwriting(TinyScene):
 
 class LongFields(TinyScene):
     def test_errors_are_short_lines(self):
-        """Of every kind of file, a field of any length and of any characters."""
+        """Every kind of file, with fields that are long or hold control characters."""
         for field in ("x" * 5000, "x " * 2500, "\x01\x1b[2J" * 900, "\u20ac" * 3000):
             sparse = self.path("colmap", "sparse")
             cases = [(self.path("a.ply"), f"ply\nformat {field} 1.0\nend_header\n",
@@ -251,7 +251,7 @@ class LongFields(TinyScene):
 
 class LittleMemory(TinyScene):
     def test_is_one_line(self):
-        """From so little that libraries cannot be loaded to enough."""
+        """From too little memory for loading the libraries up to enough memory."""
 
         def limited(megabytes):
             return lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1000000,) * 2)
@@ -266,7 +266,7 @@ class LittleMemory(TinyScene):
                     stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
                     preexec_fn=limited(megabytes))
                 said = f"{command[0]} with {megabytes} MB: {ended.returncode} {ended.stderr!r}"
-                self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: of the loader
+                self.assertIn(ended.returncode, (0, 1, 127), said)  # 127: the loader failed
                 ends.append(ended.returncode)
                 if ended.returncode == 1:
                     self.assertEqual(ended.stderr.count("\n"), 1, said)
@@ -276,8 +276,8 @@ class LittleMemory(TinyScene):
 
 
 class ManyObservations(ProgramTest):
-    """A scene whose points outweigh its pixels. Most lie behind the cameras, which takes as much
-    memory and less time."""
+    """A scene whose points take more memory than its pixels. Most points lie behind the cameras,
+    where they take the same memory and less time."""
 
     @classmethod
     def setUpClass(cls):
@@ -292,7 +292,7 @@ class ManyObservations(ProgramTest):
                           + struct.pack("<Q", 20) + views[8 + 8 * (i % 20):8 + 8 * (i % 20 + 20)]
                           for i in range(120000))
         empty = tiny_scene.mvs([image] * 40, centres=centres, points=[])
-        at = len(empty) - (8 + 40 + 16 * 8 + 9 * 8 + 6 * 8)  # of the number of points
+        at = len(empty) - (8 + 40 + 16 * 8 + 9 * 8 + 6 * 8)  # offset of the number of points
         write(os.path.join(cls.work, "scene.mvs"),
               empty[:at] + struct.pack("<Q", 120000) + points + empty[at + 8:])
 
@@ -301,7 +301,7 @@ class ManyObservations(ProgramTest):
         cls.scene_folder.cleanup()
 
     def run_with(self, megabytes, *arguments):
-        """The exit code, what was said, and the most memory that was taken [MB]."""
+        """The exit code, standard error and peak memory [MB] of a run."""
         with open(self.path("said"), "w+") as said:
             process = subprocess.Popen(
                 [os.path.join(BIN, "DensifyPointCloud"), "-i", os.path.join(self.work, "scene.mvs"),
@@ -332,7 +332,7 @@ class ManyObservations(ProgramTest):
         header = ("ply\nformat binary_little_endian 1.0\n"
                   f"element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n"
                   "property list uchar uint view_indices\nend_header\n")
-        # In parts: a child's peak counts from its parent's memory.
+        # Written in parts, because a child's peak memory includes its parent's memory at the fork.
         with open(self.path("cloud.ply"), "wb") as file:
             file.write(header.encode())
             for _ in range(count // 10000):
@@ -362,7 +362,7 @@ class Leftovers(TinyScene):
         self.assertEqual(left, set(kept))
 
     def test_of_an_export_that_was_taking_its_place(self):
-        """Killed between any two of its steps: it removes the files of the last one, and moves its own."""
+        """Killed after it removed files of the earlier export, before it moved all of its own."""
         export = ("InterfaceCOLMAP", "-i", self.scene, "-o", self.path("out"))
         sparse = self.path("out", "sparse")
         self.succeeds(*export)
@@ -424,7 +424,7 @@ class WholeFolders(ProgramTest):
                 out = self.path("out")
                 self.refuses("cannot be written", *command(out), file_size_limit=limit)
                 self.assertFalse(os.path.exists(out), limit)
-                # With other files in the folder, and older ones of these names.
+                # The folder holds another file, and an older file of one of the names.
                 write(self.path("out", "notes.txt"), "mine")
                 write(self.path("out", *max(expected).split("/")), "old")
                 before = contents(out)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A COLMAP model with images, small enough to be made anew by every test, and .mvs files field by
-field: written from the formats' descriptions, not by the programs under test."""
+"""A COLMAP model with images, small enough to be written by every test, and .mvs files. Both are
+written field by field from the descriptions of the formats, not by the programs under test."""
 
 import math
 import os
@@ -11,13 +11,13 @@ import zlib
 from programs import write
 
 WIDTH, HEIGHT, FOCAL = 96, 72, 90.0
-DISTANCE = 1.0  # of the wall from the cameras [m]
+DISTANCE = 1.0  # from the cameras to the wall [m]
 CENTRES = [(-0.12, 0.0, 0.0), (0.0, 0.02, 0.0), (0.12, 0.0, 0.0)]
 CX, CY = WIDTH / 2, HEIGHT / 2  # pixel centres at 0.5
 
 
 def texture(seed=5, size=64):
-    """Blobs of several sizes: value at (x, y) in metres."""
+    """A texture of blobs of two sizes: a function of (x, y) in metres with values in [0, 1]."""
     rng = random.Random(seed)
     layers = [(scale, [[rng.random() for _ in range(size)] for _ in range(size)])
               for scale in (25, 50)]
@@ -37,7 +37,7 @@ def texture(seed=5, size=64):
 
 
 def png(width, height, pixels):
-    """Bytes of an 8-bit RGB PNG; `pixels` holds rows of bytes."""
+    """The bytes of an 8-bit RGB PNG. `pixels` holds rows of bytes."""
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
@@ -48,7 +48,7 @@ def png(width, height, pixels):
 
 
 def picture(centre, width=WIDTH, height=HEIGHT):
-    """The wall at z = DISTANCE, seen in air along +z from `centre`."""
+    """A PNG of the wall at z = DISTANCE, seen in air along +z from `centre`."""
     value = texture()
     focal = FOCAL * width / WIDTH
     rows = []
@@ -75,7 +75,7 @@ def names():
 
 
 def write_colmap(folder, camera=None):
-    """FOLDER/{images,sparse}; image ids 1, 2, 3 and camera 1."""
+    """Writes images and a text model (image ids 1, 2, 3, camera 1) to `folder`/{images,sparse}."""
     for centre, name in zip(CENTRES, names()):
         write(os.path.join(folder, "images", name), picture(centre))
     camera = camera or f"PINHOLE {WIDTH} {HEIGHT} {FOCAL} {FOCAL} {CX} {CY}"
@@ -102,7 +102,7 @@ IDENTITY = (1, 0, 0, 0, 1, 0, 0, 0, 1)
 
 def mvs(image_paths, *, k=None, size=(WIDTH, HEIGHT), rotation=IDENTITY, centres=None, version=7,
         platform=0, camera=0, pose=None, view=None, points=None):
-    """Bytes of an interchange scene of version 7; every argument can hold a wrong value."""
+    """The bytes of a .mvs scene. Arguments may be wrong, to test how programs refuse them."""
     string = lambda s: struct.pack("<Q", len(s.encode())) + s.encode()
     count = lambda n: struct.pack("<Q", n)
     k = k or (FOCAL, 0, CX - 0.5, 0, FOCAL, CY - 0.5, 0, 0, 1)

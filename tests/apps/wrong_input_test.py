@@ -84,7 +84,7 @@ class InterfaceColmap(ProgramTest):
         self.refuses_import("no-such-folder", "--image-folder", "no-such-folder")
 
     def test_images_that_lie_about(self):
-        # Of another size: an import that takes them fails.
+        # These images have another size, so that an import of them would fail.
         for image in ("0000.png", "0001.png", "0002.png"):
             write(self.path("images", image), tiny_scene.picture((0, 0, 0), 48, 48))
         here = ("-w", self.folder)
@@ -101,11 +101,12 @@ class InterfaceColmap(ProgramTest):
         self.refuses_import("0001.mask.png: is 72x72, but its image is 96x72")
 
     def test_ports_that_the_poses_were_solved_without(self):
-        """COLMAP-Underwater's files carry ports either way: only the tracks tell."""
+        """COLMAP-Underwater's files hold ports whether or not the poses were solved with them. Only
+        the tracks show the difference."""
         sparse = self.path("colmap", "sparse")
         camera = f"PINHOLE {tiny_scene.WIDTH} {tiny_scene.HEIGHT} " \
                  f"{tiny_scene.FOCAL} {tiny_scene.FOCAL} {tiny_scene.CX} {tiny_scene.CY}"
-        # A port at the lens itself: all it does is to enlarge the sines of angles by the index.
+        # A port directly at the lens only multiplies the sines of angles by the index.
         write(os.path.join(sparse, "cameras.txt"), f"1 {camera} FLATPORT 0 0 1 0 0 1 1.333 1.333\n")
         convert = ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
         warning = "the poses were solved without refraction"
@@ -203,7 +204,7 @@ class Densify(ProgramTest):
                      self.path("work"))
 
     def test_byte_order_marks(self):
-        """Before the first character of any text file they change nothing."""
+        """A byte order mark at the start of a text file changes nothing."""
         mark = b"\xef\xbb\xbf"
         run = (*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level", "0",
                "--number-views-fuse", "2")
@@ -269,7 +270,7 @@ class Densify(ProgramTest):
         mask = self.path("images", "0001.mask.png")
         write(mask, grey_png([bytes([1] * 72)] * 72))
         self.refuses_scene(mask + ": is 72x72, but its image is 96x72", "--ignore-mask-label", "0")
-        write(mask, grey_png([bytes([1] * 24)] * 18))  # of the same shape, smaller: fits
+        write(mask, grey_png([bytes([1] * 24)] * 18))  # smaller, of the same shape: accepted
         self.succeeds(*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level",
                       "0", "--iters", "1", "--geometric-iters", "0", "--ignore-mask-label", "0")
 
@@ -311,7 +312,7 @@ class Densify(ProgramTest):
 
     def test_an_empty_cloud_is_a_warning(self):
         here = ("-i", self.scene, "-w", self.path("work"), "--resolution-level", "0")
-        # A millionth of the region's size leaves nothing.
+        # The region shrinks to a millionth of its size, so that no point is left.
         said = self.succeeds(*DENSIFY, *here, "--estimate-roi", "1", "--roi-border", "1e-6").stdout
         self.assertIn("The cloud is empty", said)
         self.assertEqual(cloud_size(read(self.path("work", "scene_dense.ply"))), 0)

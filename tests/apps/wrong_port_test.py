@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A port, a lens or poses that are not the photographs' own: DensifyPointCloud says so, whatever is
-wrong, and says nothing where all is right."""
+"""DensifyPointCloud warns if port, lens or poses do not belong to the photographs, whichever of
+them is wrong, and gives no warning if all are right."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from programs import ProgramTest, cloud_size, files_below, grey_png, main, read,
 
 NO_SCENE = "The photographs do not seem to show the scene"
 WARNING = "Cameras and photographs do not seem to belong together"
-# No rounds after the first pass and no cloud: what the check needs.
+# The check needs neither geometric passes nor filters nor a cloud.
 QUICK = ("--geometric-iters", "0", "--postprocess-dmaps", "0", "--fusion-mode", "1")
 
 
@@ -24,7 +24,8 @@ def simulate(folder, preset, *arguments):
 
 
 def scaled_model(text, first, scale, every):
-    """The lines of a COLMAP file with three numbers from column `first` on times `scale`."""
+    """A COLMAP text file in which each record of `every` lines has the three numbers from column
+    `first` multiplied by `scale`."""
     lines = [line for line in text.decode().splitlines() if not line.startswith("#")]
     for i in range(0, len(lines), every):
         words = lines[i].split()
@@ -34,7 +35,7 @@ def scaled_model(text, first, scale, every):
 
 
 class PortTest(ProgramTest):
-    SCENE = None  # preset and arguments of SimulateUnderwater; None: a base of the others
+    SCENE = None  # preset and arguments of SimulateUnderwater; None: base class
 
     @classmethod
     def setUpClass(cls):
@@ -51,7 +52,7 @@ class PortTest(ProgramTest):
         return housing
 
     def scene(self, name, housing=None, medium="water", scale=1, focal=1, camera=None):
-        """A folder with scene.mvs: what is given here is wrong, the photographs are right."""
+        """A folder with scene.mvs. The photographs are right; arguments make other inputs wrong."""
         sparse = os.path.join(self.truth, "sparse")
         files = {part: read(os.path.join(sparse, part + ".txt"))
                  for part in ("cameras", "images", "points3D")}
@@ -127,7 +128,7 @@ class FlatPort(PortTest):
         for scale in (10, 100, 1000, 0.1):
             clear = ("more than 25 m of water away",) if scale >= 100 else ()
             self.warns(f"times_{scale}", *clear, housing=self.housing(), scale=scale)
-        # Here the scene lies inside the housing, and is not seen at all.
+        # At these scales the scene lies inside the housing and is not visible.
         for scale in (0.01, 0.001):
             folder = self.scene(f"times_{scale}", housing=self.housing(), scale=scale)
             result = run("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK)
@@ -136,7 +137,8 @@ class FlatPort(PortTest):
                              r"(distance_m|thickness_m) is .*are port and poses in metres\?")
 
     def test_one_line_whatever_is_run(self):
-        """Resumed runs, maps that exist, any number of threads, little memory: the same words."""
+        """The warning is the same for resumed runs, existing maps, any number of threads, and
+        little memory."""
         def line(said):
             return re.search(WARNING + ".*", said)[0]
         folder = self.scene("wrong", housing=self.housing(n_water=1.38, distance_m=0.1))
@@ -149,11 +151,11 @@ class FlatPort(PortTest):
                     os.remove(os.path.join(folder, name))
             self.assertEqual(
                 line(self.succeeds("DensifyPointCloud", *base, *QUICK, *again).stdout), first)
-        # All maps are there.
+        # With all maps there already.
         self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, *QUICK).stdout), first)
         self.assertEqual(line(self.succeeds("DensifyPointCloud", *base, "--fusion-mode",
                                             "-1").stdout), first)
-        # Of later stages.
+        # With later stages.
         self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
         self.assertEqual(self.succeeds("DensifyPointCloud", *base, *whole).stdout.count(WARNING), 1)
         self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 0)
@@ -170,7 +172,8 @@ class FlatPort(PortTest):
 
 
 class Noise(PortTest):
-    """Few pixels a sparse point: maps keep to these where photographs show nothing, and agree."""
+    """With few pixels per sparse point, maps of photographs without content stay at the sparse
+    points and agree with each other."""
     SCENE = ("closeup",)
     SMALL = ("--resolution-level", "1", "--min-resolution", "100")
 
@@ -178,7 +181,7 @@ class Noise(PortTest):
         rng = random.Random(3)
         folder = os.path.join(self.truth, "noise")
         for name in os.listdir(os.path.join(self.truth, "water")):
-            # The format is found by content.
+            # A PNG may be named .jpg, because the content tells the format.
             write(os.path.join(folder, name), grey_png(
                 [bytes(min(255, max(0, round(rng.gauss(128, 40)))) for _ in range(320))
                  for _ in range(240)]))
@@ -228,7 +231,7 @@ class OtherPorts(PortTest):
 
 
 class FarScene(PortTest):
-    """Two to three metres away, through a straight port."""
+    """A scene 2 to 3 m away, behind a port without tilt."""
     SCENE = ("reef",)
 
     def test_right_and_wrong(self):
@@ -239,7 +242,8 @@ class FarScene(PortTest):
         self.warns("forgotten")
 
     def test_a_unit_that_hardly_moves_a_point(self):
-        """A port of 2 cm, seen from 3 m, counts for a ninth of a pixel here; the distance tells."""
+        """A port at 2 cm moves pixels of a scene at 3 m by a ninth of a pixel only. The distance of
+        the scene shows the wrong unit."""
         for scale in (10, 100, 1000):
             folder = self.scene(f"times_{scale}", housing=self.housing(), scale=scale)
             said = self.densify(folder)

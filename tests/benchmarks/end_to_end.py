@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whole programs: what DensifyPointCloud costs and gives, beside COLMAP's feature extraction on the
-same images. Runs alternate, so that the machine's moods strike all alike; medians are printed, and
-for ratios the median and the range of those of the single rounds.
+"""Cost and quality of DensifyPointCloud as a whole program, beside the cost of COLMAP's feature
+extraction (SIFT) on the same images. The programs run in turn, so that changes in the machine's
+speed affect all alike. Prints medians, and for ratios the median and the range over the rounds.
 
     end_to_end.py [--runs N] [--json FILE] SCENE [OPTION OF DensifyPointCloud...]
 
 SCENE: fountain, scene-v6       against SIFT, on real photographs
        closeup, reef            in air and refractive, against SIFT and the truth
-       threads                  matching stage of fountain, one thread and two, in pairs
-       memory                   peak memory against the number of images, 12 to 200 of 640 x 480:
-                                one sweep a level and one geometric pass (--iters 1
-                                --geometric-iters 1, not to be given again), which changes the
-                                time, not the memory
+       threads                  matching stage of fountain, with one thread and with two, in pairs
+       memory                   peak memory against the number of images, 12 to 200 of 640 x 480,
+                                with one sweep per level and one geometric pass. The options
+                                --iters 1 --geometric-iters 1 save time and do not affect the
+                                memory; do not give them again.
 """
 
 import argparse
@@ -32,7 +32,7 @@ SCENE_V6 = ("--resolution-level", "0")
 
 
 def alternated(programs, times):
-    """Every program `times` times, in turn: {name: [result, ...]}."""
+    """Runs every program `times` times, in turn. Returns {name: [result, ...]}."""
     results = {name: [] for name in programs}
     for number in range(times):
         for name, program in programs.items():
@@ -88,7 +88,8 @@ def scene_v6(work, options=()):
 
 
 def with_truth(work, name, options=()):
-    """In air and refractive, on true poses; quality is the same in every run, and measured once."""
+    """Runs in air and refractive, with true poses. Quality is the same in all runs and is measured
+    once."""
     truth, programs = runs.synthetic(name, work), {}
     for medium in ("air", "water"):
         folder = work / f"{name}-{medium}"
@@ -132,15 +133,15 @@ def markdown(headings, rows):
 
 
 def beside_sift(results, sift_results):
-    """CPU time over that of SIFT's run of the same round: both met the same machine in the same
-    minutes. The median of these ratios, and their range."""
+    """Median and range of the ratios of CPU time to that of SIFT. Each ratio compares runs of the
+    same round, in which the machine was about equally fast."""
     ratios = [ours["cpu"] / sift["cpu"] for ours, sift in zip(results, sift_results)]
     return {"of_sift": statistics.median(ratios), "of_sift_least": min(ratios),
             "of_sift_most": max(ratios)}
 
 
 def compared(programs, times):
-    """Medians of all programs, as they go into the table."""
+    """The medians of all programs for the table."""
     rounds = alternated(programs, times)
     return {name: medians(results) | beside_sift(results, rounds["SIFT"])
             for name, results in rounds.items()}
@@ -157,7 +158,7 @@ MATCHING = re.compile(r"(?:Estimated depth maps|Geometric-consistency pass \d+) 
 
 
 def matching_seconds(log):
-    """Wall time of the matching stage, as the program's own log gives it."""
+    """Wall time of the matching stage [s], read from the program's log."""
     times = [float(seconds) for seconds in MATCHING.findall(log.read_text())]
     if not times:
         raise RuntimeError(f"{log}: does not say how long matching took")
@@ -165,7 +166,8 @@ def matching_seconds(log):
 
 
 def threads(work, times, options=()):
-    """One thread and two in alternated pairs, depth maps only; the median of the pairs' ratios."""
+    """Computes depth maps with one and with two threads, in turn. Returns the medians of the ratios
+    of the pairs."""
     folder = fountain_scene(work)
 
     def on(count):
@@ -184,8 +186,8 @@ def threads(work, times, options=()):
 # Memory.
 
 def memory(work, counts=(12, 48, 100, 200), options=()):
-    """Peak memory of runs on more and more images of the same size. Caches keep 48 of them at most:
-    up to there it grows, and beyond it must not."""
+    """Peak memory of runs on more and more images of the same size. Caches keep at most 48 images:
+    memory grows up to 48 images and must not grow beyond."""
     rows = []
     for count in counts:
         model, images = runs.survey(count, work)

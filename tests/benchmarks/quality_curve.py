@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every option of matching buys: the F-score against CPU time, one option changed at a time.
+"""F-score against CPU time for each option of matching, with one option changed at a time.
 
     quality_curve.py [--scene SCENE] [--medium air|water] [--only OPTION...] -o DIR
 
-Writes DIR/table.json, DIR/table.md and DIR/curve.svg; a setting that these very programs have run
-there before is not run again. True poses. Scenes: `closeup` and `reef`; the same in haze that leaves
-a seventh of the contrast, in air and in water, `closeup-hazy` and `reef-hazy`; `small`, the
-closeup's kind at 480 x 360, six views, to try things out.
+Writes DIR/table.json, DIR/table.md and DIR/curve.svg. Poses are true. A setting that the same
+binaries ran in DIR before is not run again. Scenes: `closeup` and `reef`; `closeup-hazy` and
+`reef-hazy`, the same in haze that leaves a seventh of the contrast, in air and in water; `small`,
+six views like `closeup` at 480 x 360, for experiments.
 """
 
 import argparse
@@ -21,8 +21,8 @@ from benchmarks import svg_chart  # noqa: E402
 from benchmarks.end_to_end import markdown  # noqa: E402
 from support import runs  # noqa: E402
 
-# Option: its default and the other values. Images of the synthetic scenes are not halved at the
-# default of --min-resolution, so their default level is 0.
+# For each option the default and the other values. The default level is 0, because the default of
+# --min-resolution forbids halving images of the synthetic scenes.
 OPTIONS = {
     "iters": (2, (1, 3, 4)),
     "sub-resolution-levels": (1, (0, 2, 3)),
@@ -52,7 +52,7 @@ def arguments_of(option, value):
 
 
 def content_of_programs():
-    """Of all that images, clouds and their measures come from, in a few digits."""
+    """A short hash of all binaries that make images and clouds and evaluate them."""
     content = hashlib.sha1()
     for program in ("SimulateUnderwater", "InterfaceCOLMAP", "DensifyPointCloud",
                     "EvaluateReconstruction"):
@@ -61,7 +61,7 @@ def content_of_programs():
 
 
 def measured(work, truth, medium, name, arguments):
-    """One setting's cost and quality; kept if there."""
+    """Cost and quality of one setting. A kept result is not measured again."""
     folder = work / content_of_programs() / f"{truth.name}-{medium}-{name}"
     kept = folder / "result.json"
     if kept.exists():
@@ -77,7 +77,7 @@ def measured(work, truth, medium, name, arguments):
 
 
 def all_settings(work, truth, medium, options):
-    """{option: {value: result}}, and the result of the defaults."""
+    """Returns {option: {value: result}} and the result of the defaults."""
     default = measured(work, truth, medium, "default", [])
     curves = {}
     for option in options:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines through labelled points, as an SVG that needs no other file."""
+"""Charts of lines through labelled points, as self-contained SVG."""
 
 import dataclasses
 import html
@@ -24,7 +24,7 @@ class Point:
 
 @dataclasses.dataclass(frozen=True)
 class Axis:
-    """Maps [low, high] to [begin, end] of the drawing, by ratios if logarithmic."""
+    """Maps values in [low, high] to drawing coordinates in [begin, end]."""
     low: float
     high: float
     begin: float
@@ -112,8 +112,8 @@ def legend(names):
 
 
 def chart(groups, marked, title, x_title, y_title):
-    """`groups`: {name: [Point, ...]}; `marked`: the Point that they all have in common, the default.
-    The x axis is logarithmic."""
+    """The SVG of a chart. `groups`: {name: [Point, ...]}. `marked`: the Point of the default, which
+    all groups share. The x axis is logarithmic."""
     points = [point for group in groups.values() for point in group]
     x_axis = axis_around([p.x for p in points], LEFT, WIDTH - RIGHT, logarithmic=True)
     y_axis = axis_around([p.y for p in points], HEIGHT - BOTTOM, TOP)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact depth maps of a plane agree with points on it; one changed number of port, lens or scale
-// shows, and noise without a change does not.
+// Exact depth maps of a plane must agree with points on the plane. A change of one number of port,
+// lens or scale must be detected; noise without such a change must not.
 #include "depth/agreement.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kViews = 5;
 
-// All cameras look along z, as a survey's do. Cameras that turn to one point of a flat scene see a
-// wrong angle of view as a flat scene, too.
+// All cameras look along z, as in a survey. If all cameras were turned to one point of a flat
+// scene, a wrong angle of view would also give a flat scene.
 std::vector<DepthMap> maps_of(const test::AnalyticScene& scene, const CameraModel& camera) {
   std::vector<DepthMap> maps;
   for (Pose pose : test::circle_of_poses(kViews)) {
@@ -30,7 +30,7 @@ std::vector<DepthMap> maps_of(const test::AnalyticScene& scene, const CameraMode
   return maps;
 }
 
-// On the plane, around the middle of what the cameras see.
+// Points on the plane, around the centre of the area that the cameras see.
 std::vector<Eigen::Vector3f> points_on(const test::AnalyticScene& scene, std::size_t count) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> across(-0.6, 0.6);
@@ -60,7 +60,7 @@ TEST(Agreement, ExactMapsAgree) {
   for (const CameraModel& camera : {test::dry_camera(), test::behind_port(test::dry_camera())}) {
     const Agreement found = agreement_of(maps_of(kPlane, camera), points_on(kPlane, 800));
     EXPECT_GT(found.points, 1000u);
-    // Depths are those of the nearest pixel's centre, half a pixel away.
+    // The map's depth is that of the nearest pixel's centre, up to half a pixel away.
     EXPECT_LT(found.share, 0.002);
     EXPECT_LT(found.pixels, 0.1);
     EXPECT_LT(found.systematic, 0.03);
@@ -69,7 +69,7 @@ TEST(Agreement, ExactMapsAgree) {
   }
 }
 
-// The rays of a camera at a pose, in the world.
+// The ray of a pixel in the world frame.
 template <class Camera>
 refractive::AxialRay<double> world_ray(const Camera& camera, const Pose& pose,
                                        const Eigen::Vector2d& pixel) {
@@ -77,15 +77,16 @@ refractive::AxialRay<double> world_ray(const Camera& camera, const Pose& pose,
   return {pose.to_world(ray.origin), pose.rotation.transpose() * ray.direction};
 }
 
-// Where on `a` the two rays come nearest to each other.
+// The distance along `a` at which the two rays are nearest to each other.
 double nearest_to(const refractive::AxialRay<double>& a, const refractive::AxialRay<double>& b) {
   const Eigen::Vector3d between = b.origin - a.origin;
   const double cosine = a.direction.dot(b.direction);
   return (between.dot(a.direction) - cosine * between.dot(b.direction)) / (1 - cosine * cosine);
 }
 
-// `map` as a perfect matcher with the camera `wrong` makes it: of each pixel it knows the one that
-// shows the same surface to the image at `other`, and meets the two pixels' rays.
+// The depth map that a perfect matcher computes with the camera `wrong`. For each pixel it knows
+// the pixel of the image at `other` that shows the same surface point, and intersects their two
+// rays.
 DepthMap matched(const DepthMap& map, const Pose& other, const CameraModel& wrong) {
   DepthMap result = map;
   result.camera = wrong;
@@ -162,7 +163,7 @@ std::vector<Eigen::Vector3f> moved(std::vector<Eigen::Vector3f> points,
   return points;
 }
 
-// Two percent of the depth are a third of a pixel here.
+// Two percent of the depth are a third of a pixel in this scene.
 TEST(Agreement, TellsASystematicDifferenceFromNoise) {
   const std::vector<DepthMap> maps = maps_of(kPlane, test::behind_port(test::dry_camera()));
   const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
@@ -178,7 +179,7 @@ TEST(Agreement, TellsASystematicDifferenceFromNoise) {
   EXPECT_GT(shifted.consistent, 0.99) << "the maps are as they were";
 }
 
-// Maps of random depths lead nowhere, whatever the points are.
+// Maps of random depths are not consistent with each other, whatever the points are.
 TEST(Agreement, CountsPixelsThatNoNeighbourConfirms) {
   std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
   const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
@@ -191,7 +192,7 @@ TEST(Agreement, CountsPixelsThatNoNeighbourConfirms) {
   EXPECT_TRUE(judge(found).consistent);
 }
 
-// A right map beside one whose depths are wrong: nobody knows which of the two is.
+// With a correct map and one neighbour with wrong depths, it is unknown which of the two is wrong.
 TEST(Agreement, OneNeighbourDoesNotTellWhichMapIsWrong) {
   std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
   maps[1].depth *= 1.5f;
@@ -205,7 +206,7 @@ TEST(Agreement, OneNeighbourDoesNotTellWhichMapIsWrong) {
   EXPECT_GT(two.consistent, two.asked * 9 / 10);
 }
 
-// No data, no verdict: no point, one without an image, no depth, no neighbour.
+// Without data nothing is judged: no points, points that do not project, no depths, no neighbours.
 TEST(Agreement, SaysNothingWithoutData) {
   const std::vector<DepthMap> maps = maps_of(kPlane, test::dry_camera());
   const DepthMap* const neighbour = &maps[1];

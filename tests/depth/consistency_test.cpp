@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forward-backward error to first order against the exact projection.
+// Compares the first-order forward-backward error with the exact projection.
 #include "depth/consistency.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ refractive::FlatPortCamera<double> camera() {
   return {{800, 820, 511.5, 383.5}, port, 1024, 768};
 }
 
-// Up to the 3 pixels beyond which the error counts no more, and as far along the ray as a depth
-// counts as the same surface.
+// Shifts of up to about 3 px across the ray, where the term of the cost reaches its limit, and of
+// up to kSameSurface along the ray.
 TEST(ShiftInPixels, AgreesWithTheExactProjection) {
   const auto seen_by = camera();
   std::mt19937 random(1);
@@ -37,7 +37,7 @@ TEST(ShiftInPixels, AgreesWithTheExactProjection) {
     const Eigen::Vector3d shift = across + kSameSurface * depth * unit(random) * ray.direction;
     const auto moved = seen_by.project(ray.at(depth) + shift);
     const double exact = (moved.pixel - pixel).norm();
-    // Half the shift in focal lengths, and as much again for the port.
+    // The relative error is half the shift divided by the focal length; a port doubles it.
     const double relative = exact / seen_by.lens().fx;
     EXPECT_NEAR(shift_in_pixels(ray, jacobian, depth, shift), exact, relative * exact + 1e-9);
   }

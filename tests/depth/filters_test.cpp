@@ -36,7 +36,7 @@ TEST(RemoveSpeckles, ClearsSmallSegmentsOfOtherDepth) {
   DepthMap map = flat_map(60, 50, 1);
   map.depth(cv::Rect(5, 5, 9, 11)).setTo(1.5);       // 99 pixels
   map.depth(cv::Rect(30, 5, 10, 10)).setTo(1.5);     // 100 pixels
-  map.depth(cv::Rect(30, 30, 10, 10)).setTo(1.006);  // a step too small to part it
+  map.depth(cv::Rect(30, 30, 10, 10)).setTo(1.006);  // a step too small to separate it
   const cv::Mat1f before = map.depth.clone();
   const DepthMap result = remove_speckles(map);
   EXPECT_EQ(result.depth(10, 8), 0);
@@ -67,7 +67,8 @@ TEST(FillGaps, ContinuesAPlane) {
     const DepthMap result = fill_gaps(map);
     for (int y = 0; y < map.height(); ++y) {
       for (int x = 40; x < 47; ++x) {
-        // 1 / lambda is linear along a plane but for the ray's obliquity: (8 px / 75)^2 / 8.
+        // On a plane, 1 / lambda is linear in the pixel except for the obliquity of the rays. Over
+        // the gap, with a focal length of 75 px, the error is up to (8 / 75)^2 / 8.
         ASSERT_NEAR(result.depth(y, x), exact.depth(y, x), 1.5e-3) << x << " " << y;
         ASSERT_NEAR(cv::norm(result.normal(y, x), exact.normal(y, x)), 0, 1e-6);
         ASSERT_EQ(result.confidence(y, x), 0.25f);
@@ -78,7 +79,7 @@ TEST(FillGaps, ContinuesAPlane) {
 
 TEST(FillGaps, LeavesWideGapsStepsAndMaskedPixels) {
   DepthMap map = flat_map(40, 1, 1);
-  map.depth(cv::Rect(3, 0, 8, 1)).setTo(0);  // 8 wide
+  map.depth(cv::Rect(3, 0, 8, 1)).setTo(0);  // 8 px wide
   map.depth(cv::Rect(20, 0, 3, 1)).setTo(0);
   map.depth(cv::Rect(23, 0, 17, 1)).setTo(1.05);  // a step across the gap
   map.depth(0, 30) = 0;
@@ -121,18 +122,18 @@ TEST_P(AdjustWithCamera, LeavesExactDepthsOfAPlane) {
   const cv::Mat1f before = maps[0].depth.clone();
   const DepthMap result = adjust_first(maps);
   EXPECT_TRUE(same(maps[0].depth, before)) << "the argument changed";
-  EXPECT_GT(cv::countNonZero(result.depth), 96 * 72 * 8 / 10);  // the rest lies at the border
+  EXPECT_GT(cv::countNonZero(result.depth), 96 * 72 * 8 / 10);  // not all pixels at the border
   for (int y = 0; y < result.height(); ++y) {
     for (int x = 0; x < result.width(); ++x) {
       if (result.depth(y, x) == 0) continue;
-      // Splats are carried along their tangent planes: only rounding is left.
+      // Splats follow their tangent planes, so only rounding errors remain.
       ASSERT_NEAR(result.depth(y, x), maps[0].depth(y, x), 2e-6) << x << " " << y;
       ASSERT_GT(result.confidence(y, x), 0.9f);
     }
   }
 }
 
-// Gaussian-like noise of relative standard deviation `sigma` in every map.
+// Adds nearly Gaussian noise of the relative standard deviation `sigma` to every map.
 void add_noise(std::vector<DepthMap>& maps, float sigma) {
   std::uint64_t counter = 0;
   for (DepthMap& map : maps) {
@@ -162,14 +163,14 @@ TEST_P(AdjustWithCamera, AveragesNoise) {
     }
   }
   ASSERT_GT(count, 3000);
-  // Five independent maps: sigma / sqrt(5) = 0.45 sigma, if a splat is no worse than a sample.
+  // The mean of five independent maps has sigma / sqrt(5) = 0.45 sigma if splats add no error.
   EXPECT_LT(std::sqrt(squares / count), 0.5 * static_cast<double>(kSigma));
-  // A z-buffer that preferred near samples would pull the mean by about half a sigma.
+  // A z-buffer that always kept the nearest sample would shift the mean by about half a sigma.
   EXPECT_LT(std::abs(bias / count), 0.05 * static_cast<double>(kSigma));
 }
 
 TEST_P(AdjustWithCamera, RemovesWhatTheNeighboursDeny) {
-  for (const float factor : {0.8f, 1.25f}) {  // seen through, and behind what they see
+  for (const float factor : {0.8f, 1.25f}) {  // before and behind the neighbours' surface
     std::vector<DepthMap> maps = exact_maps({});
     const cv::Rect wrong(30, 20, 30, 25);
     maps[0].depth(wrong) *= factor;
@@ -192,7 +193,8 @@ TEST_P(AdjustWithCamera, KeepsASphereInFrontOfThePlane) {
     for (int x = 0; x < result.width(); ++x) {
       if (result.depth(y, x) == 0) continue;
       ++kept;
-      // Tangent planes of a pixel's width leave the sphere by 13^2 / (2 * 120) = 0.7 mm.
+      // At the distance of a pixel (13 mm), a tangent plane is 13^2 / (2 * 120) = 0.7 mm off the
+      // sphere.
       if (std::abs(result.depth(y, x) - maps[0].depth(y, x)) > 2e-3f) ++far_off;
     }
   }

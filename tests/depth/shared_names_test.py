@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Code compiled for one instruction set must not share a name with other code: the linker keeps one
-copy, and a processor without that set would meet its instructions. Arguments: nm, the object files
-of the libraries; those in *_avx2.cpp and *_avx512.cpp are compared with all others."""
+"""Functions that are compiled for a special instruction set must not share a name with functions in
+other object files. The linker would keep only one copy, and a processor without this instruction
+set could execute it. Arguments: the program nm, then the object files of the libraries. The object
+files of *_avx2.cpp and *_avx512.cpp are compared with all other files."""
 
 import functools
 import re
@@ -11,7 +12,7 @@ import sys
 
 @functools.cache
 def shared_names(nm, path):
-    """Names that the linker merges with those of other files: weak and unique ones."""
+    """The names that the linker merges with equal names in other files: weak and unique symbols."""
     lines = subprocess.run([nm, "--defined-only", path], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     fields = [line.split() for line in lines]
@@ -19,7 +20,7 @@ def shared_names(nm, path):
 
 
 def has_code(name):
-    """Type information, tables and references to handlers hold no instructions."""
+    """False for type information, tables and references to handlers: they have no instructions."""
     return not name.startswith(("_ZTI", "_ZTS", "_ZTV", "DW.ref."))
 
 

@@ -56,7 +56,7 @@ TEST(RemoveUnconfirmed, JudgesAPixelByItsSurroundings) {
   EXPECT_EQ(left(remove_unconfirmed(map_of(unsure), weak)), 0);
 }
 
-// Pixels without a depth, and those of strong texture, do not count.
+// Pixels without a depth and pixels with strong texture must not contribute to the mean.
 TEST(RemoveUnconfirmed, AgreesWithSumsByHand) {
   constexpr int kWidth = 60, kHeight = 45, kReach = 4;
   cv::Mat1b image = noise({kWidth, kHeight}, 0.8, 3);
@@ -90,7 +90,7 @@ TEST(RemoveUnconfirmed, AgreesWithSumsByHand) {
             sum += confidence(v, u);
             ++count;
           }
-      // Confidences are rounded to 1/255.
+      // Skips means at the threshold, because confidences are rounded to 1/255.
       if (count > 0 && std::abs(sum / count - 0.6) < 0.003) continue;
       const bool expected = is_weak(x, y) && sum < 0.6 * count;
       ASSERT_EQ(result.depth(y, x) == 0, expected) << x << " " << y;

@@ -42,14 +42,14 @@ bool inside(const cv::Mat1b& image, int x, int y) {
   return x >= 0 && y >= 0 && x < image.cols && y < image.rows;
 }
 
-// How much a texel counts: in full from one pixel inside the image on, not at all outside.
+// The factor of a texel's weight: 1 if it is at least one pixel inside the image, 0 outside.
 double share(const cv::Mat1b& image, double x, double y) {
   const double least = std::min(std::min(x, image.cols - 1 - x), std::min(y, image.rows - 1 - y));
   return std::clamp(least, 0.0, 1.0);
 }
 
-// The definition, in double, with weights recomputed from the images, over the texels that lie in
-// both.
+// ZNCC by its definition, in double, over the texels that lie in both images. The weights are
+// computed from the images.
 double zncc_by_definition(const cv::Mat1b& reference, int cx, int cy, const cv::Mat1b& source,
                           const TexelPositions& at, const PatchMatchOptions& options) {
   std::vector<double> w, a, b;
@@ -98,12 +98,12 @@ TEST(Zncc, AgreesWithTheDefinition) {
     const int y = 4 + static_cast<int>(random() % 22);
     const TexelPositions at = random_positions(random, 1, 38);
     const float found = zncc_scalar(patch_at(sampler, reference, x, y), QuadImage(source), at);
-    // Sums of 25 floats of 16 bits: rounding stays some 1e-7 of the variance.
+    // Rounding changes the sums of 25 floats by some 1e-7 of the variance.
     EXPECT_NEAR(found, zncc_by_definition(reference, x, y, source, at, options), 2e-5);
   }
 }
 
-// Reference pixels up to the image's edge, and source windows that leave the image.
+// Reference pixels up to the image's edge, and source windows that lie partly outside the image.
 TEST(Zncc, AgreesWithTheDefinitionOverWhatLiesInside) {
   const PatchMatchOptions options;
   const PatchSampler sampler(options);
@@ -119,13 +119,13 @@ TEST(Zncc, AgreesWithTheDefinitionOverWhatLiesInside) {
     if (found == kNoCorrelation) continue;
     ++correlated;
     EXPECT_GT(share(source, at.x[kCentreTexel], at.y[kCentreTexel]), 0);
-    // The variance of few texels is the difference of larger sums.
+    // The tolerance is larger, because the variance of few texels is a difference of larger sums.
     EXPECT_NEAR(found, zncc_by_definition(reference, x, y, source, at, options), 1e-4);
   }
   EXPECT_GT(correlated, 300);
 }
 
-// A jump at the image's edge would hold planes back that are right.
+// A discontinuity at the image's edge would penalise correct planes.
 TEST(Zncc, ChangesLittleFromStepToStepAsAWindowLeavesTheImage) {
   const PatchSampler sampler{PatchMatchOptions()};
   cv::Mat1b image = random_image(60, 60, 9);
@@ -143,13 +143,13 @@ TEST(Zncc, ChangesLittleFromStepToStepAsAWindowLeavesTheImage) {
     }
     const float found = zncc_scalar(patch, source, at);
     if (found != kNoCorrelation && last != kNoCorrelation) {
-      // A texel of 25 enters within one pixel; the image has no edge sharper than its blur.
+      // The weight of a texel grows gradually over one pixel, and the image is blurred.
       EXPECT_LT(std::abs(found - last), 5 * kStep) << x;
       ++correlated;
     }
     last = found;
   }
-  EXPECT_GT(correlated, 1150);  // up to the edge
+  EXPECT_GT(correlated, 1150);  // nearly all steps up to the image's edge
   EXPECT_EQ(last, kNoCorrelation);
 }
 
@@ -160,7 +160,7 @@ TEST(Zncc, FastestGivesTheBytesOfTheScalarReference) {
   for (unsigned trial = 0; trial < 500; ++trial) {
     const cv::Mat1b image = random_image(64, 48, trial);
     const ReferencePatch patch = patch_at(sampler, image, 10, 10);
-    // Partly outside: the answer must be the same there too.
+    // Every second patch lies partly outside.
     const TexelPositions at = random_positions(random, trial % 2 ? -1.0f : 1.0f, 46.5f);
     EXPECT_EQ(fast(patch, QuadImage(image), at), zncc_scalar(patch, QuadImage(image), at));
   }
@@ -178,7 +178,7 @@ TEST(Zncc, IsOneForTheSamePatchUnderAnyBrightnessAndContrast) {
   }
   const ReferencePatch patch = patch_at(sampler, image, 20, 20);
   EXPECT_NEAR(zncc_scalar(patch, QuadImage(image), at), 1.0f, 1e-5f);
-  EXPECT_NEAR(zncc_scalar(patch, QuadImage(dimmer), at), 1.0f, 2e-3f);  // halving rounds
+  EXPECT_NEAR(zncc_scalar(patch, QuadImage(dimmer), at), 1.0f, 2e-3f);  // grey levels are rounded
 }
 
 TEST(Zncc, SaysSoWhereThereIsNoCorrelation) {

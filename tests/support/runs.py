@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the acceptance points and the benchmarks share: running the project's programs on scenes, and
-what such a run costs and gives."""
+"""Shared by the acceptance points and the benchmarks: running the project's programs on scenes, and
+measuring cost and quality."""
 
 import dataclasses
 import hashlib
@@ -30,8 +30,9 @@ def shared(*parts):
 
 
 def measured(log, *command):
-    """Runs a command, output to `log`; wall and CPU seconds, peak memory in bytes. The peak is at
-    least what this process has in memory: the kernel counts the child from the fork on."""
+    """Runs a command with its output in `log`. Returns wall and CPU seconds and peak memory
+    [bytes]. The peak is at least the memory of this process, because the kernel counts the child
+    from the fork on. RuntimeError if the command fails."""
     log.parent.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic()
     with open(log, "w") as out:
@@ -45,7 +46,7 @@ def measured(log, *command):
 
 
 def step(name, *arguments):
-    """A shell function of apps/pipeline/steps.sh."""
+    """Runs a shell function of apps/pipeline/steps.sh."""
     script = f'source apps/pipeline/steps.sh; bin={BIN}; {name} "$@"'
     subprocess.run(["bash", "-euo", "pipefail", "-c", script, name, *map(str, arguments)], cwd=ROOT,
                    check=True)
@@ -58,7 +59,7 @@ TOLERANCES = {"closeup": 0.002, "reef": 0.005}  # of F-scores [m]
 @dataclasses.dataclass(frozen=True)
 class Truth:
     name: str
-    data: pathlib.Path  # sparse, housing.json, and the folders of images air and water
+    data: pathlib.Path  # holds sparse, housing.json, and images in air and water
     mesh: pathlib.Path
     tolerance: float  # [m]
 
@@ -67,7 +68,7 @@ class Truth:
 
 
 def synthetic(name, base):
-    """closeup or reef of data/synthetic; its mesh is made under `base`."""
+    """The scene closeup or reef of data/synthetic. Its mesh is made under `base`."""
     data = ROOT / "data" / "synthetic" / name
     if not data.is_dir():
         raise Skipped(f"no {data}")
@@ -76,7 +77,8 @@ def synthetic(name, base):
 
 
 def simulated(name, base, *options, tolerance=0.002):
-    """A scene that is not in git, made once under `base`: again only if the simulator changed."""
+    """A scene that is not in git, simulated under `base`; again only if the simulator or the
+    options changed."""
     folder = base / "simulated" / name
     made_by = hashlib.sha1((BIN / "SimulateUnderwater").read_bytes()).hexdigest() + f" {options}"
     mark = folder / "made-by"
@@ -91,8 +93,8 @@ SURVEY_VIEWS = 200
 
 
 def survey(views, base):
-    """The first of 200 views of 640 x 480: a model, and the folder of all images. What a view sees
-    does not depend on how many there are. Rendered once under `base`."""
+    """The model of the first `views` of 200 views of 640 x 480, and the folder of all images. The
+    images do not depend on the number of views. They are rendered once under `base`."""
     folder = base / "survey"
     if not (folder / "rendered").exists():
         shutil.rmtree(folder, ignore_errors=True)
@@ -110,20 +112,20 @@ def survey(views, base):
 
 # Reconstruction.
 
-# One sweep of each kind instead of two, for measurements that depend on the number of images and
-# not on the number of sweeps.
+# One sweep of each kind instead of two, where the number of sweeps does not matter.
 ONE_SWEEP = ("--iters", 1, "--geometric-iters", 1)
 
 
 def import_scene(folder, model, images, housing=None):
-    """A COLMAP model as `folder`/scene.mvs."""
+    """Imports a COLMAP model to `folder`/scene.mvs."""
     port = ["--housing", housing] if housing else []
     measured(folder / "import.log", BIN / "InterfaceCOLMAP", "-i", model, "--image-folder", images,
              "-o", folder / "scene.mvs", *port)
 
 
 def densify(folder, *options):
-    """`folder`/scene.mvs to scene_dense.ply, from nothing, and what it cost."""
+    """Densifies `folder`/scene.mvs from scratch. Returns the cost, the number of points and the
+    megapixels of the depth maps."""
     for pattern in ("depth*.dmap*", "scene_dense.*"):
         for path in folder.glob(pattern):
             path.unlink()
@@ -139,7 +141,7 @@ def points_in(folder):
 
 
 def megapixels(folder):
-    """Of all depth maps in a folder, from their headers."""
+    """The megapixels of all depth maps in a folder, from their headers."""
     total = 0
     for path in folder.glob("depth????.dmap"):
         width, height = (int.from_bytes(path.read_bytes()[i:i + 4], "little") for i in (12, 16))
@@ -148,7 +150,7 @@ def megapixels(folder):
 
 
 def evaluate(folder, truth, medium, align="none"):
-    """The dense cloud of `folder` against the true mesh, lengths in metres."""
+    """Compares the dense cloud of `folder` with the true mesh. Lengths are in metres."""
     housing = truth.housing(medium)
     file = folder / f"evaluation-{align}.json"
     measured(folder / "evaluate.log", BIN / "EvaluateReconstruction", "-i",

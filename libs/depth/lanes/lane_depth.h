@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depths near an expected one, a source view to a lane.
+// Depths near an expected depth, with one source view per SIMD lane.
 #pragma once
 
 #include "depth/consistency.h"
@@ -29,8 +29,9 @@ auto gather_floats(const float* base, const typename Pack<Abi>::Ints& at) {
 
 }  // namespace detail
 
-// Bilinear depth among those of the four pixels around a position that lie within kSameSurface
-// (relative) of the expected depth; 0 if none does or the position is outside.
+// depth_near() of geometric_check.h in SIMD lanes, with the tolerance kSameSurface. `depths`: the
+// depth maps of all views; `image`: where each lane's map begins, and its size; `at`: the positions
+// (depth 0 if not visible).
 template <class Abi>
 Pack<Abi> lane_depth_near(const float* depths, const LaneImages<Abi>& image,
                           const refractive::Projection<Pack<Abi>>& at, const Pack<Abi>& expected) {

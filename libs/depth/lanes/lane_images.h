@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The source image of every lane: where it begins in the run of all images, and its size.
+// The source image of each lane: the index of its first word in SceneTables::words, and its size.
 #pragma once
 
 #include "depth/lanes/pack.h"
@@ -13,7 +13,7 @@ struct LaneImages {
   Pack<Abi> width, height;
 };
 
-// Those of the views whose indices begin at `view`.
+// The images of as many views as a pack has lanes. `view`: the aligned indices of these views.
 template <class Abi>
 LaneImages<Abi> lane_images(const SceneTables& tables, const std::int32_t* view) {
   using Ints = typename Pack<Abi>::Ints;

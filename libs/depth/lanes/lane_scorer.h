@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scorer for one instruction set. To be included by its translation unit alone.
+// The scorer as a template for all instruction sets. Only the scorers' translation units include
+// it; each of them is compiled for one instruction set.
 #pragma once
 
 #include "depth/lanes/lane_view.h"
@@ -8,8 +9,8 @@
 #include "refractive/flat_port_camera.h"
 #include "refractive/pinhole_camera.h"
 
-// Everything stays in registers only where no call lies between. Under the sanitizers that would be
-// one enormous function, which takes minutes to compile.
+// Inlines all calls, so that values stay in registers. Not under the sanitizers, where this one
+// large function would take minutes to compile.
 #ifdef __SANITIZE_ADDRESS__
 #define AXIAL_FLATTEN
 #else
@@ -18,9 +19,10 @@
 
 namespace axial::depth::lanes {
 
-// Looks in registers of `Wide` and compares in those of `Narrow`: projecting is one long chain of
-// operations that wait for each other, which a wider register goes through once instead of twice
-// (and no slower where half of it is empty), while texels are loaded one by one.
+// Projects in registers of `Wide` and correlates in registers of `Narrow`. A projection is a long
+// chain of dependent operations. One wide register passes this chain once where two narrow
+// registers need two passes, and it is no slower if half of it is unused. Correlation does not gain
+// from wide registers, because texels are loaded one by one.
 template <template <class> class Camera, class Narrow, class Wide>
 class LaneScorer final : public Scorer {
   using T = Pack<Narrow>;
@@ -29,8 +31,8 @@ class LaneScorer final : public Scorer {
  public:
   explicit LaneScorer(const SceneTables& tables) : tables_(tables), view_(tables) {}
 
-  // Looks at all pairs before it compares any, so that the processor fills the waits of one
-  // register with another's work.
+  // Projects all pairs before it correlates any, so that the processor can overlap the dependent
+  // operations of several registers.
   AXIAL_FLATTEN void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
                            std::span<const SurfacePoint> neighbours,
                            LaneScores& scores) const override {
@@ -69,6 +71,7 @@ class LaneScorer final : public Scorer {
   View view_;
 };
 
+// nullptr if the kind of camera in `tables` has a distorted lens.
 template <class Narrow, class Wide = Narrow>
 std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
   switch (tables.kind) {

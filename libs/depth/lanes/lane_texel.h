@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bilinear grey values, one position to a lane, in whole numbers: positions are 16.16 fixed-point,
-// weights have 15 bits, and a register of 32-bit lanes holds the upper and the lower row of the 2x2
-// neighbourhood as its 16-bit halves. Half the work of floats, exact to 0.01 grey levels, and the
-// same on every instruction set.
+// Bilinear grey levels in integer arithmetic, with one position per SIMD lane. Positions are 16.16
+// fixed-point numbers; weights have 15 bits. The 16-bit halves of a 32-bit lane hold the upper and
+// the lower row of the 2x2 neighbourhood. This needs half the work of floats, is exact to 0.01 grey
+// levels, and is bit-identical on all instruction sets.
 #pragma once
 
 #include "depth/lanes/pack.h"
 
 namespace axial::depth::lanes {
 
-inline constexpr float kPositionUnit = 65536;          // of one pixel
-inline constexpr float kGreyUnit = 128.0f * 32767.0f;  // of one grey level
+inline constexpr float kPositionUnit = 65536;          // the integer for 1 px
+inline constexpr float kGreyUnit = 128.0f * 32767.0f;  // the integer for 1 grey level
 
 namespace detail {
 
 #ifdef __AVX2__
-// Eight plain loads: faster than the gather instruction on AMD's Zen 3 and 4, which run it as
-// microcode.
+// Eight scalar loads. They are faster than the gather instruction on AMD's Zen 3 and Zen 4, which
+// execute it as microcode.
 [[gnu::always_inline]] inline __m256i gather_by_loads(const int* base, __m256i at) {
   const auto four_of = [&](std::uint64_t first, std::uint64_t second) {
     __m128i words = _mm_cvtsi32_si128(base[static_cast<std::uint32_t>(first)]);
@@ -34,7 +34,7 @@ namespace detail {
 }
 #endif
 
-// base[at] of every lane of a part. Precondition: no index is negative.
+// base[at] for each lane. Precondition: no index is negative.
 template <class Abi>
 auto gather(const std::uint32_t* base, const typename Pack<Abi>::Ints& at) {
   using Ints = typename Pack<Abi>::Ints;
@@ -48,14 +48,16 @@ auto gather(const std::uint32_t* base, const typename Pack<Abi>::Ints& at) {
 }
 
 #ifdef __AVX2__
-// Selects the lower half of each of four lanes for both of its halves.
+// Shuffle mask: copies the lower half of each of four 32-bit lanes to both halves.
 inline __m128i lower_half_twice() {
   return _mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13);
 }
 #endif
 
-// Operations on the 16-bit halves of 32-bit lanes. upper_halves: those of two registers in one.
-// fractions: of a 16.16 number, 15 bits, in both halves.
+// Operations on the 16-bit halves of 32-bit lanes.
+//   upper_halves: the upper half of `upper`, and as the lower half the upper half of `lower`.
+//   dot_halves:   the sum of the products of the upper halves and of the lower halves.
+//   fractions:    the fraction of a 16.16 number with 15 bits, in both halves.
 #ifdef __AVX2__
 inline __m256i upper_bytes(__m256i a) {
   return _mm256_srli_epi16(a, 8);
@@ -86,18 +88,20 @@ inline __m256i fractions(__m256i a) {
 
 }  // namespace detail
 
-// Samples the image of every lane of one part.
+// Samples the source image of each lane.
 template <class Abi>
 class LaneSampler {
  public:
   using Part = typename Pack<Abi>::Part;
   using Ints = typename Pack<Abi>::Ints;
 
-  // `words`: all images in one run; `begin` and `width`: where each lane's begins, and its width.
+  // `words`: SceneTables::words. `begin`, `width`: the first index and the width of each lane's
+  // image.
   LaneSampler(const std::uint32_t* words, const Ints& begin, const Ints& width)
       : words_(words), begin_(begin), width_(kHalves ? (width << 16) | Ints(1) : width) {}
 
-  // In kGreyUnit. Precondition: 0 <= x < width - 1, 0 <= y < height - 1.
+  // The grey level times kGreyUnit at (x, y), in units of 1/kPositionUnit px. Precondition:
+  // 0 <= x < width - 1 and 0 <= y < height - 1 in pixels.
   Part operator()(const Ints& x, const Ints& y) const {
     if constexpr (kHalves)
       return by_halves(x, y);
@@ -113,7 +117,7 @@ class LaneSampler {
   static constexpr bool kHalves = false;
 #endif
 
-  // What the halves do, spelt out.
+  // The arithmetic of by_halves() on whole 32-bit lanes, with the same results.
   Part by_lanes(const Ints& x, const Ints& y) const {
     const Ints word = detail::gather<Abi>(words_, begin_ + (y >> 16) * width_ + (x >> 16));
     const Ints fx = (x >> 1) & Ints(0x7FFF), fy = (y >> 1) & Ints(0x7FFF);
@@ -136,7 +140,7 @@ class LaneSampler {
     const Register word = raw(gather<Abi>(words_, at));
 
     const Register fx = fractions(raw(x));
-    const Register fy = raw(Ints(fractions(raw(y))) ^ Ints(0x7FFF));  // upper row's, lower row's
+    const Register fy = raw(Ints(fractions(raw(y))) ^ Ints(0x7FFF));  // weights of both rows
     const Register left = raw(Ints(word) & Ints(0x00FF00FF));
     const Register step = times_128(subtract_halves(upper_bytes(word), left));
     const Register rows = add_halves(times_128(left), multiply_halves(step, fx));
@@ -148,7 +152,7 @@ class LaneSampler {
 
   const std::uint32_t* words_;
   Ints begin_;
-  Ints width_;  // with kHalves: in the upper half, 1 in the lower
+  Ints width_;  // with kHalves: the width in the upper half, 1 in the lower half
 };
 
 }  // namespace axial::depth::lanes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How source views see plane hypotheses, a pair of both to a lane: projection, warp, smoothness and
-// geometric consistency; and the reference camera's rays. To be included by the translation unit of
-// one instruction set alone.
+// The part of a score that needs cameras, with one pair of plane and source view per SIMD lane:
+// projection, warp, smoothness and geometric consistency. Also the reference camera's rays. Only
+// the scorers' translation units include this file (lane_scorer.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,13 +14,13 @@
 
 namespace axial::depth::lanes {
 
-// All that is known of the pairs before any texel is read.
+// The results of LaneView::look() that the correlation and the cost need.
 struct Seen {
   LaneFloats x, y;                 // the patch's centre in the source view [px]
   LaneFloats visible;              // 1 or 0
   std::array<LaneFloats, 4> warp;  // d(source pixel)/d(reference pixel), row-major
   LaneFloats depth;                // of the plane
-  LaneFloats inconsistency;        // to be added to the cost
+  LaneFloats inconsistency;        // geometric term times its weight; is added to the cost
 };
 
 template <template <class> class Camera, class Abi>
@@ -30,8 +30,8 @@ class LaneView {
   using Projector = typename Camera<T>::Projector;
   using Image = decltype(std::declval<Projector>().image(std::declval<Vector>()));
 
-  // A source view in every lane. Where all have the same projector, that one is referred to:
-  // copying it would be a good part of the work.
+  // One source view per lane. If all views have the same projector, `projector` points to it,
+  // because a copy would take much of the time. Otherwise it points to `dealt`.
   struct Views {
     Projector dealt;
     const Projector* projector;
@@ -53,7 +53,7 @@ class LaneView {
     fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
-  // The pairs from `first` on, kWidth of them. Stores all scores but the cost.
+  // Processes kWidth pairs, from pair `first` on. Stores `seen` and all scores but the cost.
   void look(const LanePixel& pixel, const LanePlanes& lane_planes, const LanePairs& pairs,
             std::span<const SurfacePoint> neighbours, std::size_t first, LaneScores& scores,
             Seen& seen) const {
@@ -90,7 +90,7 @@ class LaneView {
         .store(scores.motion.data() + first);
   }
 
-  // Of kWidth pixels of a row from (x, y) on, stored from `first` on.
+  // Computes the rays of the pixels (x, y) to (x + kWidth - 1, y); stores them from `first` on.
   void rays(float x, float y, std::size_t first, LaneRays& rays) const {
     T u;
     u.part = typename T::Part([&](auto k) { return x + static_cast<float>(k); });
@@ -147,12 +147,12 @@ class LaneView {
       views.translation(i) = of(tables_.translation[static_cast<std::size_t>(i)].data());
   }
 
-  // inconsistency() of geometric_check.h, times its weight.
+  // inconsistency() of geometric_check.h times its weight; 0 for views without a depth map.
   T inconsistency(const LanePixel& pixel, const refractive::AxialRay<T>& ray, const T& depth,
                   const std::int32_t* view, const Views& views, const Vector& point,
                   const Image& image) const {
     const T limit(tables_.geometric_limit);
-    // The ray of image.projection.pixel, because that is exact.
+    // The projection is exact, so `point` lies on the ray of image.projection.pixel.
     const Vector along = point - image.origin();
     const T expected = sqrt(along.dot(along));
     const T found = lane_depth_near(tables_.depths.data(), lane_images<Abi>(tables_, view),

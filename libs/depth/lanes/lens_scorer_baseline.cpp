@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For every processor the project is built for.
+// Compiled for the baseline processor of the build.
 #include "depth/lanes/lane_lens_scorer.h"
 
 namespace axial::depth::lanes::detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reference: one float at a time.
+// The reference for tests: one float at a time.
 #include "depth/lanes/lane_lens_scorer.h"
 
 namespace axial::depth::lanes::detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A register of floats that are computed with as one number, over std::experimental::simd. The ABI
-// names the instruction set in the type, so that code compiled for different sets never shares a
-// name.
+// A SIMD register of floats with the operators of a number, based on std::experimental::simd. The
+// type contains the ABI and so the instruction set. Therefore functions that are compiled for
+// different instruction sets have different names for the linker.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace axial::depth::lanes {
 
 namespace stdx = std::experimental;
 
-// Yes or no in every lane.
+// The result of a comparison: one bool per lane.
 template <class Abi>
 struct PackMask {
   stdx::simd_mask<float, Abi> part;
@@ -100,8 +100,8 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
-// The second one if either is NaN, which is what the processors' own instructions give, in one step
-// where comparing and choosing are two.
+// The smaller and the larger number. Both functions return b if a or b is NaN, as the minimum and
+// maximum instructions do. These instructions take one step; comparison and selection take two.
 template <class Abi>
 Pack<Abi> lesser(const Pack<Abi>& a, const Pack<Abi>& b) {
   using Part [[maybe_unused]] = typename Pack<Abi>::Part;
@@ -140,7 +140,8 @@ Pack<Abi> max(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(a < b, b, a);
 }
 
-// Lane k of the result is table[index[k]]; a table has kLanes entries.
+// Table lookup: lane k of the result is table[index[k]]. The table has kLanes entries and is
+// aligned to 64 bytes. The indices, from 0 to kLanes - 1, are aligned to the size of the register.
 template <class Abi>
 class Lookup {
  public:
@@ -186,7 +187,7 @@ template <class Abi>
 inline constexpr bool kFixedSteps<depth::lanes::Pack<Abi>> = true;
 }
 
-// What Eigen wants to know of a number.
+// The properties that Eigen requires of a scalar type.
 namespace Eigen {
 template <class Abi>
 struct NumTraits<axial::depth::lanes::Pack<Abi>>

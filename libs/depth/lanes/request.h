@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a lane scorer is asked, in plain numbers: this is all that crosses the border between code
+// The arguments of a lane scorer as plain numbers. Only these types are passed between code
 // compiled for different instruction sets.
 #pragma once
 
@@ -13,15 +13,15 @@ struct ReferencePatch;
 
 namespace axial::depth::lanes {
 
-// Pairs of a plane hypothesis and a source view that are scored at once.
+// Largest number of pairs of a plane hypothesis and a source view that are scored at once.
 inline constexpr std::size_t kLanes = 16;
 
-// Largest side of a source image [px]: columns and rows are signed 16-bit numbers.
+// Largest side of a source image [px], because columns and rows are signed 16-bit numbers.
 inline constexpr int kLargestSide = 32767;
 
 struct alignas(64) LaneFloats : std::array<float, kLanes> {};
 
-// Up to kLanes plane hypotheses of one reference pixel.
+// Up to kLanes plane hypotheses of one reference pixel: depths [m] and unit normals.
 struct LanePlanes {
   LaneFloats depth;
   LaneFloats nx;
@@ -29,15 +29,17 @@ struct LanePlanes {
   LaneFloats nz;
 };
 
-// Which plane (of LanePlanes) and which source view a lane works on. All lanes must be valid:
-// unused ones, those from `count` on, repeat another, and their scores mean nothing.
+// The plane (index into LanePlanes) and the source view of each lane. Lanes from `count` on are
+// unused. Their indices must be valid, too, so they repeat another lane; their scores have no
+// meaning.
 struct LanePairs {
   std::size_t count;
   alignas(64) std::array<std::int32_t, kLanes> plane;
   alignas(64) std::array<std::int32_t, kLanes> view;
 };
 
-// The reference pixel: its ray and the ray's derivatives by u and v, reference camera's frame.
+// The reference pixel: its ray and the ray's derivatives by the pixel (u, v), in the reference
+// camera's frame; its prior (ReferencePixel) and its window.
 struct LanePixel {
   std::array<float, 3> origin, direction;
   std::array<float, 3> origin_u, origin_v, direction_u, direction_v;
@@ -45,14 +47,13 @@ struct LanePixel {
   const ReferencePatch* patch;
 };
 
-// The rays of kLanes pixels of a row and their derivatives, component by component in the order of
-// LanePixel.
+// The rays of kLanes pixels of a row and their derivatives: the 18 components in the order of
+// LanePixel, each for all pixels.
 struct LaneRays : std::array<LaneFloats, 18> {};
 
 struct LaneScores {
   LaneFloats cost;        // 0 to kMaxCost
-  LaneFloats motion;      // of the patch's centre in the source view with depth [px/m]; 0
-                          // if unseen
+  LaneFloats motion;      // see ViewScore::motion (matcher.h)
   LaneFloats smoothness;  // factor of the lane's plane (smoothness.h)
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scores pairs of a plane hypothesis and a source view, sixteen at a time, one to a SIMD lane: the
-// exact projection and its Jacobian, the affine warp, ZNCC and geometric consistency all run in
-// lanes. Every lane computes what plain floats would, in the same order, without fused operations:
-// the same bytes on every instruction set.
+// Scores up to 16 pairs of a plane hypothesis and a source view at a time, with one pair per SIMD
+// lane. Exact projection, its Jacobian, affine warp, ZNCC and geometric consistency all run in SIMD
+// lanes. Every lane computes the same operations as scalar floats, in the same order and without
+// fused multiply-add. So the results are bit-identical on all instruction sets.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class CameraKind {
   pinhole,
   flat_port,
   dome_port,
-  // The same with a distorted lens.
+  // The same kinds with a distorted lens.
   lens_pinhole,
   lens_flat_port,
   lens_dome_port
@@ -28,31 +28,34 @@ enum class CameraKind {
 
 inline constexpr std::size_t kMaxCameraFields = 96;
 
-// The numbers of a camera or its projector as its each_field() visits them.
+// The numbers of a camera or of its projector in the order of each_field().
 struct CameraFields {
   std::array<float, kMaxCameraFields> value{};
-  int steps = 0;  // the one int among them
+  int steps = 0;  // the only integer field: the number of projection steps
 
   bool operator==(const CameraFields&) const = default;
 };
 
-// Everything about the reference camera and up to kLanes source views. Tables have one entry per
-// view; those beyond the last view are never asked for.
+// The data of the reference camera and of up to kLanes source views. A LaneFloats has one entry per
+// view. The entries beyond the last view are not used.
 struct SceneTables {
-  CameraKind kind = CameraKind::pinhole;
-  CameraFields reference;
+  CameraKind kind = CameraKind::pinhole;  // of all these cameras
+  CameraFields reference;                 // used by rays() only
+  // The projectors' fields: projector[field][view].
   std::array<LaneFloats, kMaxCameraFields> projector{};
-  int steps = 0;                // largest of the projectors'
-  bool same_projector = false;  // all source views have the first one's
+  int steps = 0;                // largest number of projection steps of all projectors
+  bool same_projector = false;  // the projectors of all source views are equal
   // x_projector = rotation * x_reference + translation, in the source projector's frame; row-major.
   std::array<LaneFloats, 9> rotation{};
   std::array<LaneFloats, 3> translation{};
-  // Quad words (zncc.h) of all source images in one run, and where each begins.
+  // The words of all source images (QuadImage, zncc.h), one image after the other, and the index of
+  // each image's first word.
   std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> words;
   std::array<std::int32_t, kLanes> image_begin{};
   LaneFloats width{};
   LaneFloats height{};
-  // The source views' depth maps, as `words`; empty: photometric only. has_depth is 0 or 1.
+  // The depth maps of the source views [m], indexed as `words`. Empty: photometric cost only.
+  // has_depth: 1 if the view has a depth map, otherwise 0.
   std::vector<float, HugePageAllocator<float>> depths;
   LaneFloats has_depth{};
   float geometric_weight = 0;
@@ -60,27 +63,31 @@ struct SceneTables {
   SmoothnessOptions smoothness;
 };
 
-// Precondition of all: indices of views are below the number of views in the tables.
+// Scores pairs and computes rays for the cameras of a SceneTables.
 class Scorer {
  public:
   virtual ~Scorer() = default;
-  // Fills `scores` for every pair. `neighbours`: the surface around the pixel.
+  // Fills `scores` for every pair. `neighbours`: the surface at neighbouring pixels, for the
+  // smoothness factor. Preconditions: pairs.plane are indices of valid planes; pairs.view are below
+  // the number of views in the tables.
   virtual void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
                      std::span<const SurfacePoint> neighbours, LaneScores& scores) const = 0;
-  // Of the reference camera's pixels from (x, y) on.
+  // Fills `rays` for the reference camera's pixels (x, y) to (x + kLanes - 1, y).
   virtual void rays(float x, float y, LaneRays& rays) const = 0;
 };
 
 enum class InstructionSet { scalar, baseline, avx2, avx512 };
 
-// What this processor can run; `scalar` is the reference that the others are tested against.
+// The instruction sets that this build and this processor support, the fastest one last. `scalar`
+// is the reference for the tests of the others.
 std::vector<InstructionSet> available_instruction_sets();
 InstructionSet fastest_instruction_set();
 
-// `tables` must outlive the scorer. Precondition: `set` is available.
+// Makes a scorer for the kind of camera in `tables`, which must outlive the scorer. Precondition:
+// `set` is available.
 std::unique_ptr<Scorer> make_scorer(const SceneTables& tables, InstructionSet set);
 
-namespace detail {  // one translation unit each, for straight lenses and for distorted ones
+namespace detail {  // each function has its own translation unit
 std::unique_ptr<Scorer> make_scalar_scorer(const SceneTables& tables);
 std::unique_ptr<Scorer> make_baseline_scorer(const SceneTables& tables);
 std::unique_ptr<Scorer> make_avx2_scorer(const SceneTables& tables);

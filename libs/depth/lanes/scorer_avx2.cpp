@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled for avx2 alone: nothing here may be shared with other translation units.
+// Compiled for AVX2. No function defined here may be shared with other translation units.
 #include "depth/lanes/lane_scorer.h"
 
 namespace axial::depth::lanes::detail {
