@@ -20,7 +20,7 @@ if(AXIAL_HELP2MAN AND NOT AXIAL_SANITIZE)
     set(page ${PROJECT_BINARY_DIR}/man/${program}.1)
     add_custom_command(OUTPUT ${page} DEPENDS ${program}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
-      COMMAND ${AXIAL_HELP2MAN} --no-info --no-discard-stderr --manual AxialMVS
+      COMMAND ${AXIAL_HELP2MAN} --no-info --manual AxialMVS
         --name "program of AxialMVS, dense 3D reconstruction under water and in air"
         --output ${page} $<TARGET_FILE:${program}>
       COMMENT "Writing the man page of ${program}" VERBATIM)
