@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/program.h"
 #include "base/same_file.h"
+#include "base/version.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
 #include "io/colmap_scene.h"
@@ -32,6 +33,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       "brings a COLMAP model to metric scale by a similarity to known camera centres",
       {},
       {}};
+  program.version = version_line(program.name);
   program.visible.add("input-file,i", &input, "COLMAP model folder to align")
       .add("reference", &reference,
            "COLMAP model folder with the known camera centres; images are matched by name")

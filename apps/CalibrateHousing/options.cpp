@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/version.h"
 #include "io/bit_depth.h"
 
 using axial::fail;
@@ -85,6 +86,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       "finds the port of a housing in photographs of a board taken under water",
       {},
       {}};
+  program.version = axial::version_line(program.name);
   declare(program.visible, options, texts, max_normal_degrees);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/unused_input.h"
+#include "base/version.h"
 #include "cloud_exports.h"
 #include "dense_config.h"
 #include "io/bit_depth.h"
@@ -222,6 +223,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       "DensifyPointCloud", "a dense point cloud from calibrated images, in air and under water",
       axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
       ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
+  program.version = axial::version_line(program.name);
   declare_io(program.visible, raw, options);
   axial::io::declare_bit_depth(program.visible, options.bit_depth);
   declare_camera(program.visible, raw, options);

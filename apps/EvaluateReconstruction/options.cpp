@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/parse_number.h"
 #include "base/unused_input.h"
+#include "base/version.h"
 
 using axial::fail, axial::parse_finite;
 
@@ -124,6 +125,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   Texts texts;
   axial::ProgramOptions program{
       "EvaluateReconstruction", "measures a cloud, mesh or depth map against the truth", {}, {}};
+  program.version = axial::version_line(program.name);
   declare(program.visible, options, texts);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;

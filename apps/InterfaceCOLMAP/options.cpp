@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/unused_input.h"
+#include "base/version.h"
 
 namespace fs = std::filesystem;
 using axial::fail;
@@ -47,6 +48,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       "turns a COLMAP model and its images into a scene (.mvs), and a scene into a model",
       {},
       {}};
+  program.version = axial::version_line(program.name);
   program.visible
       .add("input-file,i", &input,
            "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/unused_input.h"
+#include "base/version.h"
 
 namespace fs = std::filesystem;
 using axial::fail;
@@ -39,6 +40,7 @@ Options parse_command_line(int argc, const char* const* argv) {
       "turns poses that COLMAP found in photographs taken under water into refractive ones",
       {},
       {}};
+  program.version = axial::version_line(program.name);
   program.visible
       .add("input-file,i", &input,
            "COLMAP folder of the raw underwater photographs, with any lens models: the model is in "

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "base/version.h"
 #include "chained.h"
 #include "results.h"
 
@@ -86,6 +87,7 @@ void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed) {
 ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
   program.name = "ReproducePaper";
+  program.version = version_line(program.name);
   program.description =
       "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
       "with EXPERIMENT figure2, runtime, figure3, figure4, reconstruction, sensitivity, need or "

@@ -7,12 +7,14 @@
 
 #include "base/error.h"
 #include "base/parse_number.h"
+#include "base/version.h"
 
 namespace axial {
 
 ProgramOptions describe(Arguments& a) {
   ProgramOptions program;
   program.name = "SimulateUnderwater";
+  program.version = version_line(program.name);
   program.description = "makes a synthetic scene with ground truth, in air and under water";
   program.visible
       .add_with_default("preset", &a.preset.name,

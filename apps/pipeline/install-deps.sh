@@ -6,11 +6,11 @@ set -euo pipefail
 
 packages=(
   # to build
-  g++ cmake ninja-build
+  g++ cmake ninja-build git help2man
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libxxhash-dev libboost-dev libboost-program-options-dev
   # to test
-  libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
+  dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
   # to run the pipeline
   colmap python3
 )

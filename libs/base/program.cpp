@@ -35,7 +35,7 @@ po::options_description common_options(CommonOptions& common, const ProgramOptio
       "details" +
       program.when_verbose;
   po::options_description generic("Generic options");
-  generic.add_options()("help,h", "print this help")(
+  generic.add_options()("help,h", "print this help")("version", "print the version")(
       "working-folder,w", po::value(&working_folder),
       "base of relative paths (default: current folder)")(
       "config-file,c", po::value(&common.config_file)->default_value(program.name + ".cfg"),
@@ -235,6 +235,10 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
     refuse_stray_arguments(arguments);
     refuse_negative(arguments, command_line);
     po::store(arguments, values);
+    if (values.count("version")) {
+      std::cout << program.version << std::endl;
+      return parsed;
+    }
 
     if (values.count("working-folder")) working_folder = values["working-folder"].as<std::string>();
     std::error_code error;

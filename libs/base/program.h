@@ -32,6 +32,7 @@ struct ProgramOptions {
   OptionList hidden{"Hidden options"};
   // For --help: ", ..." names the additional output of this program with -v 3 and above.
   std::string when_verbose = "";
+  std::string version = "";  // the line that --version prints (base/version.h)
 };
 
 struct ParsedOptions {
@@ -49,10 +50,11 @@ struct ParsedOptions {
 //     positional arguments.
 //   - The cfg file (default `<name>.cfg` in the working folder) gives values for options that are
 //     absent from the command line.
-// Prints the help and returns with run = false in two cases: after -h with exit code 0, and with
-// exit code 1 if the program declares --input-file but the option is absent. (Without input OpenMVS
-// exits with 1 in both cases.) Throws an Error for an unknown option, a malformed value, a missing
-// value, or an unusable working folder or cfg file.
+// Prints the version and returns with run = false and exit code 0 after --version. Prints the help
+// and returns with run = false in two cases: after -h with exit code 0, and with exit code 1 if the
+// program declares --input-file but the option is absent. (Without input OpenMVS exits with 1 in
+// both cases.) Throws an Error for an unknown option, a malformed value, a missing value, or an
+// unusable working folder or cfg file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
 // True if the user gave the option of this full name, on the command line or in the cfg.

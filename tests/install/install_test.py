@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Installs the build into an empty folder and builds a project of someone else's against it; makes
+the Debian package, unpacks it and runs its programs. Arguments: the build folder, the source
+folder, the version."""
+
+import math
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD, SOURCE, VERSION = sys.argv[1:4]
+PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
+            "InterfaceCOLMAP", "RefinePoses", "ReproducePaper", "SimulateUnderwater"]
+
+
+def output_of(*command, cwd=None, env=None):
+    result = subprocess.run([str(word) for word in command], cwd=cwd, env=env, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=240)
+    assert result.returncode == 0, f"{command}: {result.returncode}\n{result.stdout}"
+    return result.stdout
+
+
+def pixel_by_snell(point):
+    """The pixel of a point behind the sample's port, by bisection on Snell's law."""
+    focal, distance, thickness = 800, 0.02, 0.014
+    n_glass, n_water = 1.52, 1.333
+    x, y, z = point
+    radius = math.hypot(x, y)
+
+    def reached(tangent):
+        sine = tangent / math.hypot(1, tangent)
+        tan_of = lambda n: (sine / n) / math.sqrt(1 - (sine / n) ** 2)
+        return (distance * tangent + thickness * tan_of(n_glass) +
+                (z - distance - thickness) * tan_of(n_water))
+
+    low, high = 0.0, 10.0
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if reached(middle) < radius else (low, middle)
+    return 511.5 + focal * low * x / radius, 383.5 + focal * low * y / radius
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial-install-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def check_programs(self, prefix):
+        for program in PROGRAMS:
+            said = output_of(prefix / "bin" / program, "--version")
+            self.assertRegex(said, rf"^{program} {re.escape(VERSION)}, commit [0-9a-f]+\+?, "
+                                   "instruction sets: SSE2, AVX2, AVX-512\n$")
+            self.assertTrue(list((prefix / "share/man/man1").glob(program + ".1*")), program)
+        self.assertIn("--housing", output_of(prefix / "bin/axial-reconstruct", "--help"))
+        self.assertTrue((prefix / "share/doc").is_dir())
+
+
+class Installed(Case):
+    def test_a_project_of_someone_else_finds_the_package(self):
+        prefix, build = self.folder / "usr", self.folder / "build"
+        output_of("cmake", "--install", BUILD, "--prefix", prefix)
+        self.check_programs(prefix)
+        output_of("cmake", "-S", os.path.join(SOURCE, "tests/install/sample"), "-B", build,
+                  "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+        output_of("cmake", "--build", build)
+
+        visible, x, y, miss = map(float, output_of(build / "project_point").split())
+        expected = pixel_by_snell((0.5, -0.3, 1.5))
+        self.assertEqual(visible, 1)
+        self.assertAlmostEqual(x, expected[0], delta=1e-5)  # six digits are printed
+        self.assertAlmostEqual(y, expected[1], delta=1e-5)
+        self.assertLess(miss, 1e-9)
+
+        cloud = self.folder / "cloud.ply"
+        cloud.write_bytes(b"ply\nformat binary_little_endian 1.0\nelement vertex 2\n"
+                          b"property float x\nproperty float y\nproperty float z\nend_header\n" +
+                          struct.pack("<6f", 1, 2, 3, 4, 5, 6))
+        self.assertEqual(output_of(build / "count_points", cloud), "2\n")
+
+
+class DebianPackage(Case):
+    def test_it_has_its_dependencies_and_runs(self):
+        output_of("cpack", "-G", "DEB", "--config", os.path.join(BUILD, "CPackConfig.cmake"),
+                  "-B", self.folder)
+        package, = self.folder.glob("axialmvs_*.deb")
+        depends = output_of("dpkg-deb", "--field", package, "Depends")
+        for needed in ("colmap", "python3", "libopencv-imgcodecs", "libceres", "libtbb",
+                       "libboost-program-options", "libembree", "libc6"):
+            self.assertIn(needed, depends)
+        root = self.folder / "root"
+        output_of("dpkg-deb", "--extract", package, root)
+        self.check_programs(root / "usr")
+        for program in PROGRAMS:
+            self.assertNotIn("not found", output_of("ldd", root / "usr/bin" / program))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])

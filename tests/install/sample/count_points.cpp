@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prints the number of points of a cloud.
+#include <cstdio>
+
+#include "io/ply.h"
+
+int main(int, char** argv) {
+  std::printf("%zu\n", axial::io::read_cloud_ply(argv[1]).size());
+}
