@@ -59,6 +59,7 @@ void PatchSampler::gather_window(const cv::Mat1b& image, int x, int y,
   for (k = kTexels; k < kPaddedTexels; ++k) patch.weight[k] = patch.deviation[k] = 0;
   patch.variance = sum(squares);
   patch.texture = patch.variance * weight_sum;
+  patch.whole = kWhole;
 }
 
 void PatchSampler::gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const {

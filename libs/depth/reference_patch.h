@@ -24,6 +24,7 @@ struct ReferencePatch {
   float mean;
   float variance;  // sum of weight * (intensity - mean)^2 with intensities from 0 to 1
   float texture;   // the same sum with the weights before normalisation, which are at most 1
+  bool whole;      // the window lies inside the reference image
 
   // weight * (intensity - mean)^2 of texel k.
   float square(std::size_t k) const {
@@ -35,7 +36,9 @@ inline constexpr float kOutsideCost = 1.2f;  // cost of a patch without a correl
 inline constexpr float kMaxCost = 2.0f;
 
 // The result for a patch that has no correlation: its centre lies outside the source image or is
-// NaN, too little of it lies inside, or it is flat. Less than every correlation.
+// NaN, too little of it lies inside, or it is flat. Nor has a patch a correlation that leaves both
+// images: along two borders that no other view shows, such patches agree on wrong depths by chance.
+// Less than every correlation.
 inline constexpr float kNoCorrelation = -2.0f;
 
 // The weight of a texel is multiplied by its distance to the edge of the source image [px], from 0

@@ -59,7 +59,8 @@ float share_inside(const QuadImage& source, float x, float y) {
 namespace detail {
 
 float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at) {
-  if (!(share_inside(source, at.x[kCentreTexel], at.y[kCentreTexel]) > 0)) return kNoCorrelation;
+  const float centre = share_inside(source, at.x[kCentreTexel], at.y[kCentreTexel]);
+  if (!patch.whole || !(centre > 0)) return kNoCorrelation;
   PartSums<float> sums;
   for (std::size_t k = 0; k < kTexels; ++k) {
     const float share = share_inside(source, at.x[k], at.y[k]);

@@ -108,21 +108,28 @@ TEST(Zncc, AgreesWithTheDefinitionOverWhatLiesInside) {
   const PatchMatchOptions options;
   const PatchSampler sampler(options);
   std::mt19937 random(8);
-  int correlated = 0;
+  int correlated = 0, refused = 0;
   for (unsigned trial = 0; trial < 1000; ++trial) {
     const cv::Mat1b reference = random_image(40, 30, trial);
     const cv::Mat1b source = random_image(50, 40, trial + 1000);
     const int x = static_cast<int>(random() % 40);
     const int y = static_cast<int>(random() % 30);
-    const TexelPositions at = random_positions(random, -10, 49);
+    const bool source_whole = trial % 2 == 0;
+    const TexelPositions at =
+        source_whole ? random_positions(random, 1, 38) : random_positions(random, -10, 49);
     const float found = zncc_scalar(patch_at(sampler, reference, x, y), QuadImage(source), at);
+    if (!source_whole && !window_inside(x, y, 40, 30)) {
+      EXPECT_EQ(found, kNoCorrelation);  // the patch leaves both images
+      ++refused;
+    }
     if (found == kNoCorrelation) continue;
     ++correlated;
     EXPECT_GT(share(source, at.x[kCentreTexel], at.y[kCentreTexel]), 0);
     // The tolerance is larger, because the variance of few texels is a difference of larger sums.
     EXPECT_NEAR(found, zncc_by_definition(reference, x, y, source, at, options), 1e-4);
   }
-  EXPECT_GT(correlated, 300);
+  EXPECT_GT(correlated, 600);
+  EXPECT_GT(refused, 150);
 }
 
 // A discontinuity at the image's edge would penalise correct planes.

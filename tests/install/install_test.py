@@ -90,7 +90,7 @@ class DebianPackage(Case):
                   "-B", self.folder)
         package, = self.folder.glob("axialmvs_*.deb")
         depends = output_of("dpkg-deb", "--field", package, "Depends")
-        for needed in ("colmap", "python3", "libopencv-imgcodecs", "libceres", "libtbb",
+        for needed in ("colmap", "python3", "libopencv-imgcodecs", "libtbb",
                        "libboost-program-options", "libembree", "libc6"):
             self.assertIn(needed, depends)
         root = self.folder / "root"

@@ -117,7 +117,8 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                               y + extent_y <= image.height - T(2);
   // Not larger than positions can say.
   const T farthest(static_cast<float>(kLargestSide));
-  const PackMask<Abi> partly = centre.visible && !whole && x > T(0) && y > T(0) &&
+  const PackMask<Abi> may_leave{stdx::simd_mask<float, Abi>(patch.whole)};
+  const PackMask<Abi> partly = may_leave && centre.visible && !whole && x > T(0) && y > T(0) &&
                                x < image.width - T(1) && y < image.height - T(1) &&
                                extent_x <= farthest - x && extent_y <= farthest - y;
   const PackMask<Abi> used{whole.part || partly.part};

@@ -12,6 +12,8 @@ int main() {
   FlatPort<double> port;
   port.distance = 0.02;
   port.thickness = 0.014;
+  port.n_glass = 1.52;
+  port.n_water = 1.333;
   const FlatPortCamera<double> camera(lens, port, 1024, 768);
   const Eigen::Vector3d point(0.5, -0.3, 1.5);
   const auto image = camera.project(point);
