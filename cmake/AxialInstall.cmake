@@ -67,6 +67,6 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME axialmvs)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# axial-reconstruct runs them.
+# axial-reconstruct runs python3 and colmap.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
 include(CPack)

@@ -5,8 +5,8 @@ if(AXIAL_SANITIZE)
   set(AXIAL_INSTRUCTION_SETS "SSE2")
 endif()
 set(header ${PROJECT_BINARY_DIR}/version/axial_commit.h)
-# At every build: a commit changes no file that CMake watches. The header is rewritten only if the
-# commit is another one.
+# Runs at every build, because a commit changes no file that CMake watches. The header is rewritten only
+# if its text changes.
 add_custom_target(axial_commit BYPRODUCTS ${header}
   COMMAND ${CMAKE_COMMAND} -DSOURCE_DIR=${PROJECT_SOURCE_DIR} -DHEADER=${header}
     -P ${PROJECT_SOURCE_DIR}/cmake/write_commit.cmake)
