@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/shared_cache.h"
+#include "depth/border.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "depth/weak_texture.h"
@@ -196,7 +197,9 @@ class DepthMapRun {
   }
 
   DepthMap estimate(std::size_t image) const {
-    return named(axial::depth::estimate_depth_map(task(image)->input, options_.matching), image);
+    const std::unique_ptr<Task> work = task(image);
+    const DepthMap map = axial::depth::estimate_depth_map(work->input, options_.matching);
+    return named(options_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
   }
 
   DepthMap refine(std::size_t image, int pass) const {
@@ -211,11 +214,12 @@ class DepthMapRun {
     }
     const DepthMap map = axial::depth::refine_depth_map(work->input, read_map(stage_ - 1, image),
                                                         maps, pass, last, options_.matching);
-    return named(last ? clean(map, image) : map, image);
+    return named(last ? clean(map, *work, image) : map, image);
   }
 
-  DepthMap clean(DepthMap map, std::size_t image) const {
-    map = axial::depth::remove_unconfirmed(map, images_.get(image)->grey);
+  DepthMap clean(DepthMap map, const Task& task, std::size_t image) const {
+    map = axial::depth::remove_unconfirmed(map, task.views[0].grey,
+                                           axial::depth::border_pixels(task.input, map));
     if (options_.postprocess & kSpeckles)
       map = axial::depth::remove_speckles(map, options_.speckles);
     if (options_.postprocess & kGaps) {
@@ -236,10 +240,8 @@ class DepthMapRun {
   }
 
   void add_stages() {
-    stages_.push_back({"photometric", "Estimated depth maps", [this](std::size_t image) {
-                         const DepthMap map = estimate(image);
-                         return options_.geometric_iterations == 0 ? clean(map, image) : map;
-                       }});
+    stages_.push_back({"photometric", "Estimated depth maps",
+                       [this](std::size_t image) { return estimate(image); }});
     for (int pass = 0; pass < options_.geometric_iterations; ++pass)
       stages_.push_back({fmt::format("geometric{}", pass + 1),
                          fmt::format("Geometric-consistency pass {}", pass + 1),

@@ -47,7 +47,8 @@ struct PatchMatchOptions {
   // Trials are planes near a pixel's best plane. They come in pairs, one on either side of it. If
   // the plane is good already, few trials are enough (their number and cost: docs/performance.md,
   // "How much there is to do").
-  int first_pairs = 4;                   // in a level's first sweep
+  int coarse_pairs = 4;                  // in the first sweep of a coarser level
+  int first_pairs = 2;                   // in the first sweep of the working resolution
   int later_pairs = 2;                   // in later sweeps, and in geometric passes but the last
   int last_pairs = 0;                    // in the last geometric pass, which only propagates
   float refinement_shrink = 0.65f;       // factor of the ranges from one pair to the next
@@ -59,10 +60,11 @@ struct PatchMatchOptions {
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
   // Number of random planes perpendicular to the ray, at most 5, that a pixel tries in a level's
-  // first sweep if its best plane so far costs more than `certain_cost`. They replace half of the
-  // trials. Thin structures need them: their pixels match the background at a fair cost, and the
-  // coarser level does not resolve them.
+  // first sweep if its best plane so far costs more than `certain_cost`. Such a pixel has
+  // `search_pairs` pairs of trials. Thin structures need the random planes: their pixels match the
+  // background at a fair cost, and the coarser level does not resolve them.
   int search_planes = 4;
+  int search_pairs = 2;
   float certain_cost = 0.15f;
 
   float keep_cost = 1.2f;  // hypotheses with this cost or more are removed

@@ -18,19 +18,24 @@ PatchSampler::PatchSampler(const PatchMatchOptions& options) {
   }
 }
 
-void PatchSampler::gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const {
+template <bool kWhole>
+void PatchSampler::gather_window(const cv::Mat1b& image, int x, int y,
+                                 ReferencePatch& patch) const {
   constexpr int kSide = 2 * kPatchRadius / kPatchStep + 1;
   std::array<float, kTexels> grey;
-  // A sum for every column: one sum would wait for itself at each texel.
+  // One sum per column: with a single sum, each addition would wait for the one before.
   std::array<float, kSide> weights{}, weighted{}, squares{};
   const float* color_weight = color_weight_.data() + 255 - image(y, x);
   std::size_t k = 0;
   for (int j = 0; j < kSide; ++j) {
-    const std::uint8_t* row =
-        image.ptr<std::uint8_t>(y - kPatchRadius + j * kPatchStep) + x - kPatchRadius;
+    const int texel_y = y - kPatchRadius + j * kPatchStep;
+    const bool row_inside = kWhole || (texel_y >= 0 && texel_y < image.rows);
+    const std::uint8_t* row = image.ptr<std::uint8_t>(row_inside ? texel_y : y);
     for (std::size_t i = 0; i < kSide; ++i, ++k) {
-      const std::uint8_t value = row[i * kPatchStep];
-      const float weight = color_weight[value] * space_weight_[k];
+      const int texel_x = x - kPatchRadius + static_cast<int>(i) * kPatchStep;
+      const bool inside = kWhole || (row_inside && texel_x >= 0 && texel_x < image.cols);
+      const std::uint8_t value = row[inside ? texel_x : x];
+      const float weight = inside ? color_weight[value] * space_weight_[k] : 0.0f;
       grey[k] = value;
       patch.weight[k] = weight;
       weights[i] += weight;
@@ -54,6 +59,13 @@ void PatchSampler::gather(const cv::Mat1b& image, int x, int y, ReferencePatch& 
   for (k = kTexels; k < kPaddedTexels; ++k) patch.weight[k] = patch.deviation[k] = 0;
   patch.variance = sum(squares);
   patch.texture = patch.variance * weight_sum;
+}
+
+void PatchSampler::gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const {
+  if (window_inside(x, y, image.cols, image.rows))
+    gather_window<true>(image, x, y, patch);
+  else
+    gather_window<false>(image, x, y, patch);
 }
 
 }  // namespace axial::depth

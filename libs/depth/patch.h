@@ -11,7 +11,7 @@
 
 namespace axial::depth {
 
-// Texel offsets from the window's centre, row by row. Padding repeats the centre.
+// Offsets of the texels from the window's centre [px], row by row. The padding has offset 0.
 struct TexelOffsets {
   alignas(32) std::array<float, kPaddedTexels> x{};
   alignas(32) std::array<float, kPaddedTexels> y{};
@@ -30,17 +30,22 @@ constexpr TexelOffsets make_texel_offsets() {
 
 inline constexpr TexelOffsets kTexelOffsets = make_texel_offsets();
 
-// Weights by intensity difference (8 bit) and texel, tabulated for one pair of sigmas.
+// Gathers windows with bilateral weights. The weights are tabulated by 8-bit intensity difference
+// and by texel.
 class PatchSampler {
  public:
   explicit PatchSampler(const PatchMatchOptions& options);
 
-  // Deviations count intensities from 0 to 1. Precondition: the window around (x, y) lies inside
-  // the image.
+  // Fills `patch` with the window around pixel (x, y). Deviations refer to intensities from 0 to 1.
+  // Texels outside the image have weight 0. Precondition: (x, y) lies inside the image.
   void gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
 
  private:
-  std::array<float, 511> color_weight_;  // of differences from -255 on
+  // kWhole: the whole window lies inside the image, so texels are not tested.
+  template <bool kWhole>
+  void gather_window(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
+
+  std::array<float, 511> color_weight_;  // index: difference + 255
   std::array<float, kTexels> space_weight_;
 };
 

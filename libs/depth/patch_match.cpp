@@ -228,7 +228,8 @@ cv::Mat1b mask_at(const MatchInput& input, const CameraModel& camera) {
 void check(const MatchInput& input, const PatchMatchOptions& options) {
   if (input.sources.empty() || input.sources.size() > kMaxSources)
     fail("a reference view needs 1 to {} source views, not {}", kMaxSources, input.sources.size());
-  const int pairs = std::max({options.first_pairs, options.later_pairs, options.last_pairs});
+  const int pairs = std::max({options.coarse_pairs, options.first_pairs, options.later_pairs,
+                              options.last_pairs, options.search_pairs});
   constexpr int kMost = kMaxCandidates;
   if (2 * pairs > kMost || options.restart_trials > kMost || 3 + options.search_planes > kMost)
     fail(
@@ -262,7 +263,7 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
     sweep.mask = state.mask.empty() ? nullptr : &state.mask;
     sweep.first = true;
     sweep.many_views = halvings > 0;
-    sweep.trial_pairs = options.first_pairs;
+    sweep.trial_pairs = halvings > 0 ? options.coarse_pairs : options.first_pairs;
     run_sweeps(input, level, {}, options, sweep, options.iterations, state.planes);
     coarser = std::move(state.planes);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a reference pixel brings to every hypothesis about it.
+// The data of a reference pixel that all hypotheses of the pixel use: ray, window and prior depth.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ struct PixelRay {
   refractive::AxialRayJacobian<float> jacobian;
 };
 
-// Those of the pixels of a row from one on: computed together, in lanes where there are such.
+// The rays of consecutive pixels of a row. They are computed together, if possible with SIMD.
 inline constexpr int kRayTile = 16;
 using RayTile = std::array<PixelRay, kRayTile>;
 
 struct ReferencePixel : PixelRay {
   int x = 0, y = 0;
   ReferencePatch patch;
-  float prior_depth = 0;   // from the coarser level; 0: none
-  float prior_weight = 0;  // how little the texture says, 0 to 1
+  float prior_depth = 0;   // [m]; 0: none
+  float prior_weight = 0;  // of the prior in the cost, 0 to 1; decreases with texture
 
   Eigen::Vector2f at() const { return {static_cast<float>(x), static_cast<float>(y)}; }
 };
@@ -48,7 +48,8 @@ class PixelSampler {
     return pixel;
   }
 
-  // `ray`: the pixel's own. Precondition: the window around (x, y) lies inside the image.
+  // Gathers the window of pixel (x, y) and sets no prior. `ray`: the ray of this pixel.
+  // Precondition: (x, y) lies inside the image.
   ReferencePixel prepare(int x, int y, const PixelRay& ray) const {
     ReferencePixel pixel;
     static_cast<PixelRay&>(pixel) = ray;
@@ -59,7 +60,7 @@ class PixelSampler {
   }
   ReferencePixel prepare(int x, int y) const { return prepare(x, y, ray(x, y)); }
 
-  // A depth known from elsewhere (0: none) that counts the more, the less the texture says.
+  // Sets a prior depth [m] (0: none) and its weight exp(-texture / options.prior_texture).
   void set_prior(ReferencePixel& pixel, float depth) const {
     pixel.prior_depth = depth;
     pixel.prior_weight = depth > 0 ? std::exp(-pixel.patch.texture / prior_texture_) : 0.0f;

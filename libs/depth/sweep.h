@@ -8,9 +8,9 @@
 // visited before in the two best views of each plane. These are at most eight scores (one AVX2
 // register), whatever the number of views. Trials around the best plane follow. Few trials are
 // scored together with these planes (one AVX-512 register), around the plane with the lowest
-// earlier cost. In a level's first sweep, random planes replace half of the trials of pixels whose
-// plane is not certain (PatchMatchOptions::search_planes). On coarse levels every plane is scored
-// in five views, because the best views are not known yet and these levels have few pixels.
+// earlier cost. In a level's first sweep, a pixel whose plane is not certain also tries random
+// planes (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
+// because the best views are not known yet and these levels have few pixels.
 #pragma once
 
 #include <algorithm>
@@ -197,8 +197,7 @@ class Sweep {
 
   void visit(Strip& strip, int x, int y, int step) {
     PlanePixel& current = map_.at(x, y);
-    if (!window_inside(x, y, map_.width, map_.height) || (input_.mask && !(*input_.mask)(y, x)))
-      return clear(current);
+    if (input_.mask && !(*input_.mask)(y, x)) return clear(current);
     ReferencePixel pixel = matcher_.pixels().prepare(x, y, ray(x, y, strip.rays));
     float prior = input_.prior ? (*input_.prior)(y, x) : 0.0f;
     if (pixel.patch.texture < options_.min_texture) {
@@ -240,7 +239,7 @@ class Sweep {
         input_.first && options_.search_planes > 0 &&
         std::min(current.cost, likely ? likely->cost : kMaxCost) > options_.certain_cost;
     if (search) add_facing_planes(pixel, random, candidates);
-    const Visit at{pixel, around, search ? input_.trial_pairs / 2 : input_.trial_pairs,
+    const Visit at{pixel, around, search ? options_.search_pairs : input_.trial_pairs,
                    strip.scores};
     const bool at_once = likely && trials_fit(candidates, at.trial_pairs);
     if (at_once) add_trials(at, *likely, random, candidates);

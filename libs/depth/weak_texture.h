@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Removes unreliable depths where the photograph shows little more than the camera's noise: sand,
-// haze, open water.
+// haze, open water. Also removes unreliable depths at image borders (border.h).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,12 +18,14 @@ struct WeakTextureOptions {
   float least_confidence = 0.6f;
 };
 
-// Clears a depth if its texture is weak and if the mean confidence of all pixels with a depth and
-// weak texture in the 9x9 window around it is below least_confidence. The confidence of a single
-// pixel is not enough for this decision, because the best of many planes correlates even with
-// noise. `grey`: the image of the map; throws an Error if it does not have the map's size. A map
-// without confidences is returned unchanged.
+// A depth is unsure if its pixel has weak texture or is near a border. Clears an unsure depth if the
+// mean confidence of all unsure depths in the 9x9 window around it is below least_confidence. The
+// confidence of a single pixel is not enough for this decision, because the best of many planes
+// correlates even with noise. `grey`: the image of the map; throws an Error if it does not have the
+// map's size. `border`: border_pixels() of the map; empty: none. A map without confidences is
+// returned unchanged.
 DepthMap remove_unconfirmed(const DepthMap& map, const cv::Mat1b& grey,
+                            const cv::Mat1b& border = cv::Mat1b(),
                             const WeakTextureOptions& options = {});
 
 }  // namespace axial::depth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The innermost loop: zero-mean normalised cross-correlation of a reference patch with a source
-// image sampled bilinearly at 25 positions. Knows nothing of cameras.
+// The innermost loop of matching: zero-mean normalised cross-correlation (ZNCC) of a reference
+// patch with a source image that is sampled bilinearly at 25 positions. Does not depend on cameras.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,10 @@
 
 namespace axial::depth {
 
-// An 8-bit image prepared for bilinear sampling: one word per pixel holds its 2x2 neighbourhood
-// (right, below, below right in bytes 1, 2, 3), so that a texel costs one load.
+// An 8-bit image prepared for bilinear sampling. One 32-bit word per pixel holds the grey levels of
+// the pixel and of its right, lower and lower right neighbours in bytes 0 to 3, so that a texel
+// needs one load. In the last column and row, the border pixels are repeated. Precondition: the
+// image is not empty.
 class QuadImage {
  public:
   QuadImage() = default;
@@ -29,24 +31,27 @@ class QuadImage {
   std::vector<std::uint32_t> words_;  // row-major, width * height
 };
 
-// Where the texels of a patch fall in the source image, padded with repeats of the centre.
+// Positions of the texels of a patch in the source image [px]. The padding repeats the centre.
 struct TexelPositions {
   alignas(32) std::array<float, kPaddedTexels> x;
   alignas(32) std::array<float, kPaddedTexels> y;
 };
 
-// Correlation in [-1, 1] or kNoCorrelation. All implementations add in the same order without fused
-// multiplications and so give the same bytes.
+// Returns the correlation in [-1, 1], or kNoCorrelation. All implementations add in the same order
+// and use no fused multiply-add, so their results are bit-identical.
 using ZnccFunction = float (*)(const ReferencePatch&, const QuadImage&, const TexelPositions&);
 
 // The reference implementation, in plain C++.
 float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 
-// The fastest implementation this processor can run.
+// The fastest implementation that this processor supports.
 ZnccFunction fastest_zncc();
 
 namespace detail {
+// For a patch that lies partly outside the source image. Computes all sums, also those of the
+// reference patch, over the texels inside the source image.
+float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
-}
+}  // namespace detail
 
 }  // namespace axial::depth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled for AVX2 alone: nothing here may be shared with other translation units.
+// Compiled for AVX2. No function defined here may be shared with other translation units.
 #include <immintrin.h>
 
 #include "depth/zncc_reduce.h"
@@ -31,7 +31,7 @@ float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const Texe
     ok = _mm256_and_ps(ok, inside(_mm256_load_ps(at.x.data() + k), max_x));
     ok = _mm256_and_ps(ok, inside(_mm256_load_ps(at.y.data() + k), max_y));
   }
-  if (_mm256_movemask_ps(ok) != 0xFF) return kNoCorrelation;
+  if (_mm256_movemask_ps(ok) != 0xFF) return zncc_of_part(patch, source, at);
 
   const __m256i stride = _mm256_set1_epi32(source.width());
   const auto* words = reinterpret_cast<const int*>(source.words());

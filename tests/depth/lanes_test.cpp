@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scoring in SIMD lanes: every instruction set gives the bytes of the scalar one, and all of them
-// what the matcher that takes one pair at a time gives.
+// Scoring in SIMD lanes: the results of all instruction sets are bit-identical to those of the
+// scalar version, and agree with Matcher, which scores one pair at a time.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -40,7 +40,7 @@ PinholeCamera<float> make_camera_of(float focal, int) {
   return PinholeCamera<float>(lens_of(focal));
 }
 
-// Ports differ from view to view, and so do their numbers of projection steps.
+// The ports differ from view to view, and so do their numbers of projection steps.
 refractive::FlatPort<float> flat_port_of(int index) {
   refractive::FlatPort<float> port;
   port.normal = Eigen::Vector3f(0.02f * static_cast<float>(index % 3), 0.03f, 1).normalized();
@@ -61,7 +61,7 @@ refractive::DomePort<float> dome_port_of(int index) {
   return port;
 }
 
-// Straight, barrels, pincushions and fisheyes beside each other.
+// Undistorted lenses, lenses with barrel and pincushion distortion, and fisheyes in turn.
 refractive::DistortedLens<float> distorted_lens_of(float focal, int index) {
   refractive::LensDistortion<double> distortion;
   if (index % 4 != 0) {
@@ -97,7 +97,7 @@ LensDomePortCamera<float> make_camera_of(float focal, int index) {
   return {distorted_lens_of(focal, index), dome_port_of(index)};
 }
 
-// A kind after the other.
+// The kinds of camera in turn.
 template <>
 AnyCamera<float> make_camera_of(float focal, int index) {
   switch (index % 6) {
@@ -134,7 +134,7 @@ struct Setup {
   Camera reference = make_camera_of<Camera>(90, 1);
 
   explicit Setup(bool geometric) {
-    options.prior_texture = 1;  // lest these images' texture leave nothing of the coarse depth
+    options.prior_texture = 1;  // so large that the prior has weight despite the images' texture
     std::mt19937 random(2);
     std::uniform_real_distribution<float> unit(-1, 1);
     for (unsigned i = 0; i < kViews; ++i) {
@@ -162,14 +162,14 @@ struct Question {
   std::vector<ScorePair> pairs;
 };
 
-// Pixels, planes and views at random; some planes leave the images or lie behind cameras.
+// Random pixels, planes and views. Some planes project outside images or lie behind cameras.
 std::vector<Question> questions() {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(-1, 1);
   std::vector<Question> all;
   for (int i = 0; i < 150; ++i) {
-    Question question{4 + static_cast<int>(random() % (kWidth - 8)),
-                      4 + static_cast<int>(random() % (kHeight - 8)),
+    Question question{static_cast<int>(random() % kWidth),
+                      static_cast<int>(random() % kHeight),
                       i % 3 ? 0.0f : 2.1f,
                       {},
                       {}};
@@ -244,7 +244,7 @@ TYPED_TEST(Lanes, GiveTheSameBytesOnEveryInstructionSet) {
   }
 }
 
-// With the same bytes, because both compute the same formula without fused operations.
+// Bit-identical, because both compute the same formula without fused multiply-add.
 TYPED_TEST(Lanes, GiveTheRaysOfTheReferenceCamera) {
   const Setup<TypeParam> setup(false);
   for (const lanes::InstructionSet set : lanes::available_instruction_sets()) {
@@ -273,8 +273,9 @@ TYPED_TEST(Lanes, AgreeWithOnePairAtATime) {
     std::size_t seen = 0;
     float smoothest = 1;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      // Sums of 25 products in another order differ by some 1e-6 of the variance; a flat patch has
-      // little of it. The number of projection steps is that of the view that needs most.
+      // Sums of 25 products in another order differ by some 1e-6 of the variance, which matters
+      // for nearly flat patches. In SIMD lanes, all views take the largest number of projection
+      // steps.
       ASSERT_NEAR(found[i].cost, expected[i].cost, 1e-3);
       ASSERT_NEAR(found[i].motion, expected[i].motion, 1e-4f * expected[i].motion + 1e-5f);
       ASSERT_NEAR(found[i].smoothness, expected[i].smoothness, 1e-5f);
@@ -282,13 +283,13 @@ TYPED_TEST(Lanes, AgreeWithOnePairAtATime) {
       smoothest = std::min(smoothest, found[i].smoothness);
       seen += expected[i].cost < kOutsideCost - 0.01f ? 1 : 0;
     }
-    EXPECT_GT(seen, found.size() / 4);       // most of what is asked is inside
-    EXPECT_LT(seen, found.size() * 9 / 10);  // and some is not
+    EXPECT_GT(seen, found.size() / 4);       // many pairs have a correlation,
+    EXPECT_LT(seen, found.size() * 9 / 10);  // and some have none
     EXPECT_LT(smoothest, 0.9f);
   }
 }
 
-// Tiles must not run into each other, nor past the image's edge.
+// Tiles must not overlap each other or exceed the width.
 TYPED_TEST(Lanes, VisitTheRayOfEveryPixelOnce) {
   const Setup<TypeParam> setup(false);
   constexpr int kOddWidth = 37;
@@ -302,10 +303,10 @@ TYPED_TEST(Lanes, VisitTheRayOfEveryPixelOnce) {
   EXPECT_EQ(visited, kOddWidth * 3);
 }
 
-// Source views that can be of any kind, and the views of one of these kinds.
+// The source views of one kind of camera, selected from views of all kinds.
 template <class Camera>
 struct OneOfKinds {
-  std::vector<std::size_t> numbers;  // among all views
+  std::vector<std::size_t> numbers;  // indices among all views
   std::vector<SourceView<Camera>> views;
 
   explicit OneOfKinds(const Setup<AnyCamera<float>>& all) {
@@ -326,7 +327,7 @@ using Kinds =
                    LensPinholeCamera<float>, LensFlatPortCamera<float>, LensDomePortCamera<float>>;
 TYPED_TEST_SUITE(MixedKinds, Kinds);
 
-// A pair of views of one kind gets the same score, to the byte, whatever kinds are matched beside.
+// The scores of views of one kind are bit-identical with and without views of other kinds.
 TYPED_TEST(MixedKinds, LeaveThePairsOfOneKindAsTheyAre) {
   for (const bool geometric : {false, true}) {
     const Setup<AnyCamera<float>> setup(geometric);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In which views a sweep scores its planes, seen by a matcher that answers from a formula.
+// Which planes a sweep scores, and in which views. A mock matcher computes the scores by a formula.
 #include "depth/sweep.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Camera = refractive::PinholeCamera<float>;
 constexpr int kSide = 40;
 constexpr std::size_t kViews = 12;
 constexpr float kDepth = 2;
-// All others see the surface badly, but not so badly that a pixel starts anew.
+// All other views give high costs, but below PatchMatchOptions::bad_cost.
 constexpr std::array<std::uint8_t, 2> kGoodViews{7, 9};
 
 cv::Mat1b noise() {
@@ -48,7 +48,7 @@ class FormulaMatcher {
     return {std::min(off + (good ? 0.1f : 0.8f), 0.9f), 50 * depth + view, 1};
   }
 
-  mutable std::vector<std::vector<ScorePair>> calls;               // one thread
+  mutable std::vector<std::vector<ScorePair>> calls;               // not thread-safe
   mutable std::vector<std::vector<PlaneHypothesis>> planes_asked;  // of each call
 
  private:
@@ -58,12 +58,12 @@ class FormulaMatcher {
                                options_};
 };
 
-// A wall across the axis, all of its views unknown.
+// A plane perpendicular to the camera's axis. The best views of all pixels are unknown.
 PlaneMap wall() {
   PlaneMap map(kSide, kSide);
   const FormulaMatcher matcher;
-  for (int y = kPatchRadius; y < kSide - kPatchRadius; ++y)
-    for (int x = kPatchRadius; x < kSide - kPatchRadius; ++x) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       PlanePixel& pixel = map.at(x, y);
       pixel.plane = {kDepth, -Eigen::Vector3f::UnitZ()};
       pixel.point = matcher.pixels().prepare(x, y).ray.at(kDepth);
@@ -89,7 +89,7 @@ std::uint64_t run(const FormulaMatcher& matcher, PlaneMap& map, const SweepInput
 TEST(SweepScores, AreCounted) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
-  map.at(kSide / 2, kSide / 2).plane.depth = 3.9f;  // hopeless: tries planes at random
+  map.at(kSide / 2, kSide / 2).plane.depth = 3.9f;  // far behind the wall
   const std::uint64_t counted = run(matcher, map, input(2));
   std::uint64_t asked = 0;
   for (const auto& pairs : matcher.calls) asked += pairs.size();
@@ -100,8 +100,8 @@ TEST(SweepViews, AreFewHoweverManyThereAre) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
   run(matcher, map, input(2));
-  constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
-  ASSERT_GE(matcher.calls.size(), kInner);
+  constexpr std::size_t kPixels = kSide * kSide;
+  ASSERT_GE(matcher.calls.size(), kPixels);
   for (const auto& pairs : matcher.calls) {
     std::array<std::set<int>, kMaxCandidates> of_plane;
     for (const ScorePair& pair : pairs) {
@@ -115,7 +115,7 @@ TEST(SweepViews, AreFewHoweverManyThereAre) {
   }
 }
 
-// How often a sweep asks the matcher, of pixels that a sweep has visited before.
+// The number of calls of the matcher in a sweep after an earlier one.
 std::size_t calls_of_later_sweep(int trial_pairs) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
@@ -126,13 +126,13 @@ std::size_t calls_of_later_sweep(int trial_pairs) {
 }
 
 TEST(SweepTrials, AreScoredAtOnceWithTheOtherPlanesWhereTheyAreFew) {
-  constexpr std::size_t kInner = (kSide - 2 * kPatchRadius) * (kSide - 2 * kPatchRadius);
-  EXPECT_EQ(calls_of_later_sweep(0), kInner);
-  EXPECT_EQ(calls_of_later_sweep(2), kInner);
-  EXPECT_EQ(calls_of_later_sweep(4), 2 * kInner);
+  constexpr std::size_t kPixels = kSide * kSide;
+  EXPECT_EQ(calls_of_later_sweep(0), kPixels);
+  EXPECT_EQ(calls_of_later_sweep(2), kPixels);
+  EXPECT_EQ(calls_of_later_sweep(4), 2 * kPixels);
 }
 
-// What a pixel keeps of its plane, however it came by that.
+// A pixel stores cost, views and motion of its plane, whichever way it got the plane.
 TEST(SweepTrials, LeaveCostViewsAndMotionOfThePlaneThatWon) {
   for (const int pairs : {0, 2, 4}) {
     const FormulaMatcher matcher;
@@ -150,14 +150,14 @@ TEST(SweepTrials, LeaveCostViewsAndMotionOfThePlaneThatWon) {
   }
 }
 
-// The first pixel of the second strip: of its neighbours only the one above has been scored, at a
-// cost that nothing comes near, and it lies behind the wall.
+// Tests the first pixel of the second strip. Of its neighbours only the pixel above has been
+// scored. Its plane lies behind the wall and has a lower cost than all other planes.
 TEST(SweepTrials, GoAroundTheNeighbourThatCostLess) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();
-  PlanePixel& above = map.at(kPatchRadius, kStripHeight - 1);
+  PlanePixel& above = map.at(0, kStripHeight - 1);
   above.plane.depth = 2.4f;
-  above.point = matcher.pixels().prepare(kPatchRadius, kStripHeight - 1).ray.at(2.4f);
+  above.point = matcher.pixels().prepare(0, kStripHeight - 1).ray.at(2.4f);
   above.cost = 0.01f;
   above.views = {3, 4};
   above.motion = 100;
@@ -168,7 +168,7 @@ TEST(SweepTrials, GoAroundTheNeighbourThatCostLess) {
     const std::size_t last = planes.size() - 1;
     if (planes.size() < 4 || std::abs(planes[last - 2].depth - 2.4f) > 0.1f) continue;
     ++found;
-    const float of_neighbour = planes[last - 2].depth;  // as it meets this pixel's ray
+    const float of_neighbour = planes[last - 2].depth;  // where its plane meets this pixel's ray
     EXPECT_NE(planes[last].depth, planes[last - 1].depth);
     EXPECT_NEAR((planes[last].depth + planes[last - 1].depth) / 2, of_neighbour, 1e-5f);
     for (const ScorePair& pair : matcher.calls[call]) {
@@ -185,14 +185,14 @@ TEST(SweepViews, TurnUntilThoseAreFoundThatSeeThePixel) {
   PlaneMap map = wall();
   SweepInput sweep = input(0);
   for (sweep.sweep = 0; sweep.sweep < 3; ++sweep.sweep) run(matcher, map, sweep);
-  for (int y = kPatchRadius; y < kSide - kPatchRadius; ++y)
-    for (int x = kPatchRadius; x < kSide - kPatchRadius; ++x) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       const BestViews& views = map.at(x, y).views;
       ASSERT_EQ((std::set<int>{views[0], views[1]}), (std::set<int>{7, 9})) << x << " " << y;
     }
 }
 
-// How many planes a pixel was asked about whose normal is not the wall's.
+// The number of planes in a call whose normal differs from the wall's: those of the search.
 std::size_t searched(const FormulaMatcher& matcher, std::size_t call,
                      const Eigen::Vector3f& of_wall) {
   std::size_t count = 0;
@@ -203,16 +203,18 @@ std::size_t searched(const FormulaMatcher& matcher, std::size_t call,
     for (const ScorePair& pair : matcher.calls[call])
       if (pair.plane == plane) views.insert(pair.view);
     EXPECT_EQ(views.size(), 2u);
-    EXPECT_LT(*views.rbegin(), 5);  // the best ones
+    EXPECT_LT(*views.rbegin(), 5);  // from the first five source views
     ++count;
   }
   return count;
 }
 
 TEST(SweepSearch, TriesPlanesOfAllDepthsWhereThePlaneIsNotCertain) {
-  const Eigen::Vector3f normal = Eigen::Vector3f(0.13f, 0.07f, -1).normalized();  // across no ray
+  const Eigen::Vector3f normal =
+      Eigen::Vector3f(0.13f, 0.07f, -1).normalized();  // parallel to no ray
   PatchMatchOptions options;
-  options.certain_cost = 0.05f;  // no plane of FormulaMatcher's costs less
+  options.certain_cost = 0.05f;  // all costs of FormulaMatcher are higher
+  options.search_pairs = 0;      // all other planes asked about are the neighbours'
   for (const bool first : {true, false})
     for (const float cost : {0.01f, 0.5f}) {
       const FormulaMatcher matcher;
@@ -240,19 +242,20 @@ TEST(SweepSearch, TriesPlanesOfAllDepthsWhereThePlaneIsNotCertain) {
     }
 }
 
-TEST(SweepSearch, TakesTheRoomOfHalfTheTrials) {
+TEST(SweepSearch, AddsNoScoresToACoarseLevelsFirstSweep) {
   const auto scores = [](float cost) {
     const FormulaMatcher matcher;
     PlaneMap map = wall();
     for (PlanePixel& pixel : map.pixels) pixel.cost = cost;
-    SweepInput sweep = input(4);
+    SweepInput sweep = input(PatchMatchOptions().coarse_pairs);
     sweep.first = true;
     return run(matcher, map, sweep);
   };
   EXPECT_LE(scores(0.5f), scores(0.1f));
 }
 
-// The views of the search see the wall badly, and its pixels are not so bad that they start anew.
+// The views of the search give high costs for the wall, but no pixel reaches bad_cost, at which it
+// would try other random planes.
 TEST(SweepSearch, FindsASurfaceFarFromWhatWasKnown) {
   const FormulaMatcher matcher;
   PlaneMap map = wall();

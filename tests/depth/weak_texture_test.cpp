@@ -101,6 +101,35 @@ TEST(RemoveUnconfirmed, AgreesWithSumsByHand) {
   EXPECT_LT(cleared, compared / 2);
 }
 
+// Borders are judged like weak texture, whatever their texture, by the mean of both.
+TEST(RemoveUnconfirmed, JudgesBordersAsWeakTexture) {
+  const cv::Mat1b image = noise({40, 30}, 8, 6);
+  cv::Mat1b border(30, 40, std::uint8_t{0});
+  border(cv::Rect(0, 0, 4, 30)) = 255;
+  cv::Mat1f confidence(30, 40, 0.3f);
+  DepthMap result = remove_unconfirmed(map_of(confidence), image, border);
+  EXPECT_EQ(left(result), 1200 - 4 * 30);
+  EXPECT_EQ(cv::countNonZero(result.depth.colRange(0, 4)), 0);
+  // Confident depths inside the image do not confirm depths at its border.
+  confidence.colRange(4, 40) = 0.95f;
+  EXPECT_EQ(left(remove_unconfirmed(map_of(confidence), image, border)), 1200 - 4 * 30);
+  confidence.colRange(0, 4) = 0.65f;
+  EXPECT_EQ(left(remove_unconfirmed(map_of(confidence), image, border)), 1200);
+  // A corner of good depths in a border of bad ones: the windows at rows 0 to 10 hold more of the
+  // good ones, by (rows * 0.9 + others * 0.3) / all >= 0.6.
+  confidence.colRange(0, 4) = 0.3f;
+  confidence(cv::Rect(0, 0, 4, 10)) = 0.9f;
+  result = remove_unconfirmed(map_of(confidence), image, border);
+  for (int y = 0; y < 30; ++y) {
+    int good = 0, all = 0;
+    for (int v = std::max(0, y - 4); v <= std::min(29, y + 4); ++v) {
+      good += v < 10;
+      ++all;
+    }
+    EXPECT_EQ(result.depth(y, 0) > 0, good * 0.9 + (all - good) * 0.3 >= 0.6 * all) << y;
+  }
+}
+
 TEST(RemoveUnconfirmed, NeedsTheMapsOwnImage) {
   EXPECT_THROW(remove_unconfirmed(map_of(cv::Mat1f(30, 40, 0.5f)), cv::Mat1b(40, 30)), Error);
 }

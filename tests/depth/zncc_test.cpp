@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 namespace axial::depth {
@@ -36,7 +38,18 @@ double bilinear(const cv::Mat1b& image, double x, double y) {
          fy * ((1 - fx) * image(y0 + 1, x0) + fx * image(y0 + 1, x0 + 1));
 }
 
-// The definition, in double, with weights recomputed from the image.
+bool inside(const cv::Mat1b& image, int x, int y) {
+  return x >= 0 && y >= 0 && x < image.cols && y < image.rows;
+}
+
+// The factor of a texel's weight: 1 if it is at least one pixel inside the image, 0 outside.
+double share(const cv::Mat1b& image, double x, double y) {
+  const double least = std::min(std::min(x, image.cols - 1 - x), std::min(y, image.rows - 1 - y));
+  return std::clamp(least, 0.0, 1.0);
+}
+
+// ZNCC by its definition, in double, over the texels that lie in both images. The weights are
+// computed from the images.
 double zncc_by_definition(const cv::Mat1b& reference, int cx, int cy, const cv::Mat1b& source,
                           const TexelPositions& at, const PatchMatchOptions& options) {
   std::vector<double> w, a, b;
@@ -44,19 +57,23 @@ double zncc_by_definition(const cv::Mat1b& reference, int cx, int cy, const cv::
   for (std::size_t k = 0; k < kTexels; ++k) {
     const double dx = kTexelOffsets.x[k];
     const double dy = kTexelOffsets.y[k];
-    a.push_back(reference(cy + static_cast<int>(dy), cx + static_cast<int>(dx)) / 255.0);
+    const int x = cx + static_cast<int>(dx), y = cy + static_cast<int>(dy);
+    const double counts = share(source, at.x[k], at.y[k]);
+    if (!inside(reference, x, y) || counts == 0) continue;
+    a.push_back(reference(y, x) / 255.0);
     const double difference = a.back() - reference(cy, cx) / 255.0;
-    w.push_back(std::exp(-difference * difference / (2 * std::pow(options.sigma_color, 2)) -
+    w.push_back(counts *
+                std::exp(-difference * difference / (2 * std::pow(options.sigma_color, 2)) -
                          (dx * dx + dy * dy) / (2 * std::pow(options.sigma_space, 2))));
     b.push_back(bilinear(source, at.x[k], at.y[k]) / 255.0);
     sum += w.back();
   }
   double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
-  for (std::size_t k = 0; k < kTexels; ++k) {
+  for (std::size_t k = 0; k < w.size(); ++k) {
     mean_a += w[k] * a[k] / sum;
     mean_b += w[k] * b[k] / sum;
   }
-  for (std::size_t k = 0; k < kTexels; ++k) {
+  for (std::size_t k = 0; k < w.size(); ++k) {
     aa += w[k] * (a[k] - mean_a) * (a[k] - mean_a);
     bb += w[k] * (b[k] - mean_b) * (b[k] - mean_b);
     ab += w[k] * (a[k] - mean_a) * (b[k] - mean_b);
@@ -81,9 +98,59 @@ TEST(Zncc, AgreesWithTheDefinition) {
     const int y = 4 + static_cast<int>(random() % 22);
     const TexelPositions at = random_positions(random, 1, 38);
     const float found = zncc_scalar(patch_at(sampler, reference, x, y), QuadImage(source), at);
-    // Sums of 25 floats of 16 bits: rounding stays some 1e-7 of the variance.
+    // Rounding changes the sums of 25 floats by some 1e-7 of the variance.
     EXPECT_NEAR(found, zncc_by_definition(reference, x, y, source, at, options), 2e-5);
   }
+}
+
+// Reference pixels up to the image's edge, and source windows that lie partly outside the image.
+TEST(Zncc, AgreesWithTheDefinitionOverWhatLiesInside) {
+  const PatchMatchOptions options;
+  const PatchSampler sampler(options);
+  std::mt19937 random(8);
+  int correlated = 0;
+  for (unsigned trial = 0; trial < 1000; ++trial) {
+    const cv::Mat1b reference = random_image(40, 30, trial);
+    const cv::Mat1b source = random_image(50, 40, trial + 1000);
+    const int x = static_cast<int>(random() % 40);
+    const int y = static_cast<int>(random() % 30);
+    const TexelPositions at = random_positions(random, -10, 49);
+    const float found = zncc_scalar(patch_at(sampler, reference, x, y), QuadImage(source), at);
+    if (found == kNoCorrelation) continue;
+    ++correlated;
+    EXPECT_GT(share(source, at.x[kCentreTexel], at.y[kCentreTexel]), 0);
+    // The tolerance is larger, because the variance of few texels is a difference of larger sums.
+    EXPECT_NEAR(found, zncc_by_definition(reference, x, y, source, at, options), 1e-4);
+  }
+  EXPECT_GT(correlated, 300);
+}
+
+// A discontinuity at the image's edge would penalise correct planes.
+TEST(Zncc, ChangesLittleFromStepToStepAsAWindowLeavesTheImage) {
+  const PatchSampler sampler{PatchMatchOptions()};
+  cv::Mat1b image = random_image(60, 60, 9);
+  cv::GaussianBlur(image, image, {}, 2);
+  const ReferencePatch patch = patch_at(sampler, image, 20, 20);
+  const QuadImage source(image);
+  float last = kNoCorrelation;
+  int correlated = 0;
+  constexpr float kStep = 0.01f;
+  for (float x = 12; x > -2; x -= kStep) {
+    TexelPositions at;
+    for (std::size_t k = 0; k < kPaddedTexels; ++k) {
+      at.x[k] = x + kTexelOffsets.x[k];
+      at.y[k] = 20 + kTexelOffsets.y[k];
+    }
+    const float found = zncc_scalar(patch, source, at);
+    if (found != kNoCorrelation && last != kNoCorrelation) {
+      // The weight of a texel grows gradually over one pixel, and the image is blurred.
+      EXPECT_LT(std::abs(found - last), 5 * kStep) << x;
+      ++correlated;
+    }
+    last = found;
+  }
+  EXPECT_GT(correlated, 1150);  // nearly all steps up to the image's edge
+  EXPECT_EQ(last, kNoCorrelation);
 }
 
 TEST(Zncc, FastestGivesTheBytesOfTheScalarReference) {
@@ -93,7 +160,7 @@ TEST(Zncc, FastestGivesTheBytesOfTheScalarReference) {
   for (unsigned trial = 0; trial < 500; ++trial) {
     const cv::Mat1b image = random_image(64, 48, trial);
     const ReferencePatch patch = patch_at(sampler, image, 10, 10);
-    // Partly outside: the answer must be the same there too.
+    // Every second patch lies partly outside.
     const TexelPositions at = random_positions(random, trial % 2 ? -1.0f : 1.0f, 46.5f);
     EXPECT_EQ(fast(patch, QuadImage(image), at), zncc_scalar(patch, QuadImage(image), at));
   }
@@ -111,7 +178,7 @@ TEST(Zncc, IsOneForTheSamePatchUnderAnyBrightnessAndContrast) {
   }
   const ReferencePatch patch = patch_at(sampler, image, 20, 20);
   EXPECT_NEAR(zncc_scalar(patch, QuadImage(image), at), 1.0f, 1e-5f);
-  EXPECT_NEAR(zncc_scalar(patch, QuadImage(dimmer), at), 1.0f, 2e-3f);  // halving rounds
+  EXPECT_NEAR(zncc_scalar(patch, QuadImage(dimmer), at), 1.0f, 2e-3f);  // grey levels are rounded
 }
 
 TEST(Zncc, SaysSoWhereThereIsNoCorrelation) {
@@ -123,9 +190,15 @@ TEST(Zncc, SaysSoWhereThereIsNoCorrelation) {
   const TexelPositions inside = random_positions(random, 5, 30);
   for (const ZnccFunction zncc : {&zncc_scalar, fastest_zncc()}) {
     EXPECT_EQ(zncc(patch, flat, inside), kNoCorrelation);
-    for (const float bad : {0.5f, 38.5f, -1e9f, 1e9f, std::numeric_limits<float>::quiet_NaN()}) {
+    for (const float bad : {-0.5f, 39.5f, -1e9f, 1e9f, std::numeric_limits<float>::quiet_NaN()}) {
       TexelPositions at = inside;
-      at.x[13] = bad;
+      at.x[kCentreTexel + 1] = bad;
+      EXPECT_NE(zncc(patch, QuadImage(image), at), kNoCorrelation) << bad;
+      at.x[kCentreTexel] = bad;
+      EXPECT_EQ(zncc(patch, QuadImage(image), at), kNoCorrelation) << bad;
+      at = inside;
+      for (std::size_t k = 0; k < kTexels; ++k)
+        if (k != kCentreTexel) at.y[k] = bad;
       EXPECT_EQ(zncc(patch, QuadImage(image), at), kNoCorrelation) << bad;
     }
   }

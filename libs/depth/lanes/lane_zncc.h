@@ -1,17 +1,105 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ZNCC of one reference patch with a source patch per lane.
+// ZNCC of one reference patch with one source patch per SIMD lane.
 #pragma once
 
 #include "depth/lanes/lane_images.h"
 #include "depth/lanes/lane_texel.h"
+#include "depth/part_sums.h"
 #include "depth/reference_patch.h"
 
 namespace axial::depth::lanes {
 
-// Correlation in [-1, 1], or kNoCorrelation as ZnccFunction gives it, in the lanes up to `used`.
-// The bounds are tested at the window's corners: the warp is affine. Rounding the centre and the
-// steps to 1/65536 pixel moves no sample by more than 1e-3 pixels, and the border that is kept is a
-// whole one, so that all samples lie where LaneSampler takes them.
+// The window of every lane in its source image, in 16.16 fixed point.
+template <class Abi>
+struct LaneWindow {
+  using Ints = typename Pack<Abi>::Ints;
+  Ints x, y;              // the first texel
+  Ints right_x, right_y;  // the step to the next texel of a row
+  Ints down_x, down_y;    // the step to the next row
+  Ints last_x, last_y;    // the last column and row of the image
+  Ints whole;             // 1 in lanes whose window lies inside the image as a whole, else 0
+};
+
+// Adds up one window per lane, grey levels in kGreyUnit. Without kPart the first three sums are
+// left out, and every window must be a whole one. With kPart texels outside are not sampled and
+// have a share of 0, and whole windows get the same bytes as without kPart.
+template <bool kPart, class Abi>
+PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<Abi>& sample,
+                                const LaneWindow<Abi>& window) {
+  using Part = typename Pack<Abi>::Part;
+  using Ints = typename Pack<Abi>::Ints;
+  constexpr int kSide = 5;
+  constexpr int kWholeShare = static_cast<int>(kPositionUnit);
+  const Part grey_mean(patch.mean * kGreyUnit);
+  const Ints whole = window.whole * kWholeShare;
+  PartSums<Pack<Abi>> sums;
+  Ints row_x = window.x, row_y = window.y;
+  std::size_t texel = 0;
+  for (int j = 0; j < kSide; ++j, row_x += window.down_x, row_y += window.down_y) {
+    Ints x = row_x, y = row_y;
+    for (int i = 0; i < kSide; ++i, ++texel, x += window.right_x, y += window.right_y) {
+      Part weight(patch.weight[texel]), deviation(patch.deviation[texel]);
+      Ints at_x = x, at_y = y;
+      if constexpr (kPart) {
+        const Ints room = min(min(x, window.last_x - x), min(y, window.last_y - y));
+        const Ints counted = max(min(max(room, Ints(0)), Ints(kWholeShare)), whole);
+        const Part share = stdx::static_simd_cast<Part>(counted) * Part(1 / kPositionUnit);
+        weight *= share;
+        deviation *= share;
+        sums.weights.part += weight;
+        sums.reference.part += deviation;
+        sums.reference_square.part += share * Part(patch.square(texel));
+        at_x = max(min(x, window.last_x - 1), Ints(0));
+        at_y = max(min(y, window.last_y - 1), Ints(0));
+      }
+      const Part value = sample(at_x, at_y) - grey_mean;
+      const Part weighted = weight * value;
+      sums.mean.part += weighted;
+      sums.square.part += weighted * value;
+      sums.cross.part += deviation * value;
+    }
+  }
+  return sums;
+}
+
+// The correlation of lanes whose window is a whole one.
+template <class Abi>
+Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi>>& sums,
+                            const PackMask<Abi>& whole) {
+  using T = Pack<Abi>;
+  const T variance = sums.square - sums.mean * sums.mean;
+  const T flat(kFlatVariance * kGreyUnit * kGreyUnit);
+  const PackMask<Abi> known = whole && variance > flat && T(patch.variance) > T(0);
+  const T value = sums.cross / sqrt(T(patch.variance) * select(known, variance, T(1)));
+  return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
+}
+
+namespace {  // one copy per translation unit: the linker would merge those of one instruction set
+
+// Where some windows leave their images: rare, so that it stays out of the way of the usual case.
+template <class Abi>
+[[gnu::noinline]] Pack<Abi> lane_zncc_of_parts(const ReferencePatch& patch,
+                                               const LaneSampler<Abi>& sample,
+                                               const LaneWindow<Abi>& window,
+                                               const PackMask<Abi>& whole,
+                                               const PackMask<Abi>& partly) {
+  using T = Pack<Abi>;
+  PartSums<T> sums = window_sums<true>(patch, sample, window);
+  const T of_whole = whole_correlation(patch, sums, whole);
+  sums.mean *= T(1 / kGreyUnit);
+  sums.square *= T(1 / kGreyUnit / kGreyUnit);
+  sums.cross *= T(1 / kGreyUnit);
+  return select(partly, part_correlation(sums), of_whole);
+}
+
+}  // namespace
+
+// The correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as ZnccFunction. The
+// result of a lane does not depend on the other lanes. Whether the whole window is inside the image
+// is tested at its corners, because the warp is affine. Centre and steps are rounded to 1/65536 px,
+// which moves samples by at most 1e-3 px. The window keeps one pixel of distance to the image's
+// edge, so all samples meet the precondition of LaneSampler. `words`: SceneTables::words. `warp`:
+// d(source pixel)/d(reference pixel).
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
@@ -19,45 +107,41 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   using T = Pack<Abi>;
   using Part = typename T::Part;
   using Ints = typename T::Ints;
-  constexpr int kSide = 5;
   const T reach(static_cast<float>(kPatchRadius));
   const T extent_x = abs(warp(0, 0)) * reach + abs(warp(0, 1)) * reach;
   const T extent_y = abs(warp(1, 0)) * reach + abs(warp(1, 1)) * reach;
   const T& x = centre.pixel.x();
   const T& y = centre.pixel.y();
-  const PackMask<Abi> inside = centre.visible && x - extent_x >= T(1) && y - extent_y >= T(1) &&
-                               x + extent_x <= image.width - T(2) &&
-                               y + extent_y <= image.height - T(2);
-  if (stdx::none_of(inside.part)) return T(kNoCorrelation);
+  const PackMask<Abi> whole = centre.visible && x - extent_x >= T(1) && y - extent_y >= T(1) &&
+                              x + extent_x <= image.width - T(2) &&
+                              y + extent_y <= image.height - T(2);
+  // Not larger than positions can say.
+  const T farthest(static_cast<float>(kLargestSide));
+  const PackMask<Abi> partly = centre.visible && !whole && x > T(0) && y > T(0) &&
+                               x < image.width - T(1) && y < image.height - T(1) &&
+                               extent_x <= farthest - x && extent_y <= farthest - y;
+  const PackMask<Abi> used{whole.part || partly.part};
+  if (stdx::none_of(used.part)) return T(kNoCorrelation);
 
-  const Part grey_mean(patch.mean * kGreyUnit);
   const auto fixed = [&](const T& value, float otherwise) {
     Part part = value.part;
-    stdx::where(!inside.part, part) = Part(otherwise);
+    stdx::where(!used.part, part) = Part(otherwise);
     return stdx::static_simd_cast<Ints>(part * Part(kPositionUnit));
   };
   const Ints xu = fixed(warp(0, 0), 0), xv = fixed(warp(0, 1), 0);
   const Ints yu = fixed(warp(1, 0), 0), yv = fixed(warp(1, 1), 0);
+  LaneWindow<Abi> window;
+  window.x = fixed(x, 1) - (xu + xv) * kPatchRadius;
+  window.y = fixed(y, 1) - (yu + yv) * kPatchRadius;
+  window.right_x = xu * kPatchStep, window.right_y = yu * kPatchStep;
+  window.down_x = xv * kPatchStep, window.down_y = yv * kPatchStep;
   const LaneSampler<Abi> sample(words, image.begin, stdx::static_simd_cast<Ints>(image.width.part));
-  Ints row_x = fixed(x, 1) - (xu + xv) * kPatchRadius;
-  Ints row_y = fixed(y, 1) - (yu + yv) * kPatchRadius;
-  T mean(0), square(0), cross(0);
-  std::size_t texel = 0;
-  for (int j = 0; j < kSide; ++j, row_x += xv * kPatchStep, row_y += yv * kPatchStep) {
-    Ints at_x = row_x, at_y = row_y;
-    for (int i = 0; i < kSide; ++i, ++texel, at_x += xu * kPatchStep, at_y += yu * kPatchStep) {
-      const Part value = sample(at_x, at_y) - grey_mean;
-      const Part weighted = Part(patch.weight[texel]) * value;
-      mean.part += weighted;
-      square.part += weighted * value;
-      cross.part += Part(patch.deviation[texel]) * value;
-    }
+  if (stdx::any_of(partly.part)) {
+    window.last_x = fixed(image.width - T(1), 1), window.last_y = fixed(image.height - T(1), 1);
+    window.whole = stdx::static_simd_cast<Ints>(select(partly, T(0), T(1)).part);
+    return lane_zncc_of_parts(patch, sample, window, whole, partly);
   }
-  const T variance = square - mean * mean;
-  const T flat(kFlatVariance * kGreyUnit * kGreyUnit);
-  const PackMask<Abi> known = inside && variance > flat && T(patch.variance) > T(0);
-  const T value = cross / sqrt(T(patch.variance) * select(known, variance, T(1)));
-  return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
+  return whole_correlation(patch, window_sums<false>(patch, sample, window), whole);
 }
 
 }  // namespace axial::depth::lanes

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Correlation of a matching window that leaves the source image, over the texels inside. T: float,
+// or a pack of lanes.
+#pragma once
+
+#include <cmath>
+
+#include "depth/reference_patch.h"
+#include "refractive/scalar.h"
+
+namespace axial::depth {
+
+// The sums of ZNCC with weights of their own: the reference patch's weights times the texels'
+// shares (0 to 1, kLeastWeight's comment). With the share s, the patch's weight w and deviation
+// w d, and the source's grey level v, less any constant:
+template <class T>
+struct PartSums {
+  T weights = T(0);           // s w
+  T reference = T(0);         // s w d
+  T reference_square = T(0);  // s w d^2
+  T mean = T(0);              // s w v
+  T square = T(0);            // s w v^2
+  T cross = T(0);             // s w d v
+};
+
+namespace {  // one copy per translation unit: instruction sets must not share this code
+
+// In [-1, 1], or kNoCorrelation.
+template <class T>
+T part_correlation(const PartSums<T>& sums) {
+  using refractive::greater;
+  using refractive::lesser;
+  using refractive::select;
+  using std::sqrt;
+  const auto enough = sums.weights >= T(kLeastWeight);
+  const T all = select(enough, sums.weights, T(1));
+  const T mean = sums.mean / all, reference = sums.reference / all;
+  const T variance = sums.square / all - mean * mean;
+  const T reference_variance = sums.reference_square / all - reference * reference;
+  const auto known =
+      enough && variance > T(kFlatVariance) && reference_variance > T(kFlatReference);
+  const T value = (sums.cross / all - mean * reference) /
+                  sqrt(select(known, T(variance * reference_variance), T(1)));
+  return select(known, lesser(greater(value, T(-1)), T(1)), T(kNoCorrelation));
+}
+
+}  // namespace
+}  // namespace axial::depth
