@@ -176,7 +176,7 @@ class Options(Scene):
             self.assertIn(line.split("] ", 1)[1], log)
         self.refuses("no/log", *self.command(folder, "--log-file", "/proc/no/log"))
         scene = read(self.path(folder, "scene.mvs"))
-        self.refuses("is no log", *self.command(folder, "--log-file", "scene.mvs"))
+        self.refuses("is not a log file", *self.command(folder, "--log-file", "scene.mvs"))
         self.assertEqual(read(self.path(folder, "scene.mvs")), scene)
         for program in ("InterfaceCOLMAP", "SimulateUnderwater", "EvaluateReconstruction"):
             self.assertIn("--log-file", run(program, "--help").stdout)
