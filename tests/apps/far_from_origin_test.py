@@ -206,7 +206,7 @@ class BitForBit(ProgramTest):
                 if ".dmap" in file:
                     os.remove(os.path.join(folder, file))
             said = result.stdout + result.stderr
-            self.assertEqual("known to 0.25 m only" in said, name == "far", said)
+            self.assertEqual("a resolution of only 0.25 m" in said, name == "far", said)
         self.assertEqual(json.loads(read(self.path("other", "far_dense.geo.json"))),
                          {"version": 1, "geo_offset": list(FAR)})
         near = read(self.path("other", "near_dense.ply"))
@@ -246,7 +246,7 @@ class FarScene(ProgramTest):
                          "--refractive", *QUICK)):
             result = run(*command)
             assert result.returncode == 0, result.stderr
-            assert "known to" not in result.stdout, result.stdout
+            assert "resolution of only" not in result.stdout, result.stdout
 
     def evaluated(self, cloud, truth, *options):
         """The printed table, and the numbers of the JSON file."""

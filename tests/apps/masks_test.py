@@ -100,7 +100,7 @@ class Masks(ProgramTest):
         self.assertEqual(self.matched(0), (True, True))
 
     def test_a_folder_that_lacks_masks(self):
-        self.refuses("masks: is no folder of masks", *self.arguments("--mask-path", "masks"))
+        self.refuses("masks: is not a folder of masks", *self.arguments("--mask-path", "masks"))
         self.put(LEFT, "masks", "0000.mask.png")
         self.put(LEFT, "masks", "0002.mask.png")
         self.refuses(f"no mask for image {self.images[1]}: looked for 0001.mask.png, 0001.png.png, "

@@ -109,9 +109,9 @@ class InterfaceColmap(ProgramTest):
         # A port directly at the lens only multiplies the sines of angles by the index.
         write(os.path.join(sparse, "cameras.txt"), f"1 {camera} FLATPORT 0 0 1 0 0 1 1.333 1.333\n")
         convert = ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
-        warning = "the poses were solved without refraction"
+        warning = "the poses were computed without refraction"
         said = self.succeeds(*convert).stdout
-        self.assertIn("The points are 0.000 px off in air: " + warning, said)
+        self.assertIn("The points have an error of 0.000 px in air: " + warning, said)
 
         def through_the_port(u, v, point):
             x, y = (u - tiny_scene.CX) / tiny_scene.FOCAL, (v - tiny_scene.CY) / tiny_scene.FOCAL
@@ -127,7 +127,7 @@ class InterfaceColmap(ProgramTest):
                                 for number in through_the_port(*numbers[k:k + 3]))
         write(path, "\n".join(lines) + "\n")
         said = self.succeeds(*convert).stdout
-        self.assertIn("carry ports: its points are 0.000 px off", said)
+        self.assertIn("have ports: its points have an error of 0.000 px", said)
         self.assertNotIn(warning, said)
 
     def test_wrong_housings(self):

@@ -118,7 +118,7 @@ TEST(ColmapBundle, RefusesAWaterSurface) {
   EXPECT_EQ(test::error_of([&] {
               to_bundle(model, {&kLens, 1}, lake);
             }),
-            "port 'main' is a water surface, which is another port for every pose");
+            "port 'main' is a water surface, which is a different port for every pose");
 }
 
 TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {

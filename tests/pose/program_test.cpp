@@ -340,10 +340,10 @@ TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
   for (const char* agreeing :
        {"", "--lens same.yaml", "--housing housing.json", "--lens lens --housing housing.json"})
     EXPECT_THAT(lines(agreeing), ::testing::Not(::testing::HasSubstr("differ"))) << agreeing;
-  EXPECT_THAT(lines("--lens other.yaml"),
-              ::testing::ContainsRegex("ports are those of .*other.yaml, and not those of the "
-                                       "model in .*colmap-underwater, which differ, first for "
-                                       "image0.jpg"));
+  EXPECT_THAT(
+      lines("--lens other.yaml"),
+      ::testing::ContainsRegex("The ports of .*other.yaml are used; the ports of the model in "
+                               ".*colmap-underwater differ and are ignored, first for image0.jpg"));
   EXPECT_THAT(lines("--lens other.yaml --housing housing.json"),
               ::testing::ContainsRegex("ports are those of .*housing.json, and not those of "
                                        ".*other.yaml, which differ"));
