@@ -73,7 +73,7 @@ class Scales(ProgramTest):
 
     def assert_has_no_scale(self, result, out):
         self.assertIn("The model has no scale", result.stdout)
-        self.assertIn("All lengths: not known", result.stdout)
+        self.assertIn("All lengths are unknown", result.stdout)
         self.assertNotIn("lengths are known", result.stdout)
         self.assertNotIn(" inf", result.stdout)
         self.assertIsNone(self.report(out)["scale_sigma"])
@@ -169,7 +169,8 @@ class Scales(ProgramTest):
         write(self.path("mixed.json"), json.dumps(mixed))
         known = ("--scale-from", self.between_images(self.names[1], self.names[4]))
         for expected, arguments in (
-                ("--scale-sigma 0.1: --scale-from is missing", ("--scale-sigma", "0.1")),
+                ("--scale-sigma 0.1: is the standard deviation of --scale-from",
+                 ("--scale-sigma", "0.1")),
                 ("--normal-sigma 1: --refine does not name normal", ("--normal-sigma", "1")),
                 ("--focal-sigma 0.1: --refine does not name focal",
                  ("--refine", "index", "--focal-sigma", "0.1")),
