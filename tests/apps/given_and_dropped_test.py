@@ -424,9 +424,9 @@ class NoEffect(ProgramTest):
             write(self.path("more", part), read(self.path("near", "sparse", part)))
         command = ("AlignModel", "-i", self.path("near"), "-o", self.path("out"), "--reference")
         said = self.succeeds(*command, self.path("more")).stdout
-        self.assertIn("1 of 4 centres are of no image of the model, and do not count, first lost.png",
+        self.assertIn("1 of 4 centres belong to no image of the model and are ignored, first lost.png",
                       said)
-        self.assertNotIn("of no image", self.succeeds(*command, self.path("near")).stdout)
+        self.assertNotIn("belong to no image", self.succeeds(*command, self.path("near")).stdout)
 
 
 if __name__ == "__main__":

@@ -348,7 +348,7 @@ class OtherPrograms(ProgramTest):
         for name, place in (("here.ply", 0), ("elsewhere.ply", 600000)):
             write(self.path(name), triangle.format(place))
         for align in ("none", "icp"):
-            self.refuses("not in the same coordinates", "EvaluateReconstruction", "-i",
+            self.refuses("do not have the same coordinates", "EvaluateReconstruction", "-i",
                          self.path("elsewhere.ply"), "-m", self.path("here.ply"), "--align", align)
         self.refuses("no-such.ply", "EvaluateReconstruction", "-i", self.path("no-such.ply"), "-m",
                      self.path("garbage.ply"))
