@@ -37,7 +37,7 @@ cv::Mat1b weak_pixels(const DepthMap& map, const cv::Mat1b& grey, float deviatio
 DepthMap remove_unconfirmed(const DepthMap& map, const cv::Mat1b& grey,
                             const WeakTextureOptions& options) {
   if (grey.size() != map.depth.size())
-    fail("{}: the image is {}x{}, but its depth map {}x{}", map.image_path, grey.cols, grey.rows,
+    fail("{}: the image is {}x{}, but its depth map is {}x{}", map.image_path, grey.cols, grey.rows,
          map.width(), map.height());
   if (map.confidence.empty()) return map;
   const cv::Mat1b weak = weak_pixels(map, grey, options.deviation);

@@ -65,7 +65,7 @@ class Masks(ProgramTest):
             self.put(RIGHT, "masks", name + ".png")
         said = self.densify("--mask-path", "masks")
         self.assertEqual(self.matched(0), (False, True))
-        warnings = [line for line in said.splitlines() if "which differs" in line]
+        warnings = [line for line in said.splitlines() if "differs and is ignored" in line]
         self.assertEqual(len(warnings), 1, said)
         for part in (self.path("masks", "0000.mask.png"), self.path("masks", "0000.png.png"),
                      "3 images"):

@@ -328,7 +328,7 @@ class Densify(ProgramTest):
         for border in ("nan", "inf", "-inf"):
             self.refuses_scene("--roi-border", "--roi-border", border)
         self.refuses_scene("--number-views-fuse -1", "--number-views-fuse", "-1")
-        self.refuses_scene("no such housing file", "--refractive", "1")
+        self.refuses_scene("housing file not found", "--refractive", "1")
 
 
 class OtherPrograms(ProgramTest):

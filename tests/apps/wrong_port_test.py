@@ -121,7 +121,7 @@ class FlatPort(PortTest):
         self.warns("absorbed", housing=self.housing(), focal=1.333)
 
     def test_a_housing_where_there_is_none(self):
-        self.warns("forgotten", "a --housing that is missing")
+        self.warns("forgotten", "a missing --housing")
         self.warns("in_air", housing=self.housing(), medium="air")
 
     def test_poses_that_are_not_in_metres(self):
