@@ -91,8 +91,8 @@ class OpencvLens(LensTest):
                      self.path("wrong"), "--refractive", *QUICK)
         for lens, reason in (("OPENCV,1", "must have 4 coefficients"),
                              ("PINHOLE,1,2,3,4", "must begin with OPENCV"),
-                             ("OPENCV,0,0,0,x", "'x' is no number"),
-                             ("OPENCV,-0.5,0,0,0", "images nothing at pixel")):
+                             ("OPENCV,0,0,0,x", "'x' is not a number"),
+                             ("OPENCV,-0.5,0,0,0", "has no ray at pixel")):
             self.refuses(reason, "SimulateUnderwater", "--lens", lens, "-o", self.path("none"))
 
 
