@@ -28,11 +28,10 @@ struct Options {
 
 Options parse_command_line(int argc, const char* const* argv) {
   std::string input, reference, output;
-  ProgramOptions program{
-      "AlignModel",
-      "brings a COLMAP model to metric scale by a similarity to known camera centres",
-      {},
-      {}};
+  ProgramOptions program{"AlignModel",
+                         "aligns a COLMAP model to known camera centres in metres, by a similarity",
+                         {},
+                         {}};
   program.version = version_line(program.name);
   program.visible.add("input-file,i", &input, "COLMAP model folder to align")
       .add("reference", &reference,
@@ -41,7 +40,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  if (reference.empty()) fail("--reference is missing: the model with the known centres");
+  if (reference.empty()) fail("--reference is missing: the model with the known camera centres");
   if (output.empty()) fail("--output-folder is missing");
   options.model = in_working_folder(options.parsed.common, input);
   options.reference = in_working_folder(options.parsed.common, reference);

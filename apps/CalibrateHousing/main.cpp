@@ -20,7 +20,8 @@ namespace {
 io::ColmapCamera load_lens(const fs::path& path) {
   const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
   if (cameras.size() != 1)
-    fail("{}: has {} cameras, expected the one that is calibrated", path.string(), cameras.size());
+    fail("{}: has {} cameras, expected one: the camera to calibrate", path.string(),
+         cameras.size());
   return cameras.front();
 }
 
@@ -37,7 +38,7 @@ std::string port_to_calibrate(const Options& options, const io::Housing& housing
 // The housing before the calibration.
 io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
   if (options.housing.empty()) {
-    if (!lens.port) fail("--housing is missing: the port as far as it is known");
+    if (!lens.port) fail("--housing is missing: the approximate port");
     return io::housing_with(io::to_housing_port(*lens.port));
   }
   const io::Housing housing = io::read_housing(options.housing);
@@ -68,8 +69,7 @@ void check_limits(const Options& options, const refractive::Port<double>& port) 
       {"max-thickness-sigma", free[pose::kThicknessNumber]}};
   for (const auto& [name, used] : limits)
     if (!used && given(options.parsed, name))
-      fail("--{}: is the limit of a number that {} does not name", name,
-           "--refine " + options.refine_list);
+      fail("--{}: limits a value that {} does not name", name, "--refine " + options.refine_list);
 }
 
 // Sets the unknowns of `options`.
@@ -83,7 +83,8 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
   pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust);
   check_limits(options, port);
   if (adjust.free[pose::kFocalNumber])
-    fail("--refine {}: the focal length stays as calibrated in air", options.refine_list);
+    fail("--refine {}: the focal length cannot be refined, it stays as calibrated in air",
+         options.refine_list);
 }
 
 // Called before the work.
@@ -103,7 +104,7 @@ void check_outputs(const Options& options, std::vector<fs::path> inputs) {
 void warn(const calibrate::Calibration& calibration) {
   for (const std::string& image : calibration.left_out)
     log_warning(
-        "{}: too few corners found, or too few that fit a board in one place; it is left out",
+        "{}: left out: too few corners were found, or too few corners fit one pose of the board",
         image);
   for (const std::string& gap : calibrate::gaps(calibration))
     log_warning("No photograph shows {}", gap);
@@ -126,8 +127,8 @@ void write(const Options& options, const calibrate::Calibration& calibration, io
   calibrate::require_known(calibration, options.limits);
   if (!calibration.last.converged)
     fail(
-        "not converged after {} iterations: are this the board, the lens in air and the kind of "
-        "port?",
+        "not converged after {} iterations: check the board, the lens calibrated in air and the "
+        "kind of port",
         calibration.last.iterations);
   const refractive::Port<double> port = *calibration.camera().now().port;
   io::check_port(port, "The calibrated port");
@@ -150,7 +151,7 @@ int run(int argc, char** argv) {
   const std::string port_name = port_to_calibrate(options, housing, lens);
   const refractive::Port<double> port = known_port(options, housing, port_name, lens.id);
   if (lens.port && !io::same_port(io::to_housing_port(*lens.port), io::to_housing_port(port)))
-    log_warning("The port is that of {}, and not that of {}, which differs",
+    log_warning("The port of {} is used; the port of {} differs and is ignored",
                 options.housing.string(), options.lens.string());
   set_unknown(options, port);
   const std::vector<fs::path> photographs = photographs_in(options.input);

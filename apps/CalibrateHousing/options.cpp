@@ -26,38 +26,40 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts,
       .add("input-file,i", &texts.input,
            "photographs of the board under water: a folder, or a file; may be given several times")
       .add("lens", &texts.lens,
-           "the lens as calibrated in air: cameras.txt or cameras.bin of COLMAP, with one camera, "
-           "or Calibmar's calibration.yaml")
+           "lens calibrated in air: COLMAP's cameras.txt or cameras.bin with one camera, or "
+           "Calibmar's calibration.yaml")
       .add("housing", &texts.housing,
-           "the port as far as it is known: a housing file or a calibration.yaml; default: that in "
-           "the lens's file")
+           "approximate port: a housing file or a calibration.yaml (default: the port in the file "
+           "of --lens)")
       .add("port", &options.port,
-           "the port to calibrate, by its name in the housing file; default: the camera's own "
-           "there, else the default one")
+           "name of the port in the housing file (default: the port of the camera there, else the "
+           "file's default port)")
       .add("board", &texts.board,
-           "columns, rows and metres: checkerboard:9x6:0.03 (inner corners, square), "
-           "charuco:8x6:0.03:0.02 (squares, square, marker) or apriltags:5x4:0.03:0.01 (tags, tag, "
-           "gap); the last two may end in :DICTIONARY")
+           "the board, with columns, rows and lengths in metres: checkerboard:9x6:0.03 (inner "
+           "corners, square), charuco:8x6:0.03:0.02 (squares, square, marker) or "
+           "apriltags:5x4:0.03:0.01 (tags, tag, gap); charuco and apriltags may end in :DICTIONARY")
       .add("output-file,o", &texts.output, "housing file to write (.json)")
       .add("calibmar", &texts.calibmar, "also write a calibration.yaml for Calibmar")
-      .add("report", &texts.report, "write all numbers there (.json)")
-      .add("coverage", &texts.coverage, "draw where corners were seen (.svg)")
+      .add("report", &texts.report, "write all results to this file (.json)")
+      .add("coverage", &texts.coverage,
+           "draw the corners' positions in the images to this file (.svg)")
       .add("refine", &options.refine_list,
-           "what is unknown: any of normal, distance (flat ports), centre (domes), thickness (of "
-           "the glass), index (of the water); default: normal,distance or centre");
+           "values to estimate: any of normal, distance (flat ports), centre (domes), thickness "
+           "(of the glass), index (of the water) (default: normal,distance or centre)");
   axial::io::declare_bit_depth(visible, options.bit_depth);
   axial::pose::declare_sigmas(visible, options.sigmas);
   visible
       .add_with_default("max-error", &options.calibrate.max_error,
                         "corners with larger errors are dropped [px]")
-      .add_with_default("max-distance-sigma", &options.limits.place,
-                        "refuse if the distance, or a dome's centre, is known worse than this [m]")
+      .add_with_default(
+          "max-distance-sigma", &options.limits.place,
+          "fail if the standard deviation of the distance, or of a dome's centre, is larger [m]")
       .add_with_default("max-normal-sigma", &max_normal_degrees,
-                        "refuse if the normal is known worse than this [degrees]")
+                        "fail if the standard deviation of the normal is larger [degrees]")
       .add_with_default("max-index-sigma", &options.limits.index,
-                        "refuse if the water's index is known worse than this")
+                        "fail if the standard deviation of the water's index is larger")
       .add_with_default("max-thickness-sigma", &options.limits.thickness,
-                        "refuse if the thickness is known worse than this [m]");
+                        "fail if the standard deviation of the thickness is larger [m]");
 }
 
 void require_positive(const char* option, double value) {
@@ -65,7 +67,7 @@ void require_positive(const char* option, double value) {
 }
 
 void check(const Options& options, double max_normal_degrees) {
-  if (options.lens.empty()) fail("--lens is missing: the lens as calibrated in air");
+  if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
   if (options.output.empty()) fail("--output-file is missing: the housing file to write");
   axial::io::check_bit_depth(options.bit_depth);
   require_positive("max-error", options.calibrate.max_error);
@@ -83,7 +85,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   double max_normal_degrees = 0.1;
   axial::ProgramOptions program{
       "CalibrateHousing",
-      "finds the port of a housing in photographs of a board taken under water",
+      "calibrates the port of a housing from photographs of a board under water",
       {},
       {}};
   program.version = axial::version_line(program.name);
@@ -102,7 +104,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.coverage = path(texts.coverage);
   options.limits.normal = max_normal_degrees * kDegree;
   check(options, max_normal_degrees);
-  if (texts.board.empty()) fail("--board is missing: what is photographed");
+  if (texts.board.empty()) fail("--board is missing: the board in the photographs");
   try {
     options.board = axial::calibrate::parse_board(texts.board);
   } catch (const axial::Error& error) {

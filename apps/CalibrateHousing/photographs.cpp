@@ -30,15 +30,15 @@ std::vector<fs::path> images_of(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file() && is_image_name(entry.path())) images.push_back(entry.path());
   std::ranges::sort(images);
-  if (images.empty()) fail("{}: no photographs in it", folder.string());
+  if (images.empty()) fail("{}: contains no photographs", folder.string());
   return images;
 }
 
 void check_size(const fs::path& photograph, cv::Size size, const io::ColmapCamera& lens) {
   if (static_cast<std::uint64_t>(size.width) != lens.width ||
       static_cast<std::uint64_t>(size.height) != lens.height)
-    fail("{}: is {} x {}, the lens {} x {}", photograph.string(), size.width, size.height,
-         lens.width, lens.height);
+    fail("{}: is {} x {} pixels, but the lens is calibrated for {} x {}", photograph.string(),
+         size.width, size.height, lens.width, lens.height);
 }
 
 // Transparent pixels become black, so that no corners are found there.

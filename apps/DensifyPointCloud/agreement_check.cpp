@@ -66,14 +66,14 @@ std::string likely_causes(const Project& project) {
   return project.housing
              ? "the port (its distances, normal or indices), the lens, or poses and points that "
                "are not in metres"
-             : "a --housing that is missing, the lens, or the poses";
+             : "a missing --housing, the lens, or the poses";
 }
 
 void say(const Project& project, const Agreement& found) {
   const AgreementLimits limits;
   const std::string points = fmt::format(
-      "the median of {} sparse points is {:.2f} px ({:.2f} %) off the depth maps, regions of the "
-      "images {:.2f} px",
+      "the median deviation of {} sparse points from the depth maps is {:.2f} px ({:.2f} %), of "
+      "image regions {:.2f} px",
       found.points, found.pixels, 100 * found.share, found.systematic);
   const std::string pixels = fmt::format("{:.0f} % of {} pixels agree with a neighbour's map",
                                          100 * found.consistent, found.asked);
@@ -84,8 +84,8 @@ void say(const Project& project, const Agreement& found) {
       found.scored, found.score, limits.score);
   if (!wrong.cameras() && wrong.score)
     axial::log_warning(
-        "The photographs do not seem to show the scene: {}. Are these the photographs of these "
-        "poses?",
+        "The photographs do not seem to show the scene: {}. Check that the photographs belong to "
+        "the poses",
         scores);
   if (!wrong.cameras()) return;
   axial::log_warning(
@@ -93,7 +93,7 @@ void say(const Project& project, const Agreement& found) {
       "(usual: over {:.0f} %){}. Likely causes: {}{}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
       wrong.score ? "; " + scores : "", likely_causes(project),
-      wrong.score ? ", or photographs of something else" : "");
+      wrong.score ? ", or photographs of another scene" : "");
 }
 
 void write_report(const std::filesystem::path& file, const Agreement& found) {

@@ -154,7 +154,7 @@ class ConfigFile {
     if (is_decoration(line)) return;
     const std::size_t sign = line.find('=');
     if (sign == std::string_view::npos)
-      axial::fail("{}: line {} is no 'title = value': {}", name_, number_, line);
+      axial::fail("{}: line {} is not 'title = value': {}", name_, number_, line);
     set(std::string(title_of(line.substr(0, sign))), trimmed(line.substr(sign + 1)));
   }
 
@@ -172,7 +172,8 @@ class ConfigFile {
     for (const Setting& setting : settings_) {
       if (title != setting.title) continue;
       const std::optional<double> value = axial::parse_finite<double>(text);
-      if (!value) axial::fail("{}: line {}: {} is '{}', no number", name_, number_, title, text);
+      if (!value)
+        axial::fail("{}: line {}: {} is '{}', expected a number", name_, number_, title, text);
       if (!(*value >= setting.low && *value <= setting.high))
         axial::fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
                     setting.low, setting.high);
@@ -189,11 +190,12 @@ class ConfigFile {
   }
 
   void warn() const {
-    if (!unknown_.empty()) axial::log_warning("{}: unknown, passed over: {}", name_, unknown_);
+    if (!unknown_.empty()) axial::log_warning("{}: unknown settings, ignored: {}", name_, unknown_);
     if (!without_effect_.empty())
-      axial::log_info("{}: without effect here: {}", name_, without_effect_);
+      axial::log_info("{}: settings without effect here: {}", name_, without_effect_);
     if (!of_options_.empty())
-      axial::log_info("{}: set by options alone, as in OpenMVS: {}", name_, of_options_);
+      axial::log_info("{}: ignored, because only options set these values, as in OpenMVS: {}",
+                      name_, of_options_);
   }
 
   void note_what_maps_depend_on() {
@@ -221,7 +223,7 @@ void apply_dense_config(const std::filesystem::path& file, Options& options) {
   for (const Setting& setting : settings(options))
     text += fmt::format("{} = {}\n", setting.title, shown(setting.get()));
   axial::write_atomically(file, text);
-  axial::log_info("{}: was not there, written with the values in use", file.string());
+  axial::log_info("{}: did not exist, written with the values in use", file.string());
 }
 
 }  // namespace densify

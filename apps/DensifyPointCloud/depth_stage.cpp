@@ -62,7 +62,7 @@ class DepthMapRun {
   void run() {
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size())
-      axial::log_info("All {} depth maps are there already", project_.references.size());
+      axial::log_info("All {} depth maps exist already", project_.references.size());
     if (first > 0) compare(first - 1);
     for (std::size_t s = first; s < stages_.size(); ++s) {
       // Matching often frees and allocates large blocks but holds few of them; later stages hold
@@ -131,7 +131,7 @@ class DepthMapRun {
       if (there) ++reused;
       progress(++done, references.size());
     });
-    if (reused > 0) axial::log_info("{}: {} maps were there already", stages_[stage].title, reused);
+    if (reused > 0) axial::log_info("{}: {} maps existed already", stages_[stage].title, reused);
     previous_.reset();
     axial::return_freed_memory();
   }

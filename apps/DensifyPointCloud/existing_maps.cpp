@@ -66,9 +66,12 @@ axial::CameraModel camera_of_map(const Project& project, const Options& options,
   const std::string file = depth_map_path(project, options, image).string();
   const axial::SceneImage& scene_image = project.scene.images[image];
   if (origin == DmapOrigin::damaged)
-    fail("{}: is damaged, or its side file is: remove both to fuse the others", file);
+    fail(
+        "{}: the depth map or its side file is damaged: remove both files to fuse the other depth "
+        "maps",
+        file);
   if (origin == DmapOrigin::foreign && !is_plain_pinhole(scene_image.camera))
-    fail("{}: is a pinhole's depth map, but image {} is seen through a port or a distorted lens",
+    fail("{}: is the depth map of a pinhole camera, but image {} has a port or a distorted lens",
          file, scene_image.path);
   const axial::DepthMap map = axial::io::read_dmap_header(file, side_to_read(origin));
   const cv::Size size(map.camera.width, map.camera.height);
@@ -79,8 +82,8 @@ axial::CameraModel camera_of_map(const Project& project, const Options& options,
   constexpr double kMostPixels = 1;
   if (const double shift = largest_shift(map, camera, scene_image.pose); !(shift < kMostPixels))
     fail(
-        "{}: its camera sees the scene {:.1f} px from where that of image {} does: it was made "
-        "with other poses or intrinsics",
+        "{}: its camera projects the scene {:.1f} px away from the camera of image {}: the depth "
+        "map was made with other poses or intrinsics",
         file, shift, scene_image.path);
   return camera;
 }
@@ -122,13 +125,15 @@ void check_overwriting(const Project& project, const Options& options, const Exi
   for (const std::size_t image : project.references) {
     if (maps[image].origin == DmapOrigin::foreign) foreign.push_back(image);
     if (maps[image].origin == DmapOrigin::damaged)
-      axial::log_warning("{}: is damaged, or its side file is, and is made anew",
-                         depth_map_path(project, options, image).string());
+      axial::log_warning(
+          "{}: the depth map or its side file is damaged; the depth map is computed again",
+          depth_map_path(project, options, image).string());
   }
   if (foreign.empty()) return;
   const std::string file = depth_map_path(project, options, foreign.front()).string();
   if (options.overwrite_dmaps) {
-    axial::log_info("{} and {} others of other programs are overwritten", file, foreign.size() - 1);
+    axial::log_info("{} and {} other depth maps of other programs are overwritten", file,
+                    foreign.size() - 1);
     return;
   }
   const bool fusable = std::ranges::all_of(foreign, [&](std::size_t image) {
@@ -138,7 +143,8 @@ void check_overwriting(const Project& project, const Options& options, const Exi
       "{}: was written by another program ({} of {} depth maps were): {}move it away, or give "
       "--overwrite-dmaps 1",
       file, foreign.size(), project.references.size(),
-      fusable ? "fuse what is there (--fusion-mode -1), " : "it counts as a pinhole's here: ");
+      fusable ? "fuse the existing depth maps (--fusion-mode -1), "
+              : "it counts as the depth map of a pinhole camera: ");
 }
 
 void keep_images_with_maps(Project& project, const Options& options, const ExistingMaps& maps) {
@@ -157,12 +163,12 @@ void keep_images_with_maps(Project& project, const Options& options, const Exist
     kept.push_back(image);
   }
   if (kept.empty())
-    fail("--fusion-mode -1: no depth map is there: {} is none",
+    fail("--fusion-mode -1: no depth map found: {} does not exist",
          depth_map_path(project, options, project.references.front()).string());
   const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
                                        kept.size(), project.references.size(), foreign);
   if (kept.size() < project.references.size())
-    axial::log_warning("{}; {}, for one, is not there", line, missing.string());
+    axial::log_warning("{}; {}, for example, does not exist", line, missing.string());
   else
     axial::log_info("{}", line);
   project.references = std::move(kept);

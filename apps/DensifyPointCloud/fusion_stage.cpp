@@ -102,7 +102,7 @@ class CloudRun {
 
   void report(std::size_t points) const {
     if (of_two_ > 0)
-      axial::log_info("{} points ({:.1f} %) rest on two depth maps", of_two_,
+      axial::log_info("{} points ({:.1f} %) are supported by only two depth maps", of_two_,
                       100.0 * static_cast<double>(of_two_) / static_cast<double>(points));
     if (options_.report.empty()) return;
     nlohmann::json report = axial::io::read_json(options_.report);

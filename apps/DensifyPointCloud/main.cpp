@@ -55,9 +55,10 @@ void say_who_may_read(const densify::Project& project, const densify::Options& o
   const std::string folder =
       options.pinhole_export.empty() ? "DIR" : options.pinhole_export.filename().string();
   axial::log_info(
-      "{} has cameras behind ports or with distorted lenses, which OpenMVS takes for pinholes: its "
-      "ReconstructMesh may be used on {} and the cloud, but RefineMesh, TextureMesh and fusing the "
-      "depth maps give wrong results there; --pinhole-export {} writes files that they can take",
+      "{} has cameras behind ports or with distorted lenses, which OpenMVS treats as pinholes: its "
+      "ReconstructMesh can use {} and the cloud, but RefineMesh, TextureMesh and fusion of the "
+      "depth maps give wrong results; --pinhole-export {} writes files that all of OpenMVS's "
+      "programs can use",
       name.string(), name.string(), folder);
 }
 
@@ -116,8 +117,8 @@ int run(int argc, char** argv) {
   axial::log_info("{}: {} points", ply.string(), points);
   if (options.fuse && points == 0)
     axial::log_warning(
-        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or "
-        "masks and the region of interest leave nothing",
+        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or masks and "
+        "the region of interest exclude all points",
         options.fusion.min_views);
   densify::export_pinholes(loaded, options, plan, existing, ply);
   if (options.remove_dmaps && options.fuse) remove_depth_maps(project, options);

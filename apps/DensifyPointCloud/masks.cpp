@@ -23,7 +23,7 @@ void tell_of_unused(const Project& project, const Options& options) {
     axial::log_warning("--mask-path {}: is not used, because --ignore-mask-label is {}",
                        options.mask_folder.string(), options.ignore_mask_label);
   else if (const std::size_t named = masks_of_scene(project.scene))
-    axial::log_info("{}: names masks of {} images, which --ignore-mask-label would use",
+    axial::log_info("{}: contains masks of {} images, which are used only with --ignore-mask-label",
                     options.input.string(), named);
 }
 
@@ -31,12 +31,13 @@ void tell_of_rivals(const Project& project, const Options& options,
                     const std::vector<axial::io::FoundMask>& masks) {
   const std::size_t named = options.mask_folder.empty() ? 0 : masks_of_scene(project.scene);
   if (named > 0)
-    axial::log_warning("--mask-path {}: goes before the masks that {} names for {} images",
+    axial::log_warning("--mask-path {}: is used instead of the masks that {} names for {} images",
                        options.mask_folder.string(), options.input.string(), named);
   const axial::io::RivalMasks rivals = axial::io::rival_masks(masks);
   if (rivals.count > 0)
-    axial::log_warning("{}: is used, and {}, which differs, is not ({} images have such masks)",
-                       rivals.used.string(), rivals.other.string(), rivals.count);
+    axial::log_warning(
+        "{}: is used; {} differs and is ignored ({} images have two different masks)",
+        rivals.used.string(), rivals.other.string(), rivals.count);
 }
 
 }  // namespace
@@ -83,8 +84,9 @@ void LabelCheck::warn_if_absent(const Project& project) const {
   if (others_.count() > kMost) labels += fmt::format(" and {} more", others_.count() - kMost);
   const auto first =
       std::ranges::find_if(project.views, [](const View& view) { return !view.mask.empty(); });
-  axial::log_warning("--ignore-mask-label {}: no mask has this label, {} and the others have {}",
-                     label_, first->mask.string(), labels);
+  axial::log_warning(
+      "--ignore-mask-label {}: no mask has this label; {} and the other masks have {}", label_,
+      first->mask.string(), labels);
 }
 
 }  // namespace densify

@@ -60,8 +60,8 @@ void require_memory_for_scene(std::uint64_t bytes, const Options& options) {
   const std::uint64_t cap = cap_of(options), least = bytes + kOnTop;
   if (bytes > kOnTop && cap < least)
     axial::fail(
-        "--max-memory {}: {} MB are too little, this scene needs at least {} to be read and its "
-        "views scored",
+        "--max-memory {}: {} MB are too little, this scene needs at least {} MB for reading and "
+        "for scoring its views",
         options.max_memory, cap / kMegabyte, least / kMegabyte + 1);
 }
 
@@ -237,7 +237,7 @@ MemoryPlan plan_memory(const Project& project, const Options& options) {
   const std::uint64_t fixed = sizes.scene + kOnTop;
   const std::uint64_t least = fixed + least_for(sizes, counts, 1);
   if (cap < least)
-    axial::fail("--max-memory {}: {} MB are too little, this scene needs {}", options.max_memory,
+    axial::fail("--max-memory {}: {} MB are too little, this scene needs {} MB", options.max_memory,
                 cap / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
   axial::log_details(

@@ -25,7 +25,8 @@ std::vector<std::uint32_t> numbers_of(const std::string& line, std::size_t image
   for (std::string word; words >> word;) {
     const auto number = axial::parse_finite<std::uint32_t>(word);
     if (!number || *number >= images)
-      axial::fail("{}: '{}' is no image of the scene, which has {}", where, word, images);
+      axial::fail("{}: '{}' is not an image of the scene, which has {} images", where, word,
+                  images);
     numbers.push_back(*number);
   }
   return numbers;
@@ -53,13 +54,13 @@ std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, axial:
     const std::vector<std::uint32_t> images = numbers_of(line, scene.images.size(), where);
     if (images.empty()) continue;
     if (images.size() == 1) axial::fail("{}: image {} has no neighbours", where, images[0]);
-    if (named[images[0]]) axial::fail("{}: image {} has a line already", where, images[0]);
+    if (named[images[0]]) axial::fail("{}: image {} has a second line", where, images[0]);
     if (std::find(images.begin() + 1, images.end(), images[0]) != images.end())
       axial::fail("{}: image {} is its own neighbour", where, images[0]);
     named[images[0]] = true;
     for (const std::uint32_t image : images)
       if (!scene.images[image].calibrated)
-        axial::log_warning("{}: image {} has no pose, and is passed over", where, image);
+        axial::log_warning("{}: image {} has no pose and is ignored", where, image);
     std::vector<axial::ViewScore>& neighbours = scene.images[images[0]].neighbours;
     neighbours.clear();
     for (std::size_t i = 1; i < images.size(); ++i) {

@@ -51,48 +51,52 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
       .add("output-file,o", &raw.output, "scene and cloud to write (<input>_dense.mvs)")
       .add_with_default("resolution-level", &options.resolution.level,
-                        "halvings of the images before matching")
-      .add_with_default("max-resolution", &options.resolution.max, "cap on the longest side [px]")
+                        "how many times the images are halved before matching")
+      .add_with_default("max-resolution", &options.resolution.max,
+                        "largest length of the longest side [px]")
       .add_with_default("min-resolution", &options.resolution.min,
                         "the longest side is not halved below this [px]")
       .add("mask-path", &raw.mask_path,
-           "folder of masks, one for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
-           "a.jpg, in subfolders as the images are")
+           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in the same subfolders as the images")
       .add_with_default("ignore-mask-label", &options.ignore_mask_label,
                         "mask value to leave out; below 0: no masks (default with --mask-path: 0)")
       .add_with_default("output-precision", &raw.precision,
-                        "of the cloud's positions: float, counting from the scene's offset where "
-                        "it has one (<scene>.geo.json), or double, in world coordinates")
+                        "precision of the cloud's positions: float, relative to the scene's offset "
+                        "if it has one (<scene>.geo.json), or double, in world coordinates")
       .add("pinhole-export", &raw.pinhole_export,
            "folder to write photographs, depth maps, cloud and scene to, resampled into pinhole "
            "cameras for OpenMVS's later programs")
       .add("report-file", &raw.report,
-           "JSON file for how far depth maps, sparse points and cameras agree")
+           "write the agreement of depth maps, sparse points and cameras to this file (.json)")
       .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
       .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
-      .add_with_default("max-memory", &options.max_memory,
-                        "memory to use at most [MB] (0: 70 % of what is free); --estimate-colors 1 "
-                        "and --estimate-normals 1 keep the whole cloud on top of it");
+      .add_with_default(
+          "max-memory", &options.max_memory,
+          "largest memory to use [MB] (0: 70 % of the free memory); --estimate-colors 1 and "
+          "--estimate-normals 1 keep the whole cloud in additional memory");
 }
 
 void declare_matching(axial::OptionList& list, Options& options) {
   list.add_with_default("sub-resolution-levels", &options.matching.sub_resolution_levels,
-                        "coarser levels matched first")
-      .add_with_default("number-views", &options.number_views,
-                        "source views per image (0: all that suit, at most 12; 1: the best one)")
+                        "number of coarser levels that are matched first")
+      .add_with_default(
+          "number-views", &options.number_views,
+          "source views per image (0: all suitable views, at most 12; 1: the best view)")
       .add_with_default("iters", &options.matching.iterations, "sweeps per resolution level")
       .add_with_default("geometric-iters", &options.geometric_iterations,
                         "sweeps with geometric consistency")
       .add_with_default("postprocess-dmaps", &options.postprocess,
-                        "depth map filters, added up: 1 speckles, 2 gaps, 4 adjust to the "
+                        "sum of the depth map filters: 1 speckles, 2 gaps, 4 adjustment to the "
                         "neighbours' maps (OpenMVS's default is 7)");
 }
 
 void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
-  list.add_with_default("fusion-mode", &raw.fusion_mode,
-                        "0 depth maps and fusion, 1 depth maps only, -1 fuse the depth maps in the "
-                        "working folder, whoever wrote them, and write none")
+  list.add_with_default(
+          "fusion-mode", &raw.fusion_mode,
+          "0 depth maps and fusion, 1 depth maps only, -1 fusion of the existing depth maps in the "
+          "working folder, also of other programs, without writing depth maps")
       .add_with_default("number-views-fuse", &options.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement); by "
                         "default 3, and 2 where no other depth map disagrees")
@@ -112,41 +116,44 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
 
 void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
   list.add("pointcloud-file,p", &raw.point_cloud,
-           "PLY cloud with views, in place of the scene's sparse points")
+           "PLY cloud with views that replaces the scene's sparse points")
       .add("view-neighbors-file", &raw.neighbour_lists,
-           "text file of neighbours: a line an image, its index and theirs, best first")
-      .add("output-view-neighbors-file", &raw.neighbour_lists_output, "write such a file and quit")
-      .add_with_default("filter-point-cloud", &options.filter_point_cloud,
-                        "below 0: write the scene's or -p's points whose visibility is above it "
-                        "to <output>_filtered.ply and .mvs, and quit; above 0 does nothing")
+           "text file of neighbours: for each image a line with its index and the indices of its "
+           "neighbours, best first")
+      .add("output-view-neighbors-file", &raw.neighbour_lists_output,
+           "write a file of neighbours and quit")
+      .add_with_default(
+          "filter-point-cloud", &options.filter_point_cloud,
+          "below 0: write the points of the scene, or of -p, whose visibility is above this value "
+          "to <output>_filtered.ply and .mvs, and quit; above 0: no effect")
       .add_with_default("export-number-views", &options.export_number_views,
-                        "N: write the points that N images or more see to <output>_<N>views.ply, "
-                        "and quit; -N: .mvs, too")
+                        "N: write the points that N or more images see to <output>_<N>views.ply "
+                        "and quit; -N: also write .mvs")
       .add_with_default("estimate-scale", &options.estimate_scale,
-                        "above 0: write the points with their sizes, so many pixels of their "
-                        "views, to <output>_scale.ply, and quit")
+                        "above 0: write the points and their sizes, this number of pixels in their "
+                        "views, to <output>_scale.ply and quit")
       .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect")
       .add("dense-config-file", &raw.dense_config,
-           "OpenMVS's Densify.ini: settings that have no option; written if it is not there");
+           "OpenMVS's Densify.ini: settings that have no option; written if it does not exist");
 }
 
 void declare_camera(axial::OptionList& list, Raw& raw, Options& options) {
   list.add_switch("refractive", &options.refractive,
-                  "cameras look through ports: demand a housing file")
+                  "cameras are behind ports: require a housing file")
       .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
-      .add_with_default(
-          "camera-model", &raw.camera_model,
-          "auto: what the housing says, pinhole: ignore it, flatport: every image has a flat port")
+      .add_with_default("camera-model", &raw.camera_model,
+                        "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
+                        "require a flat port for every image")
       .add_with_default("projection", &raw.projection,
-                        "in matching: exact, or the published line-search")
-      .add_with_default(
-          "warp", &raw.warp,
-          "in matching: affine (exact to first order), or the published virtual homography");
+                        "projection in matching: exact, or line-search as published")
+      .add_with_default("warp", &raw.warp,
+                        "warp in matching: affine (exact to first order), or homography, the "
+                        "published virtual homography");
 }
 
 void declare_not_built(axial::OptionList& list, std::vector<NotBuilt>& options) {
   for (NotBuilt& option : options)
-    list.add_with_default(option.name, &option.value, "not built yet: only the default");
+    list.add_with_default(option.name, &option.value, "not built yet: accepts only the default");
 }
 
 void refuse_not_built(const std::vector<NotBuilt>& options) {
@@ -187,7 +194,7 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("postprocess-dmaps", options.postprocess, 0u, 7u);
   check_range("number-views-fuse", options.fusion.min_views, std::size_t{0}, std::size_t{255});
   if (raw.fusion_mode == -2)
-    fail("--fusion-mode -2: disparity maps are not built; -1 fuses the depth maps that exist");
+    fail("--fusion-mode -2: disparity maps are not built; -1 fuses existing depth maps");
   check_range("fusion-mode", raw.fusion_mode, -1, 1);
   check_range("estimate-colors", options.estimate_colors, 0u, 2u);
   check_range("estimate-normals", options.estimate_normals, 0u, 2u);
@@ -205,12 +212,12 @@ void check_values(const Options& options, const Raw& raw) {
 void warn_of_no_effect(const Options& options, const Raw& raw) {
   if (raw.tower_mode != 0)
     axial::log_warning(
-        "--tower-mode {}: not built: no points are added around a line of cameras, as with 0",
+        "--tower-mode {}: not built: as with 0, no points are added around a line of cameras",
         raw.tower_mode);
   if (options.filter_point_cloud > 0)
     axial::log_warning(
-        "--filter-point-cloud {}: does nothing, as in OpenMVS: only values below 0 filter, and "
-        "only clouds that are there already (-p)",
+        "--filter-point-cloud {}: has no effect, as in OpenMVS: only values below 0 filter, and "
+        "they filter only an existing cloud (-p)",
         options.filter_point_cloud);
 }
 
@@ -220,9 +227,11 @@ Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Raw raw;
   axial::ProgramOptions program{
-      "DensifyPointCloud", "a dense point cloud from calibrated images, in air and under water",
+      "DensifyPointCloud",
+      "computes a dense point cloud from calibrated images, in air and under water",
       axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
-      ", and pictures of the depth maps beside them; 5 and above: also of every stage's"};
+      ", and pictures of the depth maps in the same folder; 5 and above: also pictures of the "
+      "depth maps of every stage"};
   program.version = axial::version_line(program.name);
   declare_io(program.visible, raw, options);
   axial::io::declare_bit_depth(program.visible, options.bit_depth);

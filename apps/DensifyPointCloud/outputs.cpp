@@ -49,7 +49,7 @@ void check_side_output(const char* option, const fs::path& output,
   axial::require_not_an_input(output, inputs, option);
   for (const fs::path& other : outputs)
     if (is_one_file(output, other))
-      axial::fail("{} {}: is where the run's {} belongs", option, output.string(),
+      axial::fail("{} {}: is also the file name of the run's {}", option, output.string(),
                   other.filename().string());
 }
 

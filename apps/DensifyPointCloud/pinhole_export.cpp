@@ -233,11 +233,12 @@ class Export {
     const std::size_t count = project_.references.size();
     if (cut > 0)
       axial::log_warning(
-          "--pinhole-export: {} of {} images see more than a pinhole can show: their edges are cut",
+          "--pinhole-export: {} of {} images have a wider field of view than a pinhole can show: "
+          "their edges are cut off",
           cut, count);
     axial::log_info(
-        "{}: {} images as pinholes, {:.1f} % of their pixels on a known surface: OpenMVS's "
-        "programs may take scene.mvs, scene.ply and the depth maps there",
+        "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
+        "can use scene.mvs, scene.ply and the depth maps in this folder",
         options_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
   }
 

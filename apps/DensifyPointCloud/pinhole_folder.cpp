@@ -59,12 +59,12 @@ void check_folder(const Project& project, const Options& options) {
     add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
-      fail("--pinhole-export {}: this run's inputs lie there", folder.string());
+      fail("--pinhole-export {}: contains inputs of this run", folder.string());
   if (fs::exists(folder / kPinholeMarker, error)) {
     if (!axial::io::read_json(folder / kPinholeMarker).is_object())
       fail("{}: is not the list of an earlier export", (folder / kPinholeMarker).string());
   } else if (!fs::is_empty(folder, error))
-    fail("--pinhole-export {}: holds other files: name an empty folder, or a new one",
+    fail("--pinhole-export {}: contains other files: give an empty or a new folder",
          folder.string());
 }
 
@@ -76,7 +76,7 @@ void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
   if (!fs::exists(marker, error)) return;
   const nlohmann::json earlier = axial::io::read_json(marker);
   if (!earlier.contains("files"))
-    axial::log_warning("{}: lists no files: those that this export does not replace stay",
+    axial::log_warning("{}: lists no files: files that this export does not replace are kept",
                        marker.string());
   axial::io::WrittenFiles files =
       axial::io::find_written(folder, earlier.value("files", nlohmann::json::object()));
@@ -85,16 +85,17 @@ void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
   std::erase_if(files.changed, replaced);
   axial::io::remove_below(folder, files.unchanged);
   if (!files.changed.empty())
-    axial::log_warning("{}: is not as the earlier export wrote it, and stays, as {} others do",
-                       (folder / files.changed.front()).string(), files.changed.size() - 1);
+    axial::log_warning(
+        "{}: was changed after the earlier export and is kept, as are {} other files",
+        (folder / files.changed.front()).string(), files.changed.size() - 1);
 }
 
 void check_pinhole_export(const Project& project, const Options& options) {
   if (options.pinhole_export.empty()) return;
   if (all_pinholes(project))
     fail(
-        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS may take what "
-        "this run writes as it is",
+        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS can use the "
+        "other results of this run directly",
         options.pinhole_export.string(), options.input.string());
   check_folder(project, options);
   check_names(project);

@@ -56,7 +56,8 @@ std::optional<axial::io::Housing> attach_housing(axial::Scene& scene,
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (demanded || !options.housing.empty())
-      fail("{}: no such housing file; --refractive needs one (see --housing)", file.string());
+      fail("{}: housing file not found; --refractive needs a housing file (see --housing)",
+           file.string());
     return {};
   }
   const axial::io::Housing housing = axial::io::read_housing(file);
@@ -258,7 +259,7 @@ std::string fingerprint(const Project& project, const Options& options) {
 
 void attach_lenses(axial::Scene& scene, const Options& options) {
   if (axial::io::attach_lenses_beside(scene, options.input))
-    axial::log_info("{}: {} images have distorted lenses, and are matched as they are",
+    axial::log_info("{}: {} images have distorted lenses and are matched without resampling",
                     axial::io::lenses_beside(options.input).filename().string(),
                     std::ranges::count_if(scene.images, [](const axial::SceneImage& image) {
                       return image.camera.distortion.has_value();
@@ -269,7 +270,7 @@ void warn_of_missing_lenses(const Options& options) {
   const fs::path file = axial::io::lenses_beside(options.input);
   std::error_code error;
   if (!fs::exists(file, error))
-    axial::log_warning("{}: not there: the images count as undistorted", file.string());
+    axial::log_warning("{}: file not found: the images count as undistorted", file.string());
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ std::string export_that_is_made(const Options& options) {
 
 void warn_of_rival_exports(const Options& options) {
   const std::string made = export_that_is_made(options);
-  const std::string with = "with --" + made + ", which writes points that are there already";
+  const std::string with = "with --" + made + ", which writes existing points";
   if (made == "filter-point-cloud")
     warn_of(options, {"export-number-views", "estimate-scale"}, with);
   if (made == "export-number-views") warn_of(options, {"estimate-scale"}, with);
@@ -61,24 +61,23 @@ void warn_of_options_without_effect(const Options& options) {
   if (only_exports(options)) return warn_of_rival_exports(options);
   if (!options.neighbour_lists_output.empty()) {
     for (const Names& names : {kMatching, kFusion})
-      warn_of(options, names, "with --output-view-neighbors-file, which matches nothing");
+      warn_of(options, names, "with --output-view-neighbors-file, which matches no images");
     return;
   }
   if (!options.make_maps)
     for (const Names& names : {kMatching, kMapSize})
-      warn_of(options, names, "with --fusion-mode -1, which takes depth maps as they are");
-  if (!options.fuse)
-    warn_of(options, kFusion, "with --fusion-mode 1, which makes depth maps alone");
+      warn_of(options, names, "with --fusion-mode -1, which uses depth maps unchanged");
+  if (!options.fuse) warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
 }
 
 void warn_of_options_without_effect(const Project& project, const Options& options) {
   if (!project.housing) warn_of(options, {"projection"}, "in air: no image is behind a port");
   if (!project.scene.region)
-    warn_of(options, {"roi-border"}, "for want of a region of interest (see --estimate-roi)");
+    warn_of(options, {"roi-border"}, "without a region of interest (see --estimate-roi)");
 }
 
 void warn_of_region_of_scene(const Options& options) {
-  warn_of(options, {"estimate-roi"}, "on a scene that has a region of interest already");
+  warn_of(options, {"estimate-roi"}, "on a scene that already has a region of interest");
 }
 
 }  // namespace densify

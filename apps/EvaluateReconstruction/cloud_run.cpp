@@ -69,8 +69,8 @@ LocalFrame checked_frame(const fs::path& path) {
   const double far = place.frame.to_local(place.first_vertex).cwiseAbs().maxCoeff();
   if (place.is_float && far > kFar)
     log_warning(
-        "{}: its coordinates are float32 of {:.0f} m: they are known to {:.2g} m only (write "
-        "double, or local ones with a comment geo_offset)",
+        "{}: its coordinates are float32 values of about {:.0f} m: their resolution is only {:.2g} "
+        "m (write double, or local coordinates with a comment geo_offset)",
         path.string(), far, far * 0x1p-24);
   return frame_near(place.first_vertex);
 }
@@ -115,7 +115,7 @@ std::vector<evaluate::View> read_views(const Options& options, const Models& mod
     housing =
         io::in_frame(models.frames.truth, io::read_housing(options.housing, models.reference));
     for (const std::string& entry : io::unused_entries(*housing, models.reference))
-      log_warning("{}: no image goes by {}", options.housing.string(), entry);
+      log_warning("{}: no image matches {}", options.housing.string(), entry);
     io::warn_of_other_ports(*housing, options.housing.string(),
                             io::housing_of(models.reference.cameras),
                             "the model in " + options.cameras.string(), models.reference);
@@ -168,8 +168,10 @@ void refuse_if_far(const Options& options, const Input& input, const Mesh& truth
   };
   const std::span<const Eigen::Vector3f> all = input.positions();
   if (2 * std::ranges::count_if(all, is_far) > std::ssize(all))
-    fail("{}: most of it is more than {:.0f} km away from {}: they are not in the same coordinates",
-         options.input.string(), kFar / 1000, options.truth.string());
+    fail(
+        "{}: most of its points are more than {:.0f} km away from {}: the two files do not have "
+        "the same coordinates",
+        options.input.string(), kFar / 1000, options.truth.string());
 }
 
 // Moves the input from its own frame to the truth's frame.

@@ -16,7 +16,8 @@ namespace {
 
 void check(const Options& options) {
   if (options.align != "none")
-    fail("--align {}: a depth map lies in its own camera and is not aligned", options.align);
+    fail("--align {}: a depth map has the coordinates of its own camera and cannot be aligned",
+         options.align);
   const std::pair<const char*, bool> meaningless[] = {
       {"--framed-only", options.framed_only},          {"--strip", options.strip},
       {"--cameras", !options.cameras.empty()},         {"--estimated", !options.estimated.empty()},
@@ -33,7 +34,7 @@ nlohmann::ordered_json run_depth_map(const Options& options) {
   const DepthMap map = io::read_dmap(options.input).map;
   const cv::Mat1f truth = io::read_float_tiff(options.truth);
   if (truth.size() != map.depth.size())
-    log_info("The truth is {} x {}, read off at the map's {} x {} pixel centres", truth.cols,
+    log_info("The truth is {} x {} and is sampled at the map's {} x {} pixel centres", truth.cols,
              truth.rows, map.width(), map.height());
   evaluate::DepthOptions settings;
   settings.tolerances = options.tolerances;

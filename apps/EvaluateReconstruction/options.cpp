@@ -36,44 +36,46 @@ std::vector<double> parse_tolerances(const std::string& text) {
 void declare(axial::OptionList& visible, Options& options, Texts& texts) {
   visible
       .add("input-file,i", &texts.input,
-           "what to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")
+           "file to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")
       .add("truth-file,m", &texts.truth,
-           "the truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff)")
+           "ground truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff)")
       .add_with_default("tolerance", &texts.tolerance,
-                        "distances that count as right [m], separated by commas; the first one "
-                        "scales histograms (to 4 times) and colours (to 2 times)")
+                        "tolerances: largest distances that count as correct [m], separated by "
+                        "commas; histograms end at 4 times the first tolerance, colours at 2 times")
       .add_with_default("align", &options.align,
-                        "none; centres: similarity from the camera centres of --estimated to those "
-                        "of --cameras; icp: rigid refinement on the true mesh")
+                        "none; centres: similarity from the camera centres of --estimated to the "
+                        "camera centres of --cameras; icp: rigid refinement on the true mesh")
       .add("cameras", &texts.cameras,
-           "COLMAP model with the true poses: only what its views see counts as missing")
-      .add("housing", &texts.housing, "ports that those cameras look through")
-      .add("estimated", &texts.estimated, "COLMAP model the input was made with")
+           "COLMAP model with the true poses: only surface that its views see counts as missing")
+      .add("housing", &texts.housing, "housing file with the ports of the cameras of --cameras")
+      .add("estimated", &texts.estimated, "COLMAP model from which the input was made")
       .add_with_default(
           "samples", &options.samples,
-          "points of the truth that count for completeness, about (and points of an input mesh)")
-      .add_with_default("seed", &options.seed, "of the samples")
+          "approximate number of samples on the truth, for completeness (and on an input mesh)")
+      .add_with_default("seed", &options.seed, "random seed of the samples")
       .add_with_default("min-views", &options.least_views,
-                        "views that must see a sample for it to count")
+                        "number of views that must see a sample, else the sample does not count")
       .add_switch("framed-only", &options.framed_only,
-                  "count only points of a cloud that lie in the images of --min-views of "
-                  "--cameras, whatever stands in between")
+                  "count only points of a cloud that lie in the images of --min-views views of "
+                  "--cameras, without a test for occlusion")
       .add("gross", &options.gross,
-           "errors beyond are gross [m] (default: four times the first tolerance)")
-      .add_switch("strip", &options.strip, "density of a cloud along the strip that --cameras make")
-      .add("json", &texts.json, "write all numbers there")
+           "larger errors are gross [m] (default: four times the first tolerance)")
+      .add_switch("strip", &options.strip,
+                  "report the density of a cloud along the strip of --cameras")
+      .add("json", &texts.json, "write all results to this file (.json)")
       .add("error-cloud", &texts.error_cloud, "write the points coloured by error (.ply)")
       .add("picture", &texts.picture,
-           "draw the errors (.png): the cloud as a camera sees it, or depth, truth and error of a "
-           "map")
+           "draw the errors (.png): a cloud in the view of a camera, or depth, truth and error of "
+           "a depth map")
       .add("picture-camera", &options.picture_camera,
-           "image name in --cameras to draw from (default: the first)")
+           "name of the image in --cameras whose view is drawn (default: the first image)")
       .add_with_default("picture-width", &options.picture_width,
                         "width of a cloud's picture [pixels]")
       .add_with_default("color-max", &options.color_max,
-                        "error of the last colour [m] (0: twice the first tolerance)")
+                        "error at the end of the colour scale [m] (0: twice the first tolerance)")
       .add("aligned", &texts.aligned, "write the input after alignment (.ply)")
-      .add("transform-out", &texts.transform, "write the alignment as 4 x 4 numbers, row by row");
+      .add("transform-out", &texts.transform,
+           "write the alignment to this file, as a 4 x 4 matrix, row by row");
   axial::UnusedInput::declare(visible, options.allow_missing);
 }
 
@@ -84,7 +86,7 @@ void check(const Options& options) {
   if (options.align == "centres" && (options.estimated.empty() || options.cameras.empty()))
     fail("--align centres needs --estimated and --cameras");
   if (options.align != "centres" && !options.estimated.empty())
-    fail("--estimated {}: is for --align centres alone", options.estimated.string());
+    fail("--estimated {}: is used only with --align centres", options.estimated.string());
   if (!options.housing.empty() && options.cameras.empty())
     fail("--housing needs --cameras: the cameras behind its ports");
   if (options.framed_only && options.cameras.empty()) fail("--framed-only needs --cameras");
@@ -123,8 +125,10 @@ void warn_of_no_effect(const Options& options) {
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Texts texts;
-  axial::ProgramOptions program{
-      "EvaluateReconstruction", "measures a cloud, mesh or depth map against the truth", {}, {}};
+  axial::ProgramOptions program{"EvaluateReconstruction",
+                                "compares a cloud, mesh or depth map with the ground truth",
+                                {},
+                                {}};
   program.version = axial::version_line(program.name);
   declare(program.visible, options, texts);
   options.parsed = axial::parse_options(argc, argv, program);

@@ -57,13 +57,14 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model, b
   }
   if (carried.ports.empty()) return carried;
   const pose::PortFit fit = pose::port_fit(model);
-  log_info("The model's cameras carry ports: its points are {:.3f} px off behind them",
-           fit.behind_ports);
+  log_info(
+      "The model's cameras have ports: its points have an error of {:.3f} px behind these ports",
+      fit.behind_ports);
   warned = fit.behind_ports > fit.in_air;
   if (warned)
     log_warning(
-        "The points are {:.3f} px off in air: the poses were solved without refraction. "
-        "RefinePoses makes refractive ones of them",
+        "The points have an error of {:.3f} px in air: the poses were computed without refraction. "
+        "RefinePoses computes refractive poses from them",
         fit.in_air);
   return carried;
 }
@@ -96,8 +97,9 @@ void say_image_folder(const Options& options, const io::ColmapModel& model) {
   const bool rival = !other.empty() && !model.images.empty() &&
                      fs::exists(other / model.images.front().name, error) &&
                      !fs::equivalent(other, options.image_folder, error);
-  log_info("Images in {}{}", options.image_folder.string(),
-           rival ? ", not in " + other.string() + ", which holds images of these names, too" : "");
+  log_info(
+      "Images in {}{}", options.image_folder.string(),
+      rival ? ", not in " + other.string() + ", which also contains images with these names" : "");
 }
 
 // Few cameras take no time: shows no progress for them.
@@ -130,9 +132,8 @@ void check_export_folder(const fs::path& folder) {
   for (const fs::path& file : model_files(folder))
     if (fs::exists(file, error) && !(exported && file.extension() == ".txt"))
       fail(
-          "{}: belongs to a model that is no export, and is not overwritten: name another folder "
-          "with "
-          "--output-file",
+          "{}: belongs to a model that is not an export, and is not overwritten: give another "
+          "folder with --output-file",
           file.string());
 }
 
@@ -145,7 +146,7 @@ std::string say_missing(const Scene& scene, const Options& options) {
   });
   if (missing == 0) return "";
   return fmt::format(
-      " ({} of them are not there: a scene's paths count from the working folder, {}, which -w "
+      " ({} of them do not exist: a scene's paths are relative to the working folder, {}, which -w "
       "sets)",
       missing, fs::weakly_canonical(options.parsed.common.working_folder, error).string());
 }
@@ -170,8 +171,8 @@ int export_scene(const Options& options) {
   const std::size_t behind_ports = count_behind_ports(scene);
   if (behind_ports > 0)
     log_warning(
-        "{} of {} images are behind ports, which are written behind their cameras as "
-        "COLMAP-Underwater reads them: COLMAP itself does not",
+        "{} of {} images are behind ports, which are written in the format of COLMAP-Underwater: "
+        "COLMAP itself cannot read them",
         behind_ports, scene.images.size());
   write_folder(folder, [&](const fs::path& staging) {
     (behind_ports > 0 ? io::write_underwater_text : io::write_colmap_text)(staging, model);
@@ -220,11 +221,11 @@ int run(int argc, char** argv) {
   // The housing is written first: a scene without its housing would be read as dry.
   if (options.housing_file.empty() && housing.ports.empty()) {
     if (behind_ports)
-      log_warning("{}: is left as it is, and goes with this scene", housing_file.string());
+      log_warning("{}: is kept unchanged and belongs to this scene", housing_file.string());
   } else {
     const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
     for (const std::string& entry : io::unused_entries(housing, model))
-      log_warning("{}: no image goes by {}", options.housing_file.string(), entry);
+      log_warning("{}: no image matches {}", options.housing_file.string(), entry);
     io::warn_of_housing_beside(
         scene, options.scene_file, by_image,
         options.housing_file.empty() ? options.colmap_folder : options.housing_file);
@@ -241,7 +242,7 @@ int run(int argc, char** argv) {
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
   io::write_geo_offset_beside(options.scene_file, frame);
   if (!frame.is_world())
-    log_info("{}: coordinates count from ({}, {}, {})",
+    log_info("{}: coordinates are relative to ({}, {}, {})",
              io::geo_offset_beside(options.scene_file).string(), frame.origin.x(), frame.origin.y(),
              frame.origin.z());
   io::write_mvs(options.scene_file, scene, folder,

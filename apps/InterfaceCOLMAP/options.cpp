@@ -17,7 +17,7 @@ namespace {
 void refuse_file_name(const std::string& output) {
   for (const char* extension : {".mvs", ".ply", ".txt", ".bin", ".json"})
     if (fs::path(output).extension() == extension)
-      fail("--output-file {}: -o names the folder that a scene (.mvs) is exported to, not a file",
+      fail("--output-file {}: must be a folder, because a scene (.mvs) is exported to a folder",
            output);
 }
 
@@ -45,27 +45,27 @@ Options parse_command_line(int argc, const char* const* argv) {
   bool normalize = false, force_points = false, undistort = false;
   axial::ProgramOptions program{
       "InterfaceCOLMAP",
-      "turns a COLMAP model and its images into a scene (.mvs), and a scene into a model",
+      "converts a COLMAP model and its images to a scene (.mvs), or a scene to a COLMAP model",
       {},
       {}};
   program.version = axial::version_line(program.name);
   program.visible
       .add("input-file,i", &input,
            "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "
-           "export to DIR/sparse, DIR being -o or the scene's folder")
+           "export to DIR/sparse, where DIR is -o or the scene's folder")
       .add("output-file,o", &output, "scene to write (default: DIR/scene.mvs)")
       .add_with_default("image-folder", &image_folder,
                         "folder of the images, in the working folder or else in DIR (the default: "
                         "in DIR first); images must have the size of their cameras")
       .add("housing", &housing,
-           "housing file: ports the cameras look through, or Calibmar's calibration.yaml; written "
-           "as <scene>.housing.json")
+           "housing file with the ports of the cameras, or Calibmar's calibration.yaml; written as "
+           "<scene>.housing.json")
       .add("undistort", &undistort,
-           "1: resample images of distorted lenses into a pinhole's, which all programs can read; "
-           "0: keep images and lenses as they are, in <scene>.lenses.json (default: 0 behind "
-           "ports, 1 in air)")
+           "1: resample images of distorted lenses into pinhole images, which all programs can "
+           "read; 0: keep the images, and write the lenses to <scene>.lenses.json (default: 0 "
+           "behind ports, 1 in air)")
       .add("pointcloud-file,p", &point_cloud,
-           "of an export: PLY cloud with views, in place of the scene's points")
+           "for an export: PLY cloud with views that replaces the scene's points")
       .add_with_default("normalize,f", &normalize,
                         "1: write intrinsics divided by the image's longer side, without its "
                         "resolution; 0: in pixels")
@@ -85,21 +85,20 @@ Options parse_command_line(int argc, const char* const* argv) {
     options.export_folder = output.empty() ? options.scene_file.parent_path()
                                            : axial::in_working_folder(common, output);
     if (!housing.empty())
-      fail("--housing {}: a scene is exported with the ports beside it", housing);
+      fail("--housing {}: is not used in an export, which takes the housing file beside the scene",
+           housing);
     options.point_cloud = axial::in_working_folder(common, point_cloud);
     for (const char* name : {"undistort", "normalize", "force-points"})
       if (axial::given(options.parsed, name))
-        axial::log_warning("--{}: without effect on a scene that is exported", name);
+        axial::log_warning("--{}: without effect when a scene is exported", name);
     if (axial::given(options.parsed, "image-folder"))
       options.image_folder = axial::in_working_folder(common, image_folder) / "";
     return options;
   }
   options.normalize = normalize;
   if (!point_cloud.empty())
-    fail(
-        "--pointcloud-file {}: is not built for an import: only a scene (.mvs) is exported with "
-        "another cloud's points",
-        point_cloud);
+    fail("--pointcloud-file {}: is not built for an import, only for the export of a scene (.mvs)",
+         point_cloud);
   if (force_points)
     axial::log_warning("--force-points: without effect: sparse points are always written");
   std::error_code error;

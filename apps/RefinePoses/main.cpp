@@ -34,7 +34,7 @@ using Lenses = std::vector<io::ColmapCamera>;
 // The lenses in air: from the file, or from the model if its cameras carry ports.
 Lenses load_lenses(const Options& options, const io::ColmapModel& model) {
   if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
-    fail("--lens is missing: the lens as calibrated in air");
+    fail("--lens is missing: the lens calibrated in air");
   const Lenses lenses =
       options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
   if (lenses.empty()) fail("{}: no camera", options.lens.string());
@@ -75,7 +75,7 @@ io::Housing load_housing(const Options& options, const io::ColmapModel& model,
     io::warn_of_other_ports(housing, options.housing.string(), carried, of_lens, model);
     return housing;
   }
-  if (carried.ports.empty()) fail("--housing is missing: the port that the camera looks through");
+  if (carried.ports.empty()) fail("--housing is missing: the port of the camera");
   io::warn_of_other_ports(carried, of_lens, io::housing_of(model.cameras), of_model, model);
   return carried;
 }
@@ -119,8 +119,7 @@ void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
     });
     if (!camera.port || lens == lenses.end() || same_lens(*lens, camera)) continue;
     return log_warning(
-        "The lenses are those of {}, and not those of {}, which differ, first for "
-        "camera {}",
+        "The lenses of {} are used; the lenses of {} differ and are ignored, first for camera {}",
         options.lens.string(), options.model.string(), camera.id);
   }
 }
@@ -130,7 +129,8 @@ void check_output(const Options& options, const fs::path& model) {
   std::error_code error;
   if (fs::equivalent(options.output / "sparse", model, error) ||
       fs::equivalent(options.output / "sparse", model.parent_path(), error))
-    fail("--output-folder {}: its sparse/ is the model that is read", options.output.string());
+    fail("--output-folder {}: its folder sparse/ is the model that is read",
+         options.output.string());
   require_no_inputs(outputs_of(options), inputs_of(options, model), "--output-folder");
   io::require_no_binary_model(options.output / "sparse");
   require_writable_folder(options.output);
@@ -167,7 +167,7 @@ struct Refined {
 
 Refined refine(Options& options, pose::ColmapBundle& refined, const io::ColmapModel& model) {
   pose::bring_to_metres(refined.bundle, options.refine.adjust);
-  log_info("Begins with points {:.3g} m away, in the middle",
+  log_info("Starts with points at a median distance of {:.3g} m",
            pose::median_distance(refined.bundle));
   pose::Bundle before = refined.bundle;
   if (options.refine.adjust.free[pose::kFocalNumber])
@@ -184,15 +184,17 @@ void warn(const pose::RefineReport& report, const pose::Bundle& bundle,
   const std::vector<std::size_t> counts = observations_by_image(bundle);
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] == 0)
-      log_warning("{}: too few observations fit; it is left out", bundle.images[i].name);
+      log_warning("{}: left out: too few observations fit", bundle.images[i].name);
   for (const std::size_t position : lost_positions(bundle, options.adjust)) {
     unused.push_back("--scale-from: the position of " +
                      bundle.images[options.adjust.positions[position].image].name);
-    log_warning("{}: its image is left out, and it does not count", unused.back());
+    log_warning("{} is not used, because this image is left out", unused.back());
   }
   if (report.repeated > 0)
-    log_info("{} observations are of an image that sees the point already, and do not count",
-             report.repeated);
+    log_info(
+        "{} observations are ignored, because another observation in the same image belongs to the "
+        "same point",
+        report.repeated);
   for (const std::string& line : pose::dropped_lines(report, options.tracks))
     log_warning("{}", line);
   if (!report.last.converged)
@@ -245,7 +247,7 @@ int run(int argc, char** argv) {
   const io::Housing housing = load_housing(options, model, lenses);
   pose::ColmapBundle refined = load(options, model, lenses, housing);
   for (const std::string& entry : io::unused_entries(housing, model))
-    log_warning("{}: no image goes by {}",
+    log_warning("{}: no image matches {}",
                 (!options.housing.empty() ? options.housing
                  : options.lens.empty()   ? options.model
                                           : options.lens)
@@ -261,7 +263,8 @@ int run(int argc, char** argv) {
   log_info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
            model.points.size(), refined.bundle.observations.size());
   if (refined.unseen > 0)
-    log_warning("{} observations lie where the lens in air images nothing", refined.unseen);
+    log_warning("{} observations lie at pixels for which the lens in air has no ray",
+                refined.unseen);
 
   std::optional<pose::ColmapBundle> start;
   if (options.allow_missing && !options.scale_from.empty()) start = refined;

@@ -23,9 +23,10 @@ void check(const Options& options) {
   if (options.poses != "adjust" && options.poses != "known")
     fail("--poses {}: must be adjust or known", options.poses);
   if (options.poses == "known" && !options.scale_from.empty())
-    fail("--scale-from {}: --poses known says that the model is in metres", options.scale_from);
+    fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
+         options.scale_from);
   if (options.scale_from.empty() && axial::given(options.parsed, "scale-sigma"))
-    fail("--scale-sigma {}: --scale-from is missing, whose standard deviation it is",
+    fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma);
   if (options.output.empty()) fail("--output-folder is missing");
 }
@@ -37,36 +38,40 @@ Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   axial::ProgramOptions program{
       "RefinePoses",
-      "turns poses that COLMAP found in photographs taken under water into refractive ones",
+      "computes refractive poses from the poses that COLMAP found for photographs under water",
       {},
       {}};
   program.version = axial::version_line(program.name);
   program.visible
       .add("input-file,i", &input,
-           "COLMAP folder of the raw underwater photographs, with any lens models: the model is in "
-           "DIR/sparse, DIR/sparse/0 or DIR")
+           "COLMAP folder of the raw underwater photographs, with any camera models: the model is "
+           "in DIR/sparse, DIR/sparse/0 or DIR")
       .add("lens", &lens,
-           "the lens in air: cameras.txt or cameras.bin, or a folder with it, or Calibmar's "
-           "calibration.yaml; by camera id, or one for all; a model of COLMAP-Underwater has it")
+           "lens calibrated in air: cameras.txt or cameras.bin, a folder with this file, or "
+           "Calibmar's calibration.yaml; lenses by camera id, or one lens for all cameras; a model "
+           "of COLMAP-Underwater contains it")
       .add("housing", &housing,
-           "housing file: ports the cameras look through; a model of COLMAP-Underwater has them, "
-           "and Calibmar's file")
+           "housing file with the ports of the cameras; a model of COLMAP-Underwater and "
+           "Calibmar's file contain them")
       .add("output-folder,o", &output,
            "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
       .add_with_default("poses", &options.poses,
-                        "adjust, or known: they are right and in metres, and stay; points are "
-                        "placed, and what --refine names is adjusted")
+                        "adjust, or known: the poses are correct and in metres, and are kept; only "
+                        "the points and the values of --refine are estimated")
       .add_with_default("refine", &options.refine_list,
-                        "what else is unknown: any of normal, distance (flat ports), centre "
+                        "other values to adjust: any of normal, distance (flat ports), centre "
                         "(domes), thickness (of the glass), index (of the water), focal");
   axial::pose::declare_sigmas(program.visible, options.sigmas);
-  program.visible.add_with_default("focal-sigma", &options.sigmas.focal, "focal lengths, relative")
+  program.visible
+      .add_with_default("focal-sigma", &options.sigmas.focal,
+                        "standard deviation of the focal lengths, relative")
       .add("scale-from", &options.scale_from,
-           "what is known in metres: images:NAME,NAME,METRES (names with commas in double quotes) "
-           "or "
-           "points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for each image (names may "
-           "hold blanks); without it refraction alone tells the scale, weakly")
-      .add_with_default("scale-sigma", &options.scale_sigma, "how well that is known [m]")
+           "known lengths or positions in metres: images:NAME,NAME,METRES (names with commas in "
+           "double quotes) or points:ID,ID,METRES or positions:FILE with a line NAME X Y Z for "
+           "each image (names may contain blanks); without it, only refraction determines the "
+           "scale, with low precision")
+      .add_with_default("scale-sigma", &options.scale_sigma,
+                        "standard deviation of the lengths or positions of --scale-from [m]")
       .add_with_default("max-error", &options.refine.tracks.max_error,
                         "observations with larger errors are dropped [px]")
       .add_with_default(

@@ -83,7 +83,7 @@ std::vector<std::string> uncertainty_lines(const Results& results, const pose::U
   lines.push_back(
       std::isfinite(scale)
           ? fmt::format("All lengths are known to {:.3g} % (one standard deviation)", scale * 100)
-          : "All lengths: not known: the model has no scale");
+          : "All lengths are unknown: the model has no scale");
   return lines;
 }
 

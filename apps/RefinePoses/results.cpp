@@ -22,7 +22,7 @@ pose::Uncertainty write_results(const fs::path& folder,
     write_atomically(folder / kReport, report_json(results, &known));
     return known;
   } catch (const std::exception& error) {
-    fail("{}: holds the refined model, and only its standard deviations are missing: {}",
+    fail("{}: contains the refined model, only its standard deviations are missing: {}",
          folder.string(), is_out_of_memory(error) ? "memory ran out" : error.what());
   }
 }

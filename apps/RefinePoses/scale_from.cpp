@@ -36,7 +36,7 @@ template <class... Args>
 template <class T>
 T number(const std::string& text, const std::string& where) {
   const std::optional<T> value = parse_number<T>(text);
-  if (!value) fail("{}: '{}' is no number", where, text);
+  if (!value) fail("{}: '{}' is not a number", where, text);
   if constexpr (std::is_floating_point_v<T>)
     if (!std::isfinite(*value)) fail("{}: '{}' is not finite", where, text);
   return *value;
@@ -73,8 +73,10 @@ std::vector<std::string> names_with_commas(const std::vector<std::string>& words
     found = {first, second, words.back()};
   }
   if (found.empty())
-    no_use("{}: the model has no two images of these names; put names with commas in double quotes",
-           where);
+    no_use(
+        "{}: the model does not contain two images with these names; put names with commas in "
+        "double quotes",
+        where);
   return found;
 }
 
@@ -97,7 +99,8 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   std::vector<std::string> words = io::split_list(list, where);
   if (words.size() > 3 && between == KnownDistance::Between::images)
     words = names_with_commas(words, bundle, where);
-  if (words.size() != 3) fail("{}: must name two ends and the metres between them", where);
+  if (words.size() != 3)
+    fail("{}: must give two ends and the distance between them in metres", where);
   KnownDistance known;
   known.between = between;
   const auto end = [&](const std::string& word) {
@@ -108,10 +111,10 @@ KnownDistance known_distance(KnownDistance::Between between, const std::string& 
   known.first = end(words[0]);
   known.second = end(words[1]);
   known.sigma = sigma;
-  if (!(known.metres > 0)) fail("{}: {} m is no distance", where, words[2]);
+  if (!(known.metres > 0)) fail("{}: {} m is not a distance", where, words[2]);
   if (known.first == known.second) fail("{}: both ends are the same", where);
   if (place_of(bundle, between, known.first) == place_of(bundle, between, known.second))
-    no_use("{}: both ends are in one place in the model", where);
+    no_use("{}: both ends have the same position in the model", where);
   return known;
 }
 
@@ -126,8 +129,10 @@ void check_positions(const std::vector<pose::KnownPosition>& positions, const po
     model.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
   }
   if (relative_width(known) < kLineWidth || relative_width(model) < kLineWidth)
-    no_use("{}: the positions lie on one line, which leaves the model free to roll about it",
-           file.string());
+    no_use(
+        "{}: the positions lie on one line, about which the rotation of the model is not "
+        "determined",
+        file.string());
 }
 
 // A survey's list may name photographs that COLMAP found no pose for: skips them with a warning.
@@ -146,8 +151,9 @@ std::vector<pose::KnownPosition> read_positions(const std::filesystem::path& fil
           fmt::format("{}:{}: the model has no image '{}'", file.string(), known.line, known.name));
   }
   if (positions.size() < 3)
-    no_use("{}: {} positions of images of the model, at least 3 are needed{}", file.string(),
-           positions.size(), without_pose.empty() ? "" : "; " + without_pose.front());
+    no_use("{}: contains {} positions of images of the model, at least 3 are needed{}",
+           file.string(), positions.size(),
+           without_pose.empty() ? "" : "; " + without_pose.front());
   for (const std::string& line : without_pose) log_warning("{}", line);
   check_positions(positions, bundle, file);
   return positions;

@@ -35,7 +35,7 @@ void reproduce(const experiments::Experiment& experiment, const Arguments& argum
           console_progress(experiment.name));
   const experiments::Json results = kept_results(experiment, arguments.quick, folder);
   if (results.is_null()) {
-    log_info("{}: other parts are still to be computed", experiment.name);
+    log_info("{}: other parts are not computed yet", experiment.name);
     return;
   }
   write_documents(experiment, arguments, common, results);

@@ -25,18 +25,22 @@ constexpr Chained kChained[] = {
 
 // Options of the experiment that does not repeat one of the paper's.
 void declare_completeness(OptionList& list, Arguments& a) {
-  list.add_with_default("preset", &a.completeness.preset, "completeness: of SimulateUnderwater")
-      .add_with_default("medium", &a.completeness.medium, "completeness: air or water")
-      .add_with_default("poses", &a.completeness.poses,
-                        "completeness: true, or colmap: found in photographs in air")
-      .add("seeds", &a.seeds, "completeness: of the scenes (default: 11,12,13)")
+  list.add_with_default("preset", &a.completeness.preset,
+                        "completeness: preset of SimulateUnderwater")
+      .add_with_default("medium", &a.completeness.medium, "completeness: medium, air or water")
+      .add_with_default(
+          "poses", &a.completeness.poses,
+          "completeness: poses, true or colmap (found by COLMAP in photographs in air)")
+      .add("seeds", &a.seeds, "completeness: seeds of the scenes (default: 11,12,13)")
       .add("tolerance", &a.completeness.tolerance,
-           "completeness: [m] (default: 0.002 for closeup and thicket, 0.005 for others)")
+           "completeness: tolerance [m] (default: 0.002 for closeup and thicket, 0.005 for others)")
       .add("scene-options", &a.scene_options,
-           "completeness: more for SimulateUnderwater, in quotes")
-      .add("dense-options", &a.dense_options, "completeness: more for DensifyPointCloud, in quotes")
+           "completeness: more options of SimulateUnderwater, in quotes")
+      .add("dense-options", &a.dense_options,
+           "completeness: more options of DensifyPointCloud, in quotes")
       .add("work", &a.work,
-           "completeness: folder where scenes and clouds stay for another run (default: they go)");
+           "completeness: folder that keeps scenes and clouds for another run (default: they are "
+           "removed)");
 }
 
 Words words_of(const std::string& text) {
@@ -81,7 +85,7 @@ void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed) {
   for (const char* name : {"preset", "medium", "poses", "seeds", "tolerance", "scene-options",
                            "dense-options", "work"})
     if (given(parsed, name))
-      log_warning("--{}: without effect but on the experiment {}", name, kCompleteness);
+      log_warning("--{}: without effect except on the experiment {}", name, kCompleteness);
 }
 
 ProgramOptions describe(Arguments& a) {
@@ -89,18 +93,19 @@ ProgramOptions describe(Arguments& a) {
   program.name = "ReproducePaper";
   program.version = version_line(program.name);
   program.description =
-      "repeats the paper's experiments, its method beside ours: ReproducePaper EXPERIMENT -o DIR "
-      "with EXPERIMENT figure2, runtime, figure3, figure4, reconstruction, sensitivity, need or "
-      "all, or completeness: clouds of simulated scenes by the number of cameras that see a place";
+      "repeats the paper's experiments with the paper's method and with ours: ReproducePaper "
+      "EXPERIMENT -o DIR, where EXPERIMENT is figure2, runtime, figure3, figure4, reconstruction, "
+      "sensitivity, need, all or completeness (clouds of simulated scenes, by the number of "
+      "cameras that see a place)";
   program.visible
       .add("output,o", &a.output,
-           "folder of the results (required); finished parts found there are not computed again")
+           "folder of the results (required); finished parts in this folder are not computed again")
       .add_switch("quick", &a.quick,
-                  "fewer samples, smaller images: a look in a few minutes, in DIR/quick")
-      .add(
-          "part", &a.part,
-          "compute only the parts whose names begin so; figures and tables come with the last part")
-      .add("page", &a.page, "Markdown page to bring up to date with the results");
+                  "fewer samples and smaller images: results in a few minutes, in DIR/quick")
+      .add("part", &a.part,
+           "compute only the parts whose names begin with this text; the last part also writes "
+           "figures and tables")
+      .add("page", &a.page, "Markdown page to update with the results");
   declare_completeness(program.visible, a);
   // parse_options uses this name for the positional argument.
   program.hidden.add("input-file", &a.experiment, "the experiment");
@@ -137,9 +142,10 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   // Not part of `all`, because it does not repeat an experiment of the paper.
   if (is_completeness(a)) chosen.push_back(completeness_of(a, common));
   if (chosen.empty())
-    fail("'{}' is no experiment: must be {}{} or all", a.experiment, names, kCompleteness);
+    fail("'{}' is not an experiment: must be {}{} or all", a.experiment, names, kCompleteness);
   if (chosen_parts(chosen.front(), a.part).empty())
-    fail("--part {}: begins the name of no part of {}", a.part, a.experiment);
+    fail("--part {}: no part has a name that begins with this text, in the experiment {}", a.part,
+         a.experiment);
   return chosen;
 }
 

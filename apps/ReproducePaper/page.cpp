@@ -38,7 +38,7 @@ void check_page(const std::filesystem::path& page,
     const std::string begin = "<!-- " + experiment.name;
     std::size_t found = text.find(begin);
     if (found == std::string::npos)
-      fail("{}: has no line '{}.md -->' or the like for a table", page.string(), begin);
+      fail("{}: has no line such as '{}.md -->' for a table", page.string(), begin);
     for (; found != std::string::npos; found = text.find(begin, found + 1)) {
       const std::size_t from = text.find("-->", found);
       if (from == std::string::npos) fail("{}: '{}' is not closed", page.string(), begin);

@@ -17,42 +17,42 @@ ProgramOptions describe(Arguments& a) {
   program.version = version_line(program.name);
   program.description = "makes a synthetic scene with ground truth, in air and under water";
   program.visible
-      .add_with_default("preset", &a.preset.name,
-                        "reef, outcrop, closeup, survey, thicket, sand or transect; "
-                        "NAME-hazy: in haze 6/7")
-      .add_with_default("seed", &a.preset.seed, "of everything random")
+      .add_with_default(
+          "preset", &a.preset.name,
+          "reef, outcrop, closeup, survey, thicket, sand or transect; NAME-hazy: with haze 6/7")
+      .add_with_default("seed", &a.preset.seed, "seed of all random numbers")
       .add("output,o", &a.output, "folder of the scene (required)")
-      .add_with_default("views", &a.preset.views, "images (0: the preset's number)")
-      .add_with_default("width", &a.preset.width, "of the images [px]")
-      .add_with_default("height", &a.preset.height, "of the images [px]")
+      .add_with_default("views", &a.preset.views, "number of images (0: the preset's number)")
+      .add_with_default("width", &a.preset.width, "width of the images [px]")
+      .add_with_default("height", &a.preset.height, "height of the images [px]")
       .add_with_default("fov-degrees", &a.preset.horizontal_fov_degrees,
                         "horizontal field of view in air, without the lens's distortion")
-      .add("lens", &a.lens, "a distorted one: OPENCV,k1,k2,p1,p2 or OPENCV_FISHEYE,k1,k2,k3,k4")
+      .add("lens", &a.lens, "distorted lens: OPENCV,k1,k2,p1,p2 or OPENCV_FISHEYE,k1,k2,k3,k4")
       .add_with_default("scale", &a.preset.scale,
-                        "of the scene and the views' distances, not of the port")
+                        "scale of the scene and of the views' distances, not of the port")
       .add_with_default("coarseness", &a.preset.coarseness,
-                        "of the mesh: the distance between its vertices times this")
-      .add_with_default("relief", &a.preset.relief, "of the scene's heights")
+                        "factor for the distance between the vertices of the mesh")
+      .add_with_default("relief", &a.preset.relief, "factor for the scene's heights")
       .add_with_default("samples", &a.samples, "rays along each side of a pixel")
       .add("port-distance", &a.port_distance, "camera centre to glass [m]")
-      .add("port-thickness", &a.port_thickness, "of the glass [m]")
-      .add("tilt-degrees", &a.tilt_degrees, "of the port against the optical axis")
+      .add("port-thickness", &a.port_thickness, "thickness of the glass [m]")
+      .add("tilt-degrees", &a.tilt_degrees, "tilt of the port against the optical axis")
       .add("water-level", &a.water_level,
-           "height of a water surface that cameras in the air look through, in place of a port [m]")
-      .add("dome-radius", &a.dome_radius, "inner radius of a dome in place of the flat port [m]")
-      .add_with_default("dome-x", &a.dome_x, "camera centre to dome centre [m]")
-      .add_with_default("dome-y", &a.dome_y, "camera centre to dome centre [m]")
-      .add_with_default("dome-z", &a.dome_z, "camera centre to dome centre [m]")
-      .add("n-glass", &a.n_glass, "refractive index")
-      .add("n-water", &a.n_water, "refractive index")
+           "height of a water surface below cameras in air, which replaces the port [m]")
+      .add("dome-radius", &a.dome_radius,
+           "inner radius of a dome, which replaces the flat port [m]")
+      .add_with_default("dome-x", &a.dome_x, "x: camera centre to dome centre [m]")
+      .add_with_default("dome-y", &a.dome_y, "y: camera centre to dome centre [m]")
+      .add_with_default("dome-z", &a.dome_z, "z: camera centre to dome centre [m]")
+      .add("n-glass", &a.n_glass, "refractive index of the glass")
+      .add("n-water", &a.n_water, "refractive index of the water")
       .add("haze", &a.haze,
            "share of the light that the medium, water or air, scatters into view, 0 to 1 (default: "
-           "the preset's, 0 but for NAME-hazy)")
-      .add_with_default("noise", &a.noise, "standard deviation [grey levels]")
-      .add_with_default("jpeg-quality", &a.jpeg_quality, "1 to 100")
+           "the preset's value, which is 0 except for NAME-hazy)")
+      .add_with_default("noise", &a.noise, "standard deviation of the noise [grey levels]")
+      .add_with_default("jpeg-quality", &a.jpeg_quality, "JPEG quality, 1 to 100")
       .add_with_default("truth", &a.truth, "write distances and normals of the images")
-      .add_switch("truth-only", &a.truth_only,
-                  "write mesh.ply, distances and normals, nothing else")
+      .add_switch("truth-only", &a.truth_only, "write only mesh.ply, distances and normals")
       .add_with_default("medium", &a.medium, "air, water or both");
   return program;
 }
@@ -84,7 +84,7 @@ void apply_lens_option(simulate::Preset& preset, const Arguments& a) {
     fail("--lens is '{}': must have {} coefficients", a.lens, bend.k.size());
   for (std::size_t i = 0; i < bend.k.size(); ++i) {
     const auto number = parse_finite<double>(parts[i + 1]);
-    if (!number) fail("--lens is '{}': '{}' is no number", a.lens, parts[i + 1]);
+    if (!number) fail("--lens is '{}': '{}' is not a number", a.lens, parts[i + 1]);
     bend.k[i] = *number;
   }
   preset.lens.bend = bend;
@@ -97,7 +97,8 @@ void apply_port_options(simulate::Preset& preset, const Arguments& a, const Pars
   for (const char* of_housing :
        {"port-distance", "port-thickness", "tilt-degrees", "dome-radius", "n-glass"})
     if (surface && given(parsed, of_housing))
-      fail("--{} is of a housing, and --water-level puts the cameras in the air", of_housing);
+      fail("--{} is for a housing, but with --water-level the cameras are in air without a housing",
+           of_housing);
   if (surface) preset.water_level = a.water_level;
   if (given(parsed, "port-distance")) port.distance = a.port_distance;
   if (given(parsed, "port-thickness")) port.thickness = a.port_thickness;
@@ -105,7 +106,7 @@ void apply_port_options(simulate::Preset& preset, const Arguments& a, const Pars
   const bool dome = given(parsed, "dome-radius");
   for (const char* of_flat : {"port-distance", "tilt-degrees"})
     if (dome && given(parsed, of_flat))
-      fail("--{} is of a flat port, and --dome-radius makes a dome", of_flat);
+      fail("--{} is for a flat port, but --dome-radius makes a dome", of_flat);
   for (const char* of_dome : {"dome-x", "dome-y", "dome-z"})
     if (!dome && given(parsed, of_dome)) fail("--{} needs --dome-radius", of_dome);
   if (dome) port.dome = simulate::Dome{{a.dome_x, a.dome_y, a.dome_z}, a.dome_radius};

@@ -40,7 +40,7 @@ bash apps/pipeline/install-deps.sh
 stage "Build"
 build_programs
 
-stage "Ground truth of the scene '$scene', remade from its seed"
+stage "Ground truth of the scene '$scene', simulated again from its seed"
 make_truth "$scene" "$truth"
 
 lens=$(pinhole_parameters "$data/sparse")
@@ -48,7 +48,7 @@ stage "Poses from the photographs in air (COLMAP, true intrinsics)"
 colmap_model "$data/air" "$work/poses" PINHOLE "$lens" fixed
 align_to_truth "$work/poses/model" "$data/sparse" "$work/poses/metric"
 
-stage "Poses as it is done today: COLMAP calibrates a lens from the photographs under water"
+stage "Poses without a port: COLMAP calibrates a lens from the photographs under water"
 colmap_model "$data/water" "$work/poses-today" OPENCV "$lens,0,0,0,0" free
 align_to_truth "$work/poses-today/model" "$data/sparse" "$work/poses-today/metric"
 
@@ -93,7 +93,7 @@ depth_pictures() {
   done
 }
 
-stage "Against the truth"
+stage "Comparison with the ground truth"
 wet=(--housing "$data/housing.json")
 evaluate air evaluation
 evaluate refractive evaluation "${wet[@]}"

@@ -25,7 +25,7 @@ done
 as_root=()
 if [[ $EUID -ne 0 ]]; then
   command -v sudo >/dev/null || {
-    echo "install-deps.sh: not root and no sudo; as root, run: apt-get install ${missing[*]}" >&2
+    echo "install-deps.sh: cannot install packages: not root, and sudo not found; run as root: apt-get install ${missing[*]}" >&2
     exit 1
   }
   as_root=(sudo)

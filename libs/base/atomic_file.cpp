@@ -111,7 +111,7 @@ AbandonedOnce& abandoned_once() {
 // Not all libraries that write files report a full disk when they close the file. fsync() does.
 void flush_to_disk(const std::filesystem::path& temporary) {
   const int descriptor = ::open(temporary.c_str(), O_RDONLY);
-  if (descriptor < 0) fail("the temporary file vanished");
+  if (descriptor < 0) fail("the temporary file was removed");
   const int result = ::fsync(descriptor);
   const int error = errno;
   ::close(descriptor);
@@ -239,7 +239,7 @@ class Staging {
     for (const std::filesystem::path& file : found) {
       make_folder((folder_ / file).parent_path());
       if (std::filesystem::is_directory(folder_ / file))
-        fail("{}: is a folder, where a file is to be written", (folder_ / file).string());
+        fail("{}: cannot be written: is a folder", (folder_ / file).string());
     }
     for (const std::filesystem::path& file : found) std::filesystem::remove(folder_ / file);
     for (const std::filesystem::path& file : found) move(path_ / file, folder_ / file);

@@ -69,7 +69,7 @@ std::uint64_t container_limit(const fs::path& root) {
 std::uint64_t available_memory(const fs::path& root) {
   const auto available = mem_available(root);
   if (!available)
-    fail("{}: says no MemAvailable; give --max-memory", (root / "proc/meminfo").string());
+    fail("{}: has no value MemAvailable; give --max-memory", (root / "proc/meminfo").string());
   return std::min(*available, container_limit(root));
 }
 

@@ -31,20 +31,21 @@ namespace {
 po::options_description common_options(CommonOptions& common, const ProgramOptions& program,
                                        std::string& working_folder) {
   const std::string verbosity =
-      "0: warnings only; 1: also what each stage did; 2: also how far it is; 3 and above: also "
+      "0: warnings only; 1: also the result of each stage; 2: also the progress; 3 and above: also "
       "details" +
       program.when_verbose;
   po::options_description generic("Generic options");
   generic.add_options()("help,h", "print this help")("version", "print the version")(
       "working-folder,w", po::value(&working_folder),
-      "base of relative paths (default: current folder)")(
+      "folder for relative paths (default: current folder)")(
       "config-file,c", po::value(&common.config_file)->default_value(program.name + ".cfg"),
-      "file with option values, 'name = value' a line")(
+      "file with option values, one 'name = value' per line")(
       "archive-type", po::value(&common.archive_type)->default_value(-1),
-      "scene format: -1 (interchange .mvs), which also 0 to 3 fall back to")(
-      "log-file", po::value(&common.log_file), "file to add the log's lines to, errors included")(
+      "scene format: -1 (interchange .mvs), which is also written for 0 to 3")(
+      "log-file", po::value(&common.log_file),
+      "file to which the lines of the log are added, including errors")(
       "process-priority", po::value(&common.process_priority)->default_value(-1),
-      "below zero lowers the process's priority")(
+      "below 0: lowers the priority of the process")(
       "max-threads", po::value(&common.max_threads)->default_value(0), "threads (0: all cores)")(
       "verbosity,v", po::value(&common.verbosity)->default_value(2), verbosity.c_str());
   return generic;
@@ -191,7 +192,7 @@ void apply(CommonOptions& common) {
         "(-1)",
         common.archive_type);
   common.archive_type = -1;
-  if (common.max_threads > 1024) fail("--max-threads {}: at most 1024", common.max_threads);
+  if (common.max_threads > 1024) fail("--max-threads {}: must be at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
   constexpr std::array kLevels{LogLevel::warning, LogLevel::info, LogLevel::debug, LogLevel::trace};
   set_log_level(kLevels[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);

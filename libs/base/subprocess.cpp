@@ -20,7 +20,8 @@ namespace {
 class Pipe {
  public:
   Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0) fail("a pipe: {}", std::strerror(errno));
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0)
+      fail("a pipe cannot be made: {}", std::strerror(errno));
   }
   ~Pipe() {
     close_write_end();
@@ -62,7 +63,7 @@ std::string last_line(std::string text) {
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) fail("waiting for process {}: {}", child, std::strerror(errno));
+    if (errno != EINTR) fail("waiting for process {} failed: {}", child, std::strerror(errno));
   return status;
 }
 
@@ -99,7 +100,7 @@ bool run_unless_excused(const std::vector<std::string>& command, const std::file
       if (said.find(excuse) != std::string::npos) return false;
   const std::string how = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status))
                                               : fmt::format("exit code {}", WEXITSTATUS(status));
-  fail("{}: {} (all it said is in {}): {}", command[0], how, log.string(), last_line(said));
+  fail("{}: {} (all of its output is in {}): {}", command[0], how, log.string(), last_line(said));
 }
 
 std::filesystem::path program_folder() {

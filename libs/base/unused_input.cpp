@@ -8,11 +8,11 @@ namespace axial {
 
 void UnusedInput::declare(OptionList& list, bool& allowed) {
   list.add_switch("allow-missing", &allowed,
-                  "go on, with a warning, where something that was given cannot be used");
+                  "continue with a warning if a given input cannot be used");
 }
 
 void UnusedInput::report(const std::string& line) {
-  if (!allowed_) fail("{} (--allow-missing goes on without it)", line);
+  if (!allowed_) fail("{} (--allow-missing continues without it)", line);
   log_warning("{}; it is not used", line);
   lines_.push_back(line);
 }

@@ -132,7 +132,7 @@ std::vector<std::string> gaps(const Calibration& calibration) {
   if (steepest < kSteepEnough)
     missing.push_back(fmt::format("a board tilted by {} degrees or more", kSteepEnough));
   if (far < kFarEnough * near)
-    missing.push_back(fmt::format("another distance than {:.2f} m", near));
+    missing.push_back(fmt::format("a distance other than {:.2f} m", near));
   return missing;
 }
 
@@ -169,12 +169,13 @@ void require_known(const Calibration& calibration, const Limits& limits) {
   if (worst.ratio <= 1) return;
   const pose::FreeValue& value = worst.value;
   std::string said = fmt::format(
-      "{} photographs leave the {} known to +- {:.2g} {}, allowed are {:.2g}",
+      "{} photographs determine the {} to +- {:.2g} {} only, allowed is +- {:.2g}",
       calibration.views.size(), value.name, value.sigma, value.unit, limit_of(value, limits));
   if (const auto missing = gaps(calibration); !missing.empty())
     said += fmt::format("; no photograph shows {}", fmt::join(missing, ", nor "));
   if (const auto next = next_photograph(calibration, limits))
-    said += fmt::format("; what would help most is {} (then +- {:.2g})", words_for(next->board),
+    said += fmt::format("; the most useful next photograph shows {} (then +- {:.2g})",
+                        words_for(next->board),
                         next->sigmas(static_cast<Eigen::Index>(value.number)) * value.scale);
   throw Error(said);
 }

@@ -24,7 +24,7 @@ std::vector<std::string> split(const std::string& text, char at) {
 template <class T>
 T number(const std::string& word, const std::string& text) {
   const std::optional<T> value = parse_number<T>(word);
-  if (!value) fail("{}: '{}' is no number", text, word);
+  if (!value) fail("{}: '{}' is not a number", text, word);
   return *value;
 }
 
@@ -32,7 +32,7 @@ double metres(const std::string& word, const std::string& text) {
   const auto length = number<double>(word, text);
   constexpr double kLargest = 10;
   if (!(length > 0 && length <= kLargest))
-    fail("{}: '{}' is no length in metres from 0 to {}", text, word, kLargest);
+    fail("{}: '{}' is not a length in metres from 0 to {}", text, word, kLargest);
   return length;
 }
 

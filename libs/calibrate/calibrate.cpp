@@ -15,8 +15,8 @@ constexpr std::size_t kMinViews = 3;    // photographs
 void require_views(std::size_t count) {
   if (count < kMinViews)
     fail(
-        "{} photographs show {} corners of the board or more, at least {} are needed, better 20: "
-        "near each edge of the image, tilted, near and far",
+        "{} photographs show {} or more corners of the board, at least {} are needed; 20 are "
+        "better, with the board near each edge of the image, tilted, near and far",
         count, kMinCorners, kMinViews);
 }
 
@@ -24,8 +24,8 @@ void require_views(std::size_t count) {
 void require_fitting(std::size_t count, std::size_t of, const std::string& what) {
   if (count < kMinViews)
     fail(
-        "only {} of {} photographs {}, at least {} are needed: are this the board, the lens in air "
-        "and the kind of port?",
+        "only {} of {} photographs {}, at least {} are needed: check the board, the lens "
+        "calibrated in air and the kind of port",
         count, of, what, kMinViews);
 }
 
@@ -101,11 +101,11 @@ Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<doubl
   const std::size_t shown = calibration.views.size();
   place_boards(calibration.bundle.bundle);
   leave_out_unobserved(calibration);
-  require_fitting(calibration.views.size(), shown, "tell where the board is");
+  require_fitting(calibration.views.size(), shown, "determine the pose of the board");
   adjust_in_rounds(calibration, options);
   leave_out_unobserved(calibration);
   require_fitting(calibration.views.size(), shown,
-                  fmt::format("have {} corners or more that fit", kMinCorners));
+                  fmt::format("have {} or more corners that fit", kMinCorners));
   calibration.uncertainty = uncertainty(calibration.bundle.bundle, calibration.adjust);
   return calibration;
 }

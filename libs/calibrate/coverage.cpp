@@ -30,8 +30,8 @@ class Drawing {
 
   void head(const std::string& title) {
     svg_.text(kMargin, 22, title, io::Anchor::kStart, "title");
-    svg_.text(kMargin, 40, "blue: up to the RMS; orange: to twice; red: more", io::Anchor::kStart,
-              "small");
+    svg_.text(kMargin, 40, "error: blue: up to the RMS; orange: up to twice the RMS; red: larger",
+              io::Anchor::kStart, "small");
   }
 
   void grid() {

@@ -44,7 +44,7 @@ constexpr std::array<std::pair<std::string_view, int>, 21> kDictionaries{
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const Board& board, const std::string& where) {
   for (const auto& [name, number] : kDictionaries)
     if (name == board.dictionary) return cv::aruco::getPredefinedDictionary(number);
-  fail("{}: '{}' is none of OpenCV's dictionaries of markers (4X4_50, APRILTAG_36h11, ...)", where,
+  fail("{}: '{}' is not a dictionary of markers of OpenCV (4X4_50, APRILTAG_36h11, ...)", where,
        board.dictionary);
 }
 
@@ -127,7 +127,8 @@ void check_markers(const Board& board, const std::string& where) {
   const int needed = board.kind == BoardKind::charuco ? squares / 2 : squares;
   const int there = dictionary_of(board, where)->bytesList.rows;
   if (needed > there)
-    fail("{}: {} markers, but the dictionary {} has {}", where, needed, board.dictionary, there);
+    fail("{}: needs {} markers, but the dictionary {} has {}", where, needed, board.dictionary,
+         there);
 }
 
 // OpenCV has these positions in single precision. They are computed again as whole multiples of the

@@ -18,7 +18,7 @@ std::uint32_t nearest_view(const PointCloud& cloud, std::size_t point, const Sce
   double least = std::numeric_limits<double>::infinity();
   for (const std::uint32_t image : cloud.views_of(point)) {
     if (image >= scene.images.size()) {
-      fail("point {}: view of image {}, but there are {} images", point, image,
+      fail("point {}: refers to image {}, but there are {} images", point, image,
            scene.images.size());
     }
     const double depth = scene.images[image].pose.to_camera(X).z();

@@ -67,7 +67,8 @@ void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
   std::unordered_map<std::uint32_t, std::size_t> slot_of;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].image >= scene.images.size()) {
-      fail("fusion: image {} of {}", views[i].image, scene.images.size());
+      fail("fusion: image {} is not in the scene, which has {} images", views[i].image,
+           scene.images.size());
     }
     if (!slot_of.emplace(views[i].image, i).second) {
       fail("fusion: image {} is given twice", views[i].image);

@@ -17,14 +17,14 @@ void check(const DepthMap& map, const cv::Mat3b& color) {
   const auto agrees = [&](const cv::Mat& image) { return image.empty() || image.size() == size; };
   if (size.empty()) fail("{}: the depth map is empty", map.image_path);
   if (map.camera.width != size.width || map.camera.height != size.height) {
-    fail("{}: the depth map is {}x{}, but its camera {}x{}", map.image_path, size.width,
+    fail("{}: the depth map is {}x{}, but its camera is {}x{}", map.image_path, size.width,
          size.height, map.camera.width, map.camera.height);
   }
   if (!agrees(map.normal)) fail("{}: normals and depths differ in size", map.image_path);
   if (!agrees(map.confidence)) fail("{}: confidence and depths differ in size", map.image_path);
   if (!agrees(color)) {
-    fail("{}: the image is {}x{}, but the depth map {}x{}", map.image_path, color.cols, color.rows,
-         size.width, size.height);
+    fail("{}: the image is {}x{}, but the depth map is {}x{}", map.image_path, color.cols,
+         color.rows, size.width, size.height);
   }
 }
 

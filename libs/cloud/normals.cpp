@@ -60,7 +60,7 @@ void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbo
   const bool has_views = cloud.view_begin.size() == cloud.size() + 1;
   for (const std::uint32_t image : cloud.view_images) {
     if (image >= scene.images.size()) {
-      fail("cloud: view of image {}, but there are {} images", image, scene.images.size());
+      fail("cloud: refers to image {}, but there are {} images", image, scene.images.size());
     }
   }
   cloud.normals.assign(cloud.size(), Eigen::Vector3f(0, 0, 1));

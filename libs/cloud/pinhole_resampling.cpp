@@ -116,7 +116,7 @@ PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
   const cv::Size size(view.camera.width, view.camera.height);
   if (photograph.size() != cv::Size(camera.width, camera.height) || surface.size() != size ||
       (!opaque.empty() && opaque.size() != photograph.size()) || guess.empty())
-    fail("the photograph, {}x{}, or its depths are of another size than their camera, {}x{}",
+    fail("the photograph ({}x{}) or its depth map has another size than the camera ({}x{})",
          photograph.cols, photograph.rows, camera.width, camera.height);
   PinholeImage image{cv::Mat3b(size), cv::Mat1b(size)};
   constexpr int kRows = 32;
@@ -133,7 +133,7 @@ PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
 
 DepthMap resampled(const DepthMap& map, const PinholeView& view, const cv::Mat1f& surface) {
   if (surface.size() != cv::Size(view.camera.width, view.camera.height))
-    fail("{}: the surface is {}x{}, but its camera {}x{}", map.image_path, surface.cols,
+    fail("{}: the surface is {}x{}, but its camera is {}x{}", map.image_path, surface.cols,
          surface.rows, view.camera.width, view.camera.height);
   DepthMap result;
   result.image_path = map.image_path;

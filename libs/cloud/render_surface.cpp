@@ -93,7 +93,7 @@ void fill_row(const Camera& camera, const DepthMap& map, const PinholeView& view
 
 cv::Mat1f render_surface(const DepthMap& map, const PinholeView& view) {
   if (map.depth.size() != cv::Size(map.camera.width, map.camera.height))
-    fail("{}: the depth map is {}x{}, but its camera {}x{}", map.image_path, map.width(),
+    fail("{}: the depth map is {}x{}, but its camera is {}x{}", map.image_path, map.width(),
          map.height(), map.camera.width, map.camera.height);
   cv::Mat1f inverse(view.camera.height, view.camera.width, 0.0f);
   std::vector<Vertex> above(static_cast<std::size_t>(map.width())), row = above;

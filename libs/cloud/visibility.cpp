@@ -54,7 +54,7 @@ std::vector<std::vector<std::uint32_t>> points_of_images(const Scene& scene) {
     std::uint32_t previous = kNoId;
     for (const SparseView& view : scene.points[i].views) {
       if (view.image >= scene.images.size())
-        fail("points[{}]: view of image {}, but there are {} images", i, view.image,
+        fail("points[{}]: refers to image {}, but there are {} images", i, view.image,
              scene.images.size());
       if (view.image != previous) points[view.image].push_back(static_cast<std::uint32_t>(i));
       previous = view.image;

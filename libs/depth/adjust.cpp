@@ -264,7 +264,7 @@ DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const Depth
                                 const AdjustOptions& options) {
   check(reference);
   if (!reference.depth.isContinuous())
-    fail("{}: the depth map is a part of another", reference.image_path);
+    fail("{}: the depth map is a part of a larger depth map", reference.image_path);
   neighbours = neighbours.first(std::min(neighbours.size(), options.max_neighbours));
   Adjuster adjuster{reference, options, rays_of(reference), {}};
   for (const DepthMap& neighbour : neighbours) {

@@ -47,8 +47,8 @@ void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std:
 
   const QuadImage& image = *source.image;
   if (std::max(image.width(), image.height()) > lanes::kLargestSide)
-    fail("a source image is {}x{}, but matching takes at most {} pixels a side", image.width(),
-         image.height(), lanes::kLargestSide);
+    fail("a source image is {}x{}, but matching supports at most {} pixels along a side",
+         image.width(), image.height(), lanes::kLargestSide);
   const auto pixels =
       static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
   if (tables.words.size() + pixels > std::numeric_limits<std::int32_t>::max())

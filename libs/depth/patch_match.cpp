@@ -97,11 +97,11 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
                                           planes);
         else if constexpr (std::is_same_v<decltype(cameras[0]), const AnyCamera<float>&>)
           fail(
-              "the homography is the paper's warp for one kind of port: images behind flat ports "
-              "and behind domes are matched together with the affine one");
+              "the warp homography is only for one kind of port: use the warp affine for images "
+              "behind flat ports and domes");
         else
           fail(
-              "the homography is the paper's warp for straight lenses: undistort the images "
+              "the warp homography is only for lenses without distortion: undistort the images "
               "(InterfaceCOLMAP --undistort 1)");
       },
       make_camera_list<float>(level.cameras, input.projection));
@@ -233,8 +233,8 @@ void check(const MatchInput& input, const PatchMatchOptions& options) {
   constexpr int kMost = kMaxCandidates;
   if (2 * pairs > kMost || options.restart_trials > kMost || 3 + options.search_planes > kMost)
     fail(
-        "{} pairs of trials, {} restarts and {} random planes beside three at a pixel: at most {} "
-        "planes are scored at once",
+        "{} pairs of trials, {} restarts and {} random plane hypotheses besides three at a pixel: "
+        "at most {} plane hypotheses are scored at once",
         pairs, options.restart_trials, options.search_planes, kMost);
 }
 

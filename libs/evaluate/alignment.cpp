@@ -22,7 +22,8 @@ Eigen::Matrix3Xd columns(std::span<const Eigen::Vector3d> points) {
 void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
   if (!points.allFinite()) fail("a {} position is not finite", which);
   if (!(relative_width(points) > kLineWidth))
-    fail("the {} {} positions lie on one line: they fix no similarity", points.cols(), which);
+    fail("the {} {} positions lie on one line: they do not determine a similarity", points.cols(),
+         which);
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   if (source.size() != target.size())
     fail("{} positions cannot be fitted to {}", source.size(), target.size());
   if (source.size() < 3)
-    fail("{} common positions are too few for a similarity: it takes 3", source.size());
+    fail("{} common positions are too few for a similarity, at least 3 are needed", source.size());
   const Eigen::Matrix3Xd from = columns(source);
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
@@ -67,7 +68,8 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
     apart.push_back(found->second.rotation.transpose() * image.pose.rotation);
   }
   if (source.size() < 3)
-    fail("the models have {} images of the same name: a similarity takes 3", source.size());
+    fail("the models have {} images with the same name, a similarity needs at least 3",
+         source.size());
   result.similarity = fit_similarity(source, target);
   double sum = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
@@ -91,7 +93,7 @@ std::vector<std::string> not_matched(const CentreAlignment& alignment,
     if (count++ == 0) first = &image.name;
   }
   if (count == 0) return {};
-  return {fmt::format("{} of {} centres are of no image of the model, and do not count, first {}",
+  return {fmt::format("{} of {} centres belong to no image of the model and are ignored, first {}",
                       count, reference.images.size(), *first)};
 }
 

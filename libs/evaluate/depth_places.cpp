@@ -124,9 +124,11 @@ const DepthMap* first_source(const PlacedMap& placed, std::span<const PlacedMap>
 PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
                    const PlaceOptions& options) {
   if (truth.size() != cv::Size(camera.width, camera.height) || truth.size() != grey.size())
-    fail("a camera of {} x {}, a truth of {} x {} and a photograph of {} x {}: must be the same",
-         camera.width, camera.height, truth.cols, truth.rows, grey.cols, grey.rows);
-  if (options.reach < 1) fail("a reach of {}: must be at least 1 pixel", options.reach);
+    fail(
+        "the camera is {} x {}, the truth {} x {} and the photograph {} x {}: the sizes must be "
+        "the same",
+        camera.width, camera.height, truth.cols, truth.rows, grey.cols, grey.rows);
+  if (options.reach < 1) fail("reach is {}: must be at least 1 pixel", options.reach);
   const cv::Mat1b edges = edges_of(truth, options);
   const cv::Mat1f deviations = deviations_of(grey, options.reach);
   const double least_cosine = std::cos(options.steep_degrees * std::numbers::pi / 180);

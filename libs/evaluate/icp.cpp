@@ -91,7 +91,8 @@ Vector6d solve_step(const std::vector<Pair>& pairs, const Eigen::Vector3d& centr
 
 IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& surface,
                        const IcpOptions& options) {
-  if (points.size() < 6) fail("{} points are too few to align a cloud: it takes 6", points.size());
+  if (points.size() < 6)
+    fail("{} points are too few to align a cloud, at least 6 are needed", points.size());
   const auto sampled = subsample(points, options.samples, options.seed);
   const Frame frame = frame_of(sampled);
   if (!std::isfinite(frame.radius) || !(frame.radius > 0))

@@ -117,7 +117,8 @@ std::vector<RecallOfThickness> recall_by_thickness(const Places& places,
                                                    std::span<const float> thickness,
                                                    std::span<const View> views) {
   if (thickness.size() != truth.vertices.size())
-    fail("the truth has {} thicknesses for {} vertices", thickness.size(), truth.vertices.size());
+    fail("the truth has {} values of thickness for {} vertices", thickness.size(),
+         truth.vertices.size());
   const std::vector<float> widths = pixel_widths(places.positions, views, surface);
   std::vector<RecallOfThickness> classes = thickness_classes(tolerances.size());
   for (std::size_t i = 0; i < places.size(); ++i) {

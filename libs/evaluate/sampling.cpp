@@ -23,7 +23,7 @@ std::vector<double> cumulative_area(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     for (const std::uint32_t corner : mesh.faces[i])
       if (corner >= mesh.vertices.size())
-        fail("face {} of the mesh names vertex {}, but there are {}", i, corner,
+        fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
              mesh.vertices.size());
     const Eigen::Vector3d a = mesh.vertices[mesh.faces[i][0]].cast<double>();
     const Eigen::Vector3d e1 = mesh.vertices[mesh.faces[i][1]].cast<double>() - a;

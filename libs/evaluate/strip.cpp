@@ -61,10 +61,10 @@ void compare_pieces(Strip& strip) {
 }  // namespace
 
 void require_strip(std::span<const View> views) {
-  if (views.size() < 3) fail("{} views are no strip: at least 3 are needed", views.size());
+  if (views.size() < 3) fail("{} views are not a strip: at least 3 are needed", views.size());
   const double width = relative_width(centres_of(views));
   if (!(width <= kLargestWidth))
-    fail("the camera centres are no strip: {:.2f} times as wide as long", width);
+    fail("the camera centres are not a strip: they are {:.2f} times as wide as long", width);
 }
 
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
@@ -85,7 +85,8 @@ Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places&
   // Views at (almost) one place would give a huge number of pieces.
   constexpr double kMostPieces = 1e5;
   const double pieces = std::ceil(length / spacing * static_cast<double>(kPiecesOfSpacing));
-  if (!(pieces <= kMostPieces)) fail("the camera centres are no strip: {} m apart", spacing);
+  if (!(pieces <= kMostPieces))
+    fail("the camera centres are not a strip: they are {} m apart", spacing);
   const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(pieces));
   for (std::size_t k = 0; k < count; ++k) {
     const auto at = [&](std::size_t end) {

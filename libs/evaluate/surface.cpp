@@ -40,7 +40,7 @@ void check(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     for (const std::uint32_t corner : mesh.faces[i])
       if (corner >= mesh.vertices.size())
-        fail("face {} of the mesh names vertex {}, but there are {}", i, corner,
+        fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
              mesh.vertices.size());
 }
 

@@ -19,10 +19,11 @@ CameraModel dry_camera(const io::ColmapCamera& camera) {
   model.height = static_cast<int>(camera.height);
   model.distortion = io::lens_distortion(camera);
   if (!lens && !model.distortion)
-    fail("camera {} is {}: expected a lens that is matched as it is", camera.id, camera.model);
+    fail("camera {}: its model {} needs undistortion, which is not done here", camera.id,
+         camera.model);
   model.lens = lens ? *lens : io::undistorted_lens(camera);
   if (model.distortion && !(distorted_lens<double>(model).field > 0))
-    fail("camera {}: the distortion of its {} lens turns the image over", camera.id, camera.model);
+    fail("camera {}: the distortion of its {} lens mirrors the image", camera.id, camera.model);
   return model;
 }
 
@@ -84,7 +85,7 @@ std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing
   for (const io::ColmapImage& image : model.images) {
     const auto camera = cameras.find(image.camera);
     if (camera == cameras.end())
-      fail("image {} names camera {}, which the model does not have", image.name, image.camera);
+      fail("image {} refers to camera {}, which the model does not have", image.name, image.camera);
     View view{image.name, camera->second, image.pose};
     if (housing)
       view.camera.port =

@@ -20,7 +20,7 @@ std::string series_title(const std::string& series) {
   if (series == "plane_degrees") return "plane angle [degrees]";
   if (series == "n_glass") return "refractive index of the glass";
   if (series == "n_water") return "refractive index of the water";
-  fail("'{}' is no parameter of the simulations", series);
+  fail("'{}' is not a parameter of the simulations", series);
 }
 
 std::string value_title(const std::string& series, double value) {

@@ -64,7 +64,7 @@ Variation vary(const std::string& series, double value, int stereo_number) {
   else if (series == "n_water")
     camera.n_water = value;
   else
-    fail("'{}' is no parameter of the simulations", series);
+    fail("'{}' is not a parameter of the simulations", series);
   return variation;
 }
 

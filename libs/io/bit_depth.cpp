@@ -44,8 +44,8 @@ int largest_bits(std::span<const fs::path> photographs, std::size_t at_once) {
 
 void declare_bit_depth(OptionList& list, int& bit_depth) {
   list.add_with_default("bit-depth", &bit_depth,
-                        "bits that the values of 16-bit images use, 8 to 16 (0: as many as the "
-                        "largest value in all images needs)");
+                        "number of bits that the values of 16-bit images use, 8 to 16 (0: as many "
+                        "as the largest value in all images needs)");
 }
 
 void check_bit_depth(int bit_depth) {
@@ -64,7 +64,7 @@ int common_bit_depth(std::span<const fs::path> photographs, std::span<const Imag
   }
   if (asked != 0) return asked;
   const int bits = largest_bits(wide, decodes_that_fit(headers));
-  log_info("The values of {} images of 16 bits use {} (see --bit-depth)", wide.size(), bits);
+  log_info("The values of {} images of 16 bits use {} bits (see --bit-depth)", wide.size(), bits);
   return bits;
 }
 

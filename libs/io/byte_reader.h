@@ -65,9 +65,8 @@ class ByteReader {
 
   void require_room(std::uint64_t number, std::uint64_t min_bytes, std::string_view field) const {
     if (number > left() / min_bytes)
-      fail(
-          "{}: {} is said to have {} elements, but only {} bytes are left (truncated or malformed)",
-          file_, field, number, left());
+      fail("{}: {} should have {} elements, but only {} bytes are left (truncated or malformed)",
+           file_, field, number, left());
   }
 
   // Reads a 64-bit length, then that many bytes.

@@ -63,7 +63,7 @@ class YamlKeys {
     std::vector<T> result;
     for (const std::string& text : words(key)) {
       const auto value = parse_finite<T>(text);
-      if (!value) fail("{}: {} has '{}', which is no valid number here", file_, key, text);
+      if (!value) fail("{}: {} has '{}', which is not a valid number", file_, key, text);
       result.push_back(*value);
     }
     return result;
@@ -84,7 +84,7 @@ class YamlKeys {
     if (line.front() == '-' && !key_.empty() && (line.size() == 1 || line[1] == ' '))
       return add_word(line.substr(1));
     const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos) fail("{}: '{}' is no 'key: value'", where, line);
+    if (colon == std::string_view::npos) fail("{}: '{}' is not 'key: value'", where, line);
     key_ = unquoted(trimmed(line.substr(0, colon)));
     if (!values_.try_emplace(key_).second) fail("{}: key '{}' occurs twice", where, key_);
     const std::string_view value = trimmed(line.substr(colon + 1));
@@ -97,7 +97,8 @@ class YamlKeys {
     const std::size_t end = text.find(']');
     if (end != std::string_view::npos) {
       if (!trimmed(text.substr(end + 1)).empty())
-        fail("{}: '{}' behind the list of {}", where, trimmed(text.substr(end + 1)), key_);
+        fail("{}: unexpected '{}' after the list of {}", where, trimmed(text.substr(end + 1)),
+             key_);
       open_ = false;
       text = text.substr(0, end);
     }
@@ -122,7 +123,7 @@ refractive::Port<double> read_port(const YamlKeys& yaml, const std::string& file
   const std::string word = yaml.word("non_svp_model");
   if (!is_port_word(
           word))  // before its numbers: an unknown kind of port may have another number of them
-    fail("{}: non_svp_model: the port '{}' is neither FLATPORT nor DOMEPORT nor NONE", file, word);
+    fail("{}: non_svp_model: the port '{}' is not FLATPORT, DOMEPORT or NONE", file, word);
   const std::vector<double> values = yaml.numbers<double>("non_svp_parameters");
   if (values.size() != kPortNumbers)
     fail("{}: non_svp_parameters has {} numbers, expected {}", file, values.size(), kPortNumbers);

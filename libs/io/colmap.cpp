@@ -68,7 +68,8 @@ void require_unique_names(const ColmapModel& model, const std::string& where) {
     const std::string path = fs::path(image.name).lexically_normal().generic_string();
     const auto [other, added] = seen.emplace(path, image.id);
     if (!added)
-      fail("{}: images {} and {} have one name, {}", where, other->second, image.id, image.name);
+      fail("{}: images {} and {} have the same name, {}", where, other->second, image.id,
+           image.name);
   }
 }
 
@@ -111,7 +112,7 @@ fs::path find_colmap_model(const fs::path& folder) {
     fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),
          places[0].string(), places[1].string(), places[2].string());
   if (const auto others = other_models(places, *taken); !others.empty())
-    log_info("{}: is the model that is read, and not {}", taken->string(), fmt::join(others, ", "));
+    log_info("{}: this model is read; ignored: {}", taken->string(), fmt::join(others, ", "));
   return *taken;
 }
 

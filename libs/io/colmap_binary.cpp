@@ -111,8 +111,8 @@ std::string cameras_as_bytes(const ColmapModel& model, const std::string& file, 
   for (const ColmapCamera& camera : model.cameras) {
     const int id = colmap_model_id(camera.model, dialect);
     if (id < 0)
-      fail("{}: camera {} has model '{}', which these binary files lack", file, camera.id,
-           camera.model);
+      fail("{}: camera {} has model '{}', which this binary format does not support", file,
+           camera.id, camera.model);
     check_colmap_camera(camera, file);
     out.write(camera.id);
     out.write(static_cast<std::int32_t>(id));
@@ -133,7 +133,7 @@ std::string images_as_bytes(const ColmapModel& model, const std::string& file) {
   out.count(model.images.size());
   for (const ColmapImage& image : model.images) {
     if (image.name.empty() || image.name.find('\0') != std::string::npos)
-      fail("{}: image {} has an empty name or one with a NUL", file, image.id);
+      fail("{}: image {} has an empty name or a name with a NUL", file, image.id);
     const ColmapPose pose = pose_to_colmap(image.pose);
     out.write(image.id);
     out.write(std::span(pose));

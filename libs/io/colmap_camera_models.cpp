@@ -81,11 +81,11 @@ int colmap_focal_count(std::string_view name) {
 
 Pose pose_from_colmap(const ColmapPose& values, const std::string& where) {
   for (const double value : values)
-    if (!std::isfinite(value)) fail("{}: the pose holds {}", where, value);
+    if (!std::isfinite(value)) fail("{}: the pose contains {}", where, value);
   const Eigen::Vector4d q = Eigen::Vector4d(values[0], values[1], values[2], values[3]);
   const double norm = q.stableNorm();
   if (!(norm > 1e-6) || !std::isfinite(norm))
-    fail("{}: the quaternion {} {} {} {} is no rotation", where, q[0], q[1], q[2], q[3]);
+    fail("{}: the quaternion {} {} {} {} is not a rotation", where, q[0], q[1], q[2], q[3]);
   const Eigen::Vector4d unit = q / norm;
   Pose pose;
   pose.rotation = rotation_from(unit[0], unit[1], unit[2], unit[3]);

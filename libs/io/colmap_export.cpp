@@ -71,7 +71,7 @@ class Cameras {
 std::string name_below(const SceneImage& image, const fs::path& folder) {
   const fs::path name = fs::path(image.path).lexically_normal().lexically_relative(folder);
   if (name.empty() || *name.begin() == ".." || *name.begin() == ".")
-    fail("{}: does not lie below the image folder {}", image.path, folder.string());
+    fail("{}: is not in the image folder {}", image.path, folder.string());
   return name.generic_string();
 }
 

@@ -116,7 +116,7 @@ struct Rivals {
 
   void warn() const {
     if (taken.empty()) return;
-    log_warning("{}: {} {} read, as COLMAP does, and not {}, which {} from {}", folder.string(),
+    log_warning("{}: {} {} read, as in COLMAP; ignored: {}, which {} from {}", folder.string(),
                 fmt::join(taken, ", "), taken.size() == 1 ? "is" : "are",
                 fmt::join(passed_over, ", "), taken.size() == 1 ? "differs" : "differ",
                 taken.size() == 1 ? "it" : "them");
@@ -137,7 +137,7 @@ bool holds_model(const fs::path& folder, ModelForm form) {
 ModelForm model_form(const fs::path& folder) {
   for (const ModelForm form : {ModelForm::binary, ModelForm::text})
     if (holds_model(folder, form)) return form;
-  fail("{}: holds no whole COLMAP model: {} are missing of a text model, {} of a binary one",
+  fail("{}: contains no complete COLMAP model: a text model lacks {}, a binary model lacks {}",
        folder.string(), missing_parts(folder, ModelForm::text),
        missing_parts(folder, ModelForm::binary));
 }

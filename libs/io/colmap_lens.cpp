@@ -347,8 +347,8 @@ refractive::PinholeLens<double> pinhole_inside(const ColmapCamera& camera,
   double narrow = 4, wide = 0.5;
   if (!whole_border_seen(camera, parts, zoomed(narrow)))
     fail(
-        "{}: camera {} ({}) cannot be undistorted: its image shows less than a quarter of a "
-        "pinhole's",
+        "{}: camera {} ({}) cannot be undistorted: its image covers less than a quarter of a "
+        "pinhole image",
         name, camera.id, camera.model);
   if (whole_border_seen(camera, parts, zoomed(wide))) return zoomed(wide);
   for (int i = 0; i < 40; ++i) {

@@ -35,12 +35,12 @@ void keep_lens(const ColmapCamera& from, const refractive::LensDistortion<double
   camera.distortion = distortion;
   const auto lens = distorted_lens<double>(camera);
   if (!(lens.field > 0))
-    fail("{}: camera {}: the distortion of its {} lens turns the image over", model_folder.string(),
+    fail("{}: camera {}: the distortion of its {} lens mirrors the image", model_folder.string(),
          from.id, from.model);
   if (!lens.shows_all(camera.width, camera.height))
     log_warning(
-        "{}: camera {} ({}): its lens is not defined as far as the corners of its image; pixels "
-        "beyond are not matched",
+        "{}: camera {} ({}): its camera model is not defined up to the corners of the image; "
+        "pixels outside its range are not matched",
         model_folder.string(), from.id, from.model);
 }
 
@@ -58,8 +58,10 @@ ImportedCamera import_camera(const ColmapCamera& camera, const ColmapImport& imp
   const auto distortion = lens_distortion(camera);
   const bool resampled = !lens && (import.undistort || !distortion);
   if (!lens && !import.undistort && !distortion)
-    log_info("camera {} ({}): images are undistorted: not a lens that is matched as it is",
-             camera.id, camera.model);
+    log_info(
+        "camera {} ({}): images are undistorted, because this camera model cannot be matched "
+        "directly",
+        camera.id, camera.model);
   if (lens) imported.camera.lens = *lens;
   if (resampled) imported.camera.lens = pinhole_inside(camera, model_folder.string());
   if (!lens && !resampled) imported.camera.lens = undistorted_lens(camera);
@@ -107,7 +109,7 @@ std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<b
   const std::vector<FoundMask> found = find_masks(requests);
   const RivalMasks rivals = rival_masks(found);
   if (rivals.count > 0)
-    log_warning("{}: is used, and {}, which differs, is not ({} images have such masks)",
+    log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
                 rivals.used.string(), rivals.other.string(), rivals.count);
   std::vector<fs::path> masks(found.size());
   for (std::size_t i = 0; i < masks.size(); ++i)
@@ -121,12 +123,12 @@ void check_undistorted_names(const ColmapModel& model, std::span<const Distorted
                              const ColmapImport& import) {
   std::error_code error;
   if (fs::equivalent(import.image_folder, import.undistorted_folder, error))
-    fail("{}: holds the images to undistort, and would be overwritten",
+    fail("{}: contains the images to undistort and would be overwritten",
          import.undistorted_folder.string());
   for (const ColmapImage& image : model.images) {
     const fs::path name = image.name;
     if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
-      fail("{}: image {}: name '{}' is not below the image folder", import.model_folder.string(),
+      fail("{}: image {}: name '{}' is not in the image folder", import.model_folder.string(),
            image.id, image.name);
   }
   require_apart(distorted, import.model_folder);
@@ -179,8 +181,10 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
     scene.point_colors.push_back(point.color);
   }
   if (repetitions > 0)
-    log_info("{}: {} observations are of an image that sees the point already, and do not count",
-             import.model_folder.string(), repetitions);
+    log_info(
+        "{}: {} observations are ignored, because another observation in the same image belongs to "
+        "the same point",
+        import.model_folder.string(), repetitions);
 }
 
 // The name of `image` in the scene's housing. `path` is its path in the scene.
@@ -201,8 +205,10 @@ void check_ports(const Housing& resolved, const Scene& scene,
     const std::string& read =
         entry == resolved.images.end() ? resolved.default_port : entry->second;
     if (read != ports[i])
-      fail("{}: its port is '{}', but by the end of its path it would get '{}': rename a folder",
-           path, ports[i], read);
+      fail(
+          "{}: its port is '{}', but the end of its path matches an image with port '{}': rename a "
+          "folder",
+          path, ports[i], read);
   }
 }
 

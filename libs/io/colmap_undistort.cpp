@@ -117,7 +117,7 @@ void require_apart(std::span<const DistortedImage> images, const fs::path& model
     const std::string undistorted = undistorted_name(image).generic_string();
     const auto [other, added] = taken.try_emplace(lower(undistorted), &image.name);
     if (!added)
-      fail("{}: the images {} and {} would both be undistorted to {}: rename one of them",
+      fail("{}: the images {} and {} would both be undistorted to {}: rename one image",
            model_folder.string(), *other->second, image.name, undistorted);
   }
 }

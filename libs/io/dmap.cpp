@@ -60,8 +60,8 @@ cv::Mat1f converted(const cv::Mat1f& depth, const CameraModel& model, const std:
         const DepthAlongRay ray = depth_along_ray(camera, u, v);
         const auto other = static_cast<float>(convert(ray, static_cast<double>(value)));
         if (!(value > 0 && std::isfinite(value) && other > 0 && std::isfinite(other)))
-          fail("{}: depth at pixel ({}, {}) is {}, which is no depth before this camera", file, u,
-               v, value);
+          fail("{}: depth at pixel ({}, {}) is {}, which is not a valid depth for this camera",
+               file, u, v, value);
         result(v, u) = other;
       }
   };
@@ -106,7 +106,7 @@ CameraModel read_camera(ByteReader& in, cv::Size image_size) {
   in.read(std::span(k.data(), 9), "K");
   if (!k.allFinite() || !(k(0, 0) > 0) || !(k(1, 1) > 0) || k(0, 1) != 0 || k(1, 0) != 0 ||
       k(2, 0) != 0 || k(2, 1) != 0 || k(2, 2) != 1)
-    fail("{}: K is no calibration matrix without skew: {} {} {} {} {} {} {} {} {}", in.file(),
+    fail("{}: K is not a calibration matrix without skew: {} {} {} {} {} {} {} {} {}", in.file(),
          k(0, 0), k(0, 1), k(0, 2), k(1, 0), k(1, 1), k(1, 2), k(2, 0), k(2, 1), k(2, 2));
   CameraModel camera;
   camera.width = image_size.width;
@@ -142,7 +142,8 @@ struct Header {
 
 // The header of the .dmap file alone: z-depth, a camera without a port.
 Header parse_header(ByteReader& in) {
-  if (in.take(2, "magic") != "DR") fail("{}: is no .dmap: it does not start with DR", in.file());
+  if (in.take(2, "magic") != "DR")
+    fail("{}: is not a .dmap file: it does not start with DR", in.file());
   const auto content = in.read<std::uint8_t>("content flags");
   if (!(content & kDepth) || content > (kDepth | kNormals | kConfidence | kViews))
     fail("{}: content flags are {}", in.file(), content);
@@ -230,7 +231,7 @@ void check_map(const DepthMap& map, const std::string& file) {
   const cv::Size size = map.depth.size();
   if (map.depth.empty()) fail("{}: the depth map is empty", file);
   if (size != cv::Size(map.camera.width, map.camera.height))
-    fail("{}: the depth map is {}x{}, but its camera {}x{}", file, size.width, size.height,
+    fail("{}: the depth map is {}x{}, but its camera is {}x{}", file, size.width, size.height,
          map.camera.width, map.camera.height);
   if ((!map.normal.empty() && map.normal.size() != size) ||
       (!map.confidence.empty() && map.confidence.size() != size))
@@ -312,7 +313,7 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
   const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
   if (side) {
     if (side->content != fingerprint_of(bytes))
-      fail("{}: is not the depth map that {} describes", file, dmap_side_path(path).string());
+      fail("{}: is not the depth map to which {} belongs", file, dmap_side_path(path).string());
     use_side_file(*side, dmap_side_path(path).string(), stored);
   }
   map.image_path = resolved_image(map.image_path, path);
@@ -338,7 +339,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
   std::error_code error;
   const std::uint64_t wanted = in.position() + header.bytes_of_pixels();
   if (const std::uint64_t found = fs::file_size(path, error); error || found != wanted)
-    fail("{}: has {} bytes, but its header says {}", file, found, wanted);
+    fail("{}: has {} bytes, but needs {} according to its header", file, found, wanted);
   StoredDepthMap stored{std::move(header.map), {}};
   if (use == DmapSide::used)
     if (const auto side = read_dmap_side_file(path))

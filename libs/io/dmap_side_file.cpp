@@ -55,7 +55,7 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
   if (root.has("distortion")) {
     side.camera.distortion = distortion_from_json(root.at("distortion"));
     if (!(distorted_lens<double>(side.camera).field > 0))
-      fail("{}.distortion is no lens's: the image would be turned over", root.where);
+      fail("{}.distortion is not a valid lens: it mirrors the image", root.where);
   }
   if (const JsonPlace port = root.at("port"); !port.json.is_null())
     // A water surface is a flat port at a distance that equals the camera's height, which has no

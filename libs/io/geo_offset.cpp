@@ -26,7 +26,7 @@ Eigen::Vector3d offset_from(const JsonPlace& place) {
       !std::ranges::all_of(json, [](const auto& number) { return number.is_number(); }))
     fail("{} is {}, expected three numbers", place.where, to_text(json));
   const Eigen::Vector3d offset(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-  if (!offset.allFinite()) fail("{} holds a number that is not finite", place.where);
+  if (!offset.allFinite()) fail("{} contains a number that is not finite", place.where);
   return offset;
 }
 
@@ -45,7 +45,8 @@ void warn_if_far(const Scene& scene, const fs::path& file) {
   const double left = frame_of(scene).origin.norm();
   if (left > kFar)
     log_warning(
-        "{}: the scene's cameras are {:.0f} m from the origin that it names: is it this scene's?",
+        "{}: the scene's cameras are {:.0f} m from this origin: check that the file belongs to the "
+        "scene",
         file.string(), left);
 }
 
@@ -89,8 +90,9 @@ LocalFrame enter_local_frame(Scene& scene, const fs::path& scene_path) {
   const LocalFrame frame = frame_of(scene);
   if (frame.is_world()) return frame;
   log_warning(
-      "{}: lies far from the origin: coordinates count from ({}, {}, {}) in what is written; its "
-      "sparse points are float and known to {:.2g} m only (InterfaceCOLMAP keeps their digits)",
+      "{}: is far from the origin: the output's coordinates are relative to ({}, {}, {}); the "
+      "sparse points are float and have a resolution of only {:.2g} m (InterfaceCOLMAP keeps all "
+      "digits)",
       scene_path.string(), frame.origin.x(), frame.origin.y(), frame.origin.z(), float_step(scene));
   enter(frame, scene);
   return frame;

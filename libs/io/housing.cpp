@@ -27,10 +27,10 @@ std::string port_name(const JsonPlace& place, const char* key, const Housing& ho
 }
 
 void read_ports(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [name, unused] : place.json.items()) {
     if (name == kDry || name.empty())
-      fail("{}: '{}' cannot be the name of a port ('none' means dry)", place.where, name);
+      fail("{}: '{}' cannot be the name of a port ('none' means no port)", place.where, name);
     const JsonPlace port = place.at(name);
     housing.ports[name] = is_water_surface(port) ? HousingPort(water_surface_from_json(port))
                                                  : to_housing_port(port_from_json(port));
@@ -38,17 +38,17 @@ void read_ports(const JsonPlace& place, Housing& housing) {
 }
 
 void read_cameras(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [key, unused] : place.json.items()) {
     const auto id = parse_number<std::uint32_t>(key);
-    if (!id) fail("{}: key '{}' is no COLMAP camera id", place.where, key);
+    if (!id) fail("{}: key '{}' is not a COLMAP camera id", place.where, key);
     if (housing.cameras.contains(*id)) fail("{}: camera {} occurs twice", place.where, *id);
     housing.cameras[*id] = port_name(place, key.c_str(), housing);
   }
 }
 
 void read_images(const JsonPlace& place, Housing& housing) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [key, unused] : place.json.items()) {
     if (key.empty()) fail("{}: an image name is empty", place.where);
     housing.images[key] = port_name(place, key.c_str(), housing);
@@ -110,7 +110,7 @@ struct Carried {
   const std::string& name;
 
   refractive::Port<double> operator()(const WaterSurface&) const {
-    fail("port '{}' is a water surface, which is another port for every pose", name);
+    fail("port '{}' is a water surface, which is a different port for every pose", name);
   }
   refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
 };
@@ -157,7 +157,7 @@ void check_port(const HousingPort& port, const std::string& where) {
 void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
   for (const auto& [name, port] : housing.ports)
     if (std::holds_alternative<WaterSurface>(port))
-      fail("{}: housing.ports.{} is a water surface, expected ports that go with the camera",
+      fail("{}: housing.ports.{} is a water surface, expected ports that are fixed to the camera",
            file.string(), name);
 }
 
@@ -247,13 +247,13 @@ void attach_ports(Scene& scene, const Housing& housing, const std::string& file)
       attach(image, housing.default_port, housing, file);
     } else {
       fail(
-          "{}: housing.cameras names ports by COLMAP camera, which a scene does not know: give "
-          "{} an entry under housing.images (InterfaceCOLMAP --housing writes them)",
+          "{}: housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
+          "an entry for {} under housing.images (InterfaceCOLMAP --housing writes these entries)",
           file, image.path);
     }
   }
   for (const auto& [name, unused] : housing.images)
-    if (!used.contains(name)) log_warning("{}: no image goes by images.{}", file, name);
+    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file, name);
   warn_of_ports_in_scene(scene, housing, file);
 }
 

@@ -104,16 +104,16 @@ cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int fla
   }
   if (!image.empty()) return image;
   if (const auto format = unread_format(bytes); !format.empty())
-    fail("{}: is {}, a format that is not supported; JPEG, PNG and TIFF are", path.string(),
-         format);
+    fail("{}: is {}, a format that is not supported; supported are JPEG, PNG and TIFF",
+         path.string(), format);
   if (!opencv_knows(path))
-    fail("{}: is in no image format that is supported, such as JPEG, PNG and TIFF", path.string());
+    fail("{}: is not in a supported image format, such as JPEG, PNG and TIFF", path.string());
   fail("{}: cannot be decoded: truncated or damaged", path.string());
 }
 
 cv::Mat read_as_stored(const fs::path& path) {
   const std::string bytes = read_image_bytes(path);
-  if (!is_tiff(bytes)) fail("{}: is no TIFF", path.string());
+  if (!is_tiff(bytes)) fail("{}: is not a TIFF", path.string());
   return decode_by_opencv(bytes, path, cv::IMREAD_UNCHANGED);
 }
 
@@ -132,8 +132,8 @@ Photograph decode_rare(const std::string& bytes, const fs::path& path) {
   cv::Mat pixels = decode_by_opencv(bytes, path, flags);
   if (pixels.depth() != CV_8U && pixels.depth() != CV_16U)
     fail(
-        "{}: pixels are floating-point or signed numbers; photographs have unsigned ones of 8 or "
-        "16 bits",
+        "{}: pixels are floating-point or signed numbers; photographs must have unsigned numbers "
+        "of 8 or 16 bits",
         path.string());
   if (pixels.channels() == 1) cv::cvtColor(pixels, pixels, cv::COLOR_GRAY2BGR);
   if (pixels.channels() < 3) fail("{}: has {} channels", path.string(), pixels.channels());
@@ -245,8 +245,10 @@ cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits) {
 cv::Mat1w read_label_image(const fs::path& path) {
   const cv::Mat image = without_copies(decode_labels(read_image_bytes(path), path));
   if (image.channels() != 1 || (image.depth() != CV_8U && image.depth() != CV_16U))
-    fail("{}: is no label image: {} channels of {} bytes, expected one of 1 or 2 bytes",
-         path.string(), image.channels(), image.elemSize1());
+    fail(
+        "{}: is not a label image: it has {} channels of {} bytes, expected one channel of 1 or 2 "
+        "bytes",
+        path.string(), image.channels(), image.elemSize1());
   cv::Mat1w labels;
   image.convertTo(labels, CV_16U);
   return labels;
@@ -261,7 +263,7 @@ void check_mask_shape(const fs::path& mask, cv::Size size, cv::Size image) {
 cv::Mat1f read_float_tiff(const fs::path& path) {
   const cv::Mat image = read_as_stored(path);
   if (image.type() != CV_32FC1)
-    fail("{}: is no image of one float channel ({} channels of {} bytes)", path.string(),
+    fail("{}: is not an image of one float channel ({} channels of {} bytes)", path.string(),
          image.channels(), image.elemSize1());
   return image;
 }
@@ -269,7 +271,7 @@ cv::Mat1f read_float_tiff(const fs::path& path) {
 cv::Mat3f read_float3_tiff(const fs::path& path) {
   const cv::Mat image = read_as_stored(path);
   if (image.type() != CV_32FC3)
-    fail("{}: is no image of three float channels ({} channels of {} bytes)", path.string(),
+    fail("{}: is not an image of three float channels ({} channels of {} bytes)", path.string(),
          image.channels(), image.elemSize1());
   cv::Mat3f channels_in_order;
   cv::cvtColor(image, channels_in_order, cv::COLOR_BGR2RGB);

@@ -40,8 +40,8 @@ std::vector<ByImage::const_iterator> entries_of_all(const ByImage& entries,
     if (found[i] == entries.end()) continue;
     const auto [image, first] = image_of.emplace(found[i]->first, names[i]);
     if (!first && image->second != names[i])
-      fail("{}{} could be {} or {}: write as much of the path as tells them apart", where,
-           found[i]->first, image->second, names[i]);
+      fail("{}{} matches {} and {}: give more of the path", where, found[i]->first, image->second,
+           names[i]);
   }
   return found;
 }

@@ -120,12 +120,13 @@ class Tiff {
   void check() const {
     if (format == SAMPLEFORMAT_IEEEFP || format == SAMPLEFORMAT_COMPLEXIEEEFP)
       fail(
-          "{}: pixels are floating-point numbers of {} bits; photographs have whole ones of 8 or "
-          "16",
+          "{}: pixels are floating-point numbers of {} bits; photographs must have whole numbers "
+          "of 8 or 16",
           path_.string(), bits);
     if (format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_COMPLEXINT || bits == 0 || bits > 16)
-      fail("{}: pixels are {} numbers of {} bits; photographs have unsigned ones of 8 or 16",
-           path_.string(), format == SAMPLEFORMAT_UINT ? "unsigned" : "signed", bits);
+      fail(
+          "{}: pixels are {} numbers of {} bits; photographs must have unsigned numbers of 8 or 16",
+          path_.string(), format == SAMPLEFORMAT_UINT ? "unsigned" : "signed", bits);
     check_image_size({static_cast<int>(std::min<std::uint32_t>(width, INT32_MAX)),
                       static_cast<int>(std::min<std::uint32_t>(height, INT32_MAX))},
                      path_);

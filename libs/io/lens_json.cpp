@@ -17,7 +17,7 @@ void read_list(const JsonPlace& place, const char* key, std::span<double> number
     fail("{}.{} is {}, expected at most {} numbers", place.where, key, to_text(list),
          numbers.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!list[i].is_number()) fail("{}.{}[{}] is no number", place.where, key, i);
+    if (!list[i].is_number()) fail("{}.{}[{}] is not a number", place.where, key, i);
     numbers[i] = list[i].get<double>();
   }
 }
@@ -44,7 +44,7 @@ refractive::LensDistortion<double> distortion_from_json(const JsonPlace& place) 
   lens.p2 = tangential[1];
   read_list(place, "thin_prism", {lens.prism.data(), 2});
   if (!(lens.spread > 0))
-    fail("{}.spread is {}, expected a positive one", place.where, lens.spread);
+    fail("{}.spread is {}, expected a positive number", place.where, lens.spread);
   if (!(lens.above[0] > 0))
     fail("{}.radial begins with {}, expected a positive number", place.where, lens.above[0]);
   return lens;

@@ -26,16 +26,16 @@ std::string lens_name(const JsonPlace& place, const char* key, const Lenses& len
 }
 
 void read_definitions(const JsonPlace& place, Lenses& lenses) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [name, unused] : place.json.items()) {
     if (name == kStraight || name.empty())
-      fail("{}: '{}' cannot be the name of a lens ('none' means straight)", place.where, name);
+      fail("{}: '{}' cannot be the name of a lens ('none' means no distortion)", place.where, name);
     lenses.lenses[name] = distortion_from_json(place.at(name));
   }
 }
 
 void read_images(const JsonPlace& place, Lenses& lenses) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [key, unused] : place.json.items()) {
     if (key.empty()) fail("{}: an image name is empty", place.where);
     lenses.images[key] = lens_name(place, key.c_str(), lenses);
@@ -81,7 +81,7 @@ void check_names(const Lenses& lenses, const Scene& scene, const fs::path& file)
         name == kStraight ? std::nullopt : std::optional(lenses.lenses.at(name));
     if (read != image.camera.distortion)
       fail(
-          "{}: images: {} would get the lens '{}' of another by the end of its path: rename a "
+          "{}: images: the end of the path of {} matches another image, with lens '{}': rename a "
           "folder",
           file.string(), path, name);
   }
@@ -152,11 +152,11 @@ void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
     if (name == kStraight) continue;
     image.camera.distortion = lenses.lenses.at(name);
     if (!images_anything(image.camera))
-      fail("{}: lenses.{}: is no lens of {}: the image would be turned over", file.string(), name,
+      fail("{}: lenses.{}: is not a valid lens for {}: it mirrors the image", file.string(), name,
            image.path);
   }
   for (const auto& [name, unused] : lenses.images)
-    if (!used.contains(name)) log_warning("{}: no image goes by images.{}", file.string(), name);
+    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file.string(), name);
 }
 
 bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {

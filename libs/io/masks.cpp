@@ -54,7 +54,7 @@ class MaskFolder {
   MaskFolder(const fs::path& folder, const std::unordered_set<std::string>& images)
       : folder_(folder), images_(images) {
     std::error_code error;
-    if (!fs::is_directory(folder, error)) fail("{}: is no folder of masks", folder.string());
+    if (!fs::is_directory(folder, error)) fail("{}: is not a folder of masks", folder.string());
     for (const std::string& image : images) count(image);
   }
 
@@ -78,7 +78,7 @@ class MaskFolder {
     if (folders.empty()) folders.push_back(place(image.parent_path().filename()).string());
     found.looked_for = fmt::format("{} in {}", words_of(names), in_words(folders));
     if (!shared.empty())
-      found.looked_for += fmt::format(" (not in {}: several images are called {} there)",
+      found.looked_for += fmt::format(" (not in {}, because several images have the name {} there)",
                                       in_words(shared), image.stem().string());
   }
 
@@ -146,8 +146,8 @@ void refuse_shared(std::span<const MaskRequest> requests, std::span<const FoundM
     if (path.empty() || path == requests[i].named) continue;
     const auto [other, first] = owner.emplace(path.string(), i);
     if (!first && requests[other->second].image != requests[i].image)
-      fail("{}: would be the mask of both {} and {}: name them {}.png and {}.png", path.string(),
-           requests[other->second].image.string(), requests[i].image.string(),
+      fail("{}: would be the mask of both {} and {}: name the masks {}.png and {}.png",
+           path.string(), requests[other->second].image.string(), requests[i].image.string(),
            requests[other->second].image.filename().string(),
            requests[i].image.filename().string());
   }

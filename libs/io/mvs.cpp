@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kLargestSide = 1'000'000;
 
 Eigen::Vector3d checked_centre(const Eigen::Vector3d& centre, const std::string& where) {
-  if (!centre.allFinite()) fail("{} holds a value that is not finite", where);
+  if (!centre.allFinite()) fail("{} contains a value that is not finite", where);
   return centre;
 }
 
@@ -35,14 +35,16 @@ Pose compose(const MvsPose& camera, const MvsPose& platform, const std::string& 
 }
 
 void check_intrinsics(const Eigen::Matrix3d& k, const std::string& where) {
-  if (!k.allFinite()) fail("{} K holds a value that is not finite", where);
+  if (!k.allFinite()) fail("{} K contains a value that is not finite", where);
   if (!(k(0, 0) > 0) || !(k(1, 1) > 0))
-    fail("{} K has the focal lengths {} and {}, they must be positive", where, k(0, 0), k(1, 1));
+    fail("{} K has the focal lengths {} and {}, which must be positive", where, k(0, 0), k(1, 1));
   if (std::abs(k(0, 1)) > 1e-9 * k(0, 0))
     fail("{} K has the skew {}: only pixels without skew are supported", where, k(0, 1));
   if (k(1, 0) != 0 || k(2, 0) != 0 || k(2, 1) != 0 || k(2, 2) != 1)
-    fail("{} K is no calibration matrix: below its diagonal it is {}, {}, {}, its corner is {}",
-         where, k(1, 0), k(2, 0), k(2, 1), k(2, 2));
+    fail(
+        "{} K is not a calibration matrix: the values below its diagonal are {}, {}, {}, the value "
+        "in its corner is {}",
+        where, k(1, 0), k(2, 0), k(2, 1), k(2, 2));
 }
 
 // The principal point of a normalised K on one axis [px]. S is the longer side (docs/formats.md).
@@ -81,7 +83,7 @@ CameraModel camera_model(const MvsCamera& camera, const fs::path& image, const s
 
 std::string resolved_path(std::string name, const fs::path& working_folder,
                           const std::string& where) {
-  if (name.find('\0') != std::string::npos) fail("{} holds a NUL", where);
+  if (name.find('\0') != std::string::npos) fail("{} contains a NUL", where);
   std::ranges::replace(name, '\\', '/');
   return (working_folder / name).lexically_normal().string();
 }
@@ -112,10 +114,12 @@ void check_scores(const MvsImage& record, std::size_t index, std::size_t images,
     if (!std::isfinite(depth)) fail("{} has a depth statistic of {}", where, depth);
   for (const ViewScore& score : record.view_scores) {
     if (score.image >= images || score.image == index)
-      fail("{}.viewScores names image {}, but there are {} and it cannot be its own neighbour",
-           where, score.image, images);
+      fail(
+          "{}.viewScores refers to image {}, but there are {}, and an image cannot be its own "
+          "neighbour",
+          where, score.image, images);
     if (!std::isfinite(score.scale + score.angle + score.area + score.score))
-      fail("{}.viewScores for image {} holds a value that is not finite", where, score.image);
+      fail("{}.viewScores for image {} contains a value that is not finite", where, score.image);
   }
 }
 
@@ -146,7 +150,7 @@ void check_points(MvsFile& mvs, const std::string& file) {
            point.position.z());
     for (const SparseView& view : point.views) {
       if (view.image >= mvs.images.size())
-        fail("{}: vertices[{}].views names image {}, but there are {}", file, i, view.image,
+        fail("{}: vertices[{}].views refers to image {}, but there are {}", file, i, view.image,
              mvs.images.size());
       if (!std::isfinite(view.confidence))
         fail("{}: vertices[{}].views has the confidence {}", file, i, view.confidence);
@@ -223,7 +227,8 @@ MvsCamera normalised_record(const CameraModel& model) {
       denormalised(camera.k, {model.width, model.height}).lens;
   if (std::hypot(read.cx - lens.cx, read.cy - lens.cy) > 1e-6)
     fail(
-        "--normalize 1: a principal point at ({}, {}) of {}x{} pixels would be read as another one",
+        "normalized intrinsics: a principal point at ({}, {}) of {}x{} pixels would be read as "
+        "another point",
         lens.cx, lens.cy, model.width, model.height);
   return camera;
 }
@@ -301,7 +306,7 @@ void write_mvs(const fs::path& path, const Scene& scene, const fs::path& working
   for (const SceneImage& image : scene.images)
     mvs.images.push_back(image_record(image, base, intrinsics, mvs));
   if (mvs.images.size() < 2 || mvs.platforms.empty())
-    fail("{}: a scene needs two images and a calibrated camera, this one has {} images", file,
+    fail("{}: a scene needs two images and a calibrated camera, this scene has {} images", file,
          mvs.images.size());
   mvs.points = scene.points;
   mvs.normals = scene.point_normals;

@@ -229,11 +229,12 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   if (bytes.empty()) fail("{}: is empty", file);
   if (bytes.starts_with("MVS\0"sv))
     fail(
-        "{}: is a native OpenMVS project, which only OpenMVS can read: re-save it there with "
-        "--archive-type -1",
+        "{}: is a native OpenMVS project, which only OpenMVS can read: save it again with OpenMVS "
+        "and --archive-type -1",
         file);
   if (!bytes.starts_with("MVSI")) {
-    if (!has_mvs_extension(file)) fail("{}: is no .mvs scene: it does not start with MVSI", file);
+    if (!has_mvs_extension(file))
+      fail("{}: is not a .mvs scene: it does not start with MVSI", file);
     ByteReader in(bytes, file + " (no MVSI header, so read as version 0)");
     return read_body(in, 0);
   }
@@ -242,7 +243,7 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   const auto version = in.read<std::uint32_t>("version");
   in.read<std::uint32_t>("header");
   if (version < 1 || version > kMvsVersion)
-    fail("{}: version is {}, but 1 to {} are known", file, version, kMvsVersion);
+    fail("{}: version is {}, but 1 to {} are supported", file, version, kMvsVersion);
   return read_body(in, version);
 }
 

@@ -38,7 +38,7 @@ std::optional<PlyType> type_named(std::string_view name) {
 PlyType parse_type(TextLine& line, std::string_view field) {
   const std::string_view name = line.word(field);
   const auto type = type_named(name);
-  if (!type) fail("{}: {} is '{}', which is no PLY type", line.where(), field, name);
+  if (!type) fail("{}: {} is '{}', which is not a PLY type", line.where(), field, name);
   return *type;
 }
 
@@ -53,7 +53,7 @@ PlyFormat parse_format(TextLine& line) {
   if (name == "ascii") return PlyFormat::kAscii;
   if (name == "binary_little_endian") return PlyFormat::kLittleEndian;
   if (name == "binary_big_endian") return PlyFormat::kBigEndian;
-  fail("{}: format is '{}', which is no PLY format", line.where(), name);
+  fail("{}: format is '{}', which is not a PLY format", line.where(), name);
 }
 
 void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
@@ -116,7 +116,7 @@ std::size_t ply_size(PlyType type) {
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
   const std::string_view text = without_byte_order_mark(bytes);
   if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n"))
-    fail("{}: is no PLY file (does not start with 'ply')", file);
+    fail("{}: is not a PLY file (does not start with 'ply')", file);
   TextReader reader(bytes, file);
   PlyHeader header;
   bool has_format = false;
@@ -137,7 +137,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
     } else if (keyword == "property") {
       parse_property(*line, header.elements);
     } else if (keyword != "end_header") {
-      fail("{}: '{}' is no PLY header keyword", line->where(), keyword);
+      fail("{}: '{}' is not a PLY header keyword", line->where(), keyword);
     }
     if (!line->rest().empty()) fail("{}: unexpected '{}'", line->where(), line->rest());
     if (keyword == "end_header") {
@@ -165,7 +165,7 @@ void PlyBody::require_rows(const PlyElement& element) const {
          element.count);
   const std::uint64_t left = format_ == PlyFormat::kAscii ? text_.size() : reader_.left();
   if (row > 0 && element.count > left / row)
-    fail("{}: truncated: element {} is said to have {} rows, but only {} bytes are left",
+    fail("{}: truncated: element {} should have {} rows, but only {} bytes are left",
          reader_.file(), element.name, element.count, left);
 }
 
@@ -194,7 +194,7 @@ double PlyBody::ascii(PlyType type, const std::string& name) {
     const auto [lowest, highest] = kRanges[static_cast<std::size_t>(type)];
     good = value >= lowest && value <= highest && value == std::trunc(value);
   }
-  if (!good) fail("{}: {} is '{}', which is no value of its type", reader_.file(), name, token);
+  if (!good) fail("{}: {} is '{}', which is not a value of its type", reader_.file(), name, token);
   return value;
 }
 
@@ -226,7 +226,7 @@ std::size_t PlyBody::list_size(const PlyProperty& property) {
   const std::size_t left =
       format_ == PlyFormat::kAscii ? text_.size() / 2 : reader_.left() / ply_size(property.type);
   if (size < 0 || size > static_cast<double>(left))
-    fail("{}: list {} is said to have {} values, which the file cannot hold", reader_.file(),
+    fail("{}: list {} should have {} values, which the file cannot contain", reader_.file(),
          property.name, size);
   return static_cast<std::size_t>(size);
 }

@@ -107,7 +107,7 @@ void require_finite(const Eigen::Vector3f& v, const char* field, std::size_t row
 
 std::uint32_t as_index(double value, const char* field, std::size_t row, const std::string& file) {
   if (!(value >= 0 && value <= 4294967295.0) || value != std::trunc(value))
-    fail("{}: {} of row {} holds {}, which is no index", file, field, row, value);
+    fail("{}: {} of row {} contains {}, which is not an index", file, field, row, value);
   return static_cast<std::uint32_t>(value);
 }
 
@@ -145,7 +145,7 @@ PointCloud read_vertices(PlyBody& body, const PlyElement& element, const std::st
                          const std::optional<Eigen::Vector3d>& shift) {
   body.require_rows(element);
   VertexRow row(element);
-  if (!row.has(kX)) fail("{}: element vertex lacks x, y or z", file);
+  if (!row.has(kX)) fail("{}: element vertex has no x, y or z", file);
   PointCloud cloud;
   cloud.positions.reserve(element.count);
   if (row.has_views()) cloud.view_begin.push_back(0);
@@ -218,7 +218,7 @@ Mesh read_mesh(const std::filesystem::path& path, const LocalFrame* frame) {
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, file);
   if (!find_element(header, "vertex")) fail("{}: has no element vertex", file);
-  if (!find_element(header, "face")) fail("{}: is no mesh: it has no element face", file);
+  if (!find_element(header, "face")) fail("{}: is not a mesh: it has no element face", file);
   PlyBody body(bytes, file, header);
   Mesh mesh;
   for (const PlyElement& element : header.elements) {
@@ -247,7 +247,7 @@ Eigen::Vector3d first_vertex(std::string_view bytes, const std::string& file,
   }
   body.require_rows(vertices);
   VertexRow row(vertices);
-  if (!row.has(kX)) fail("{}: element vertex lacks x, y or z", file);
+  if (!row.has(kX)) fail("{}: element vertex has no x, y or z", file);
   row.read(body);
   require_finite(row.vector(kX), "position", 0, file);
   return row.numbers(kX);

@@ -43,14 +43,14 @@ void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesyste
   const std::string file = ply.string();
   PointCloud cloud = read_into(frame, ply);
   if (cloud.view_begin.empty())
-    fail("{}: has no view_indices, which say what images see a point", file);
+    fail("{}: has no view_indices, which list the images that see a point", file);
   scene.points.clear();
   scene.points.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     scene.points.push_back(sparse_point(cloud, i, scene.images.size(), file));
   scene.point_normals = std::move(cloud.normals);
   scene.point_colors = std::move(cloud.colors);
-  log_info("{}: {} points in place of the scene's", file, scene.points.size());
+  log_info("{}: {} points replace the scene's points", file, scene.points.size());
 }
 
 namespace {

@@ -111,7 +111,7 @@ void check(const refractive::FlatPort<double>& port, const std::string& where, d
   check_glass(port, where);
   require_unit(port.normal, where);
   if (!(port.normal.z() > 0))
-    fail("{}.normal points backwards: z is {}, it must be positive (from the camera to the water)",
+    fail("{}.normal points backwards: z is {}, but must be positive (from the camera to the water)",
          where, port.normal.z());
 }
 
@@ -135,7 +135,7 @@ bool JsonPlace::has(const char* key) const {
 }
 
 void JsonPlace::require_object(std::initializer_list<const char*> known) const {
-  if (!json.is_object()) fail("{} is no object in braces", where);
+  if (!json.is_object()) fail("{} is not an object in braces", where);
   for (const auto& [key, value] : json.items())
     if (std::ranges::none_of(known, [&](const char* name) { return key == name; }))
       fail("{}: unknown key '{}'", where, key);
@@ -163,7 +163,7 @@ std::string JsonPlace::text(const char* key) const {
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
   const double length = n.stableNorm();
   if (!(length > 1e-6 && std::isfinite(length)))
-    fail("{} is [{},{},{}], which is no direction", where, n.x(), n.y(), n.z());
+    fail("{} is [{},{},{}], which is not a direction", where, n.x(), n.y(), n.z());
   if (std::abs(length - 1) > 1e-6) log_warning("{} has length {}: normalised", where, length);
   // A normal that is of unit length up to rounding stays unchanged, so that reading and writing a
   // file does not change it.
@@ -171,7 +171,7 @@ Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) 
 }
 
 refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap) {
-  if (!place.json.is_object()) fail("{} is no object in braces", place.where);
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   const std::string type = place.text("type");
   if (type != "flat" && type != "dome")
     fail("{}.type is '{}', expected 'flat', 'dome' or, in a housing, 'water-surface'", place.where,
@@ -223,7 +223,7 @@ void check_water_surface(const WaterSurface& surface, const std::string& where) 
     fail("{}.n_air is {}, more than n_water {}", where, surface.n_air, surface.n_water);
   require_unit(surface.normal, where);
   if (const Eigen::Vector3d& p = surface.point; !p.allFinite())
-    fail("{}.point_m is [{},{},{}], which is no point", where, p.x(), p.y(), p.z());
+    fail("{}.point_m is [{},{},{}], which is not a point", where, p.x(), p.y(), p.z());
 }
 
 }  // namespace axial::io

@@ -111,13 +111,13 @@ struct SceneCheck {
     if (seen.is_half(seen.before_water))
       log_warning(
           "{}.point_m or normal is wrong: {} of {} observations are of sparse points above that "
-          "water",
+          "water surface",
           where, seen.before_water, seen.all);
     far(where + ".point_m or the scale is wrong:");
   }
 
   void glass(const char* field, double length, double thickness) const {
-    const char* const hint = "are port and poses in metres?";
+    const char* const hint = "check that port and poses are in metres";
     if (seen.is_half(seen.before_glass))
       log_warning(
           "{}.{} is {}, but {} of {} observations are of sparse points before the glass: {}", where,
@@ -133,8 +133,8 @@ struct SceneCheck {
   void far(const std::string& what) const {
     if (seen.is_half(seen.far))
       log_warning(
-          "{} {} of {} observations are of sparse points more than {:.0f} m of water away: are the "
-          "poses in metres?",
+          "{} {} of {} observations are of sparse points more than {:.0f} m of water away: check "
+          "that the poses are in metres",
           what, seen.far, seen.all, kFarthest);
   }
 };

@@ -64,7 +64,7 @@ void warn_of_other_ports(const Housing& taken, const std::string& taken_from, co
                          const std::string& other_from, const ColmapModel& model) {
   const std::string image = image_with_other_port(taken, other, model);
   if (!image.empty())
-    log_warning("The ports are those of {}, and not those of {}, which differ, first for {}",
+    log_warning("The ports of {} are used; the ports of {} differ and are ignored, first for {}",
                 taken_from, other_from, image);
 }
 
@@ -83,12 +83,12 @@ void warn_of_housing_beside(const Scene& scene, const fs::path& scene_path, cons
   try {
     other = read_housing(beside, PortValues::passed_over);
   } catch (const Error& unreadable) {
-    return log_warning("{}: is not used, but {}: {}", beside.string(), file.string(),
-                       unreadable.what());
+    return log_warning("{}: is not used ({} is used instead), and cannot be read: {}",
+                       beside.string(), file.string(), unreadable.what());
   }
   for (const SceneImage& image : scene.images)
     if (!same(port_by_path(taken, image.path), port_by_path(other, image.path)))
-      return log_warning("{}: is not used, but {}, whose ports differ, first for {}",
+      return log_warning("{}: is not used ({} is used instead), and its ports differ, first for {}",
                          beside.string(), file.string(), image.path);
 }
 

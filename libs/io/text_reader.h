@@ -53,7 +53,7 @@ class TextLine {
   T number(std::string_view field) {
     const std::string_view token = word(field);
     const std::optional<T> value = parse_finite<T>(token);
-    if (!value) fail("{}: {} is '{}', which is no valid number here", where(), field, token);
+    if (!value) fail("{}: {} is '{}', which is not a valid number", where(), field, token);
     return *value;
   }
 

@@ -65,9 +65,13 @@ void check(const Bundle& bundle, const AdjustOptions& options) {
   if (!(options.pixel_sigma > 0)) fail("bundle adjustment: pixel_sigma must be positive");
   for (const KnownDistance& known : options.distances)
     if (!(known.metres > 0) || !(known.sigma > 0))
-      fail("bundle adjustment: a known distance of {} +- {} m", known.metres, known.sigma);
+      fail("bundle adjustment: the known distance is {} +- {} m: both values must be positive",
+           known.metres, known.sigma);
   for (const KnownPosition& known : options.positions)
-    if (!(known.sigma > 0)) fail("bundle adjustment: a known position +- {} m", known.sigma);
+    if (!(known.sigma > 0))
+      fail(
+          "bundle adjustment: the standard deviation of a known position is {} m: must be positive",
+          known.sigma);
   for (const BundleCamera& camera : bundle.cameras) {
     const auto& free = options.unknowns(camera).free;
     const auto end = free.begin() + kFocalNumber;

@@ -27,7 +27,7 @@ std::size_t point_of(const Bundle& bundle, std::size_t source) {
   const auto found = std::find_if(bundle.points.begin(), bundle.points.end(),
                                   [&](const BundlePoint& point) { return point.source == source; });
   if (found == bundle.points.end())
-    fail("point {} is not in the model, or fits no refractive cameras", source);
+    fail("point {} is not in the model, or does not fit the refractive cameras", source);
   return static_cast<std::size_t>(found - bundle.points.begin());
 }
 

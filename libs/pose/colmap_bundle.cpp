@@ -20,10 +20,10 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
   const auto found = std::find_if(lenses.begin(), lenses.end(), [&](const io::ColmapCamera& lens) {
     return lenses.size() == 1 || lens.id == camera.id;
   });
-  if (found == lenses.end()) fail("camera {} has no in-air lens", camera.id);
+  if (found == lenses.end()) fail("camera {} has no lens calibrated in air", camera.id);
   if (found->width != camera.width || found->height != camera.height)
-    fail("camera {} is {} x {}, its in-air lens {} x {}", camera.id, camera.width, camera.height,
-         found->width, found->height);
+    fail("camera {} is {} x {}, but its lens calibrated in air is {} x {}", camera.id, camera.width,
+         camera.height, found->width, found->height);
   return *found;
 }
 

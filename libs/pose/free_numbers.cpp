@@ -23,8 +23,8 @@ Words words_of(const std::string& list) {
   for (std::string word; std::getline(in, word, ',');) {
     if (word == "center") word = "centre";
     if (!known.contains(word))
-      fail("--refine {}: '{}' is none of normal, distance, centre, thickness, index, focal", list,
-           word);
+      fail("--refine {}: '{}' is not one of normal, distance, centre, thickness, index, focal",
+           list, word);
     words.insert(word);
   }
   return words;
@@ -63,13 +63,14 @@ void check_known(const std::string& refine, const Words& words, const Sigmas& si
                       !adjust.positions.empty();
   if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
     fail(
-        "--refine {}: the distance needs --distance-sigma, --scale-from or --poses known, since "
-        "the photographs "
-        "show only its ratio to other lengths",
+        "--refine {}: the distance needs --distance-sigma, --scale-from or --poses known, because "
+        "the photographs show only its ratio to other lengths",
         refine);
   if (words.contains("thickness") && !(sigmas.thickness > 0))
-    fail("--refine {}: the thickness needs --thickness-sigma, since it looks like distance",
-         refine);
+    fail(
+        "--refine {}: the thickness needs --thickness-sigma, because photographs hardly "
+        "distinguish it from the distance",
+        refine);
 }
 
 void set(const Words& words, const std::string& word, double sigma, double scale,
@@ -120,11 +121,13 @@ std::string place_words(const refractive::Port<double>& port) {
 
 void declare_sigmas(OptionList& list, Sigmas& sigmas) {
   list.add_with_default("normal-sigma", &sigmas.normal_degrees,
-                        "how well the normal was measured [degrees]; 0: not at all")
-      .add_with_default("distance-sigma", &sigmas.distance, "the distance [m]")
-      .add_with_default("centre-sigma", &sigmas.centre, "a dome's centre [m]")
-      .add_with_default("thickness-sigma", &sigmas.thickness, "the thickness of the glass [m]")
-      .add_with_default("index-sigma", &sigmas.index, "the water's index");
+                        "standard deviation of the measured normal [degrees]; 0: not measured")
+      .add_with_default("distance-sigma", &sigmas.distance,
+                        "standard deviation of the distance [m]")
+      .add_with_default("centre-sigma", &sigmas.centre, "standard deviation of a dome's centre [m]")
+      .add_with_default("thickness-sigma", &sigmas.thickness,
+                        "standard deviation of the thickness of the glass [m]")
+      .add_with_default("index-sigma", &sigmas.index, "standard deviation of the water's index");
 }
 
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,

@@ -124,13 +124,13 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma) {
                                                         : std::string("more than 100");
   const std::string lengths =
       std::isfinite(scale_sigma)
-          ? fmt::format("Lengths are then known worse than the {:.2g} % claimed. ",
+          ? fmt::format("The lengths then have a larger error than the {:.2g} % given above. ",
                         100 * scale_sigma)
           : std::string();
   return fmt::format(
-      "Lens, port and scale do not fit the photographs: with {} at {} (stated: {}, {} standard "
-      "deviations away) errors are {:.3f} px for {:.3f} px (RMS). {}Measure it again, or --refine "
-      "it",
+      "Lens, port and scale do not fit the photographs: with {} at {} (given: {}, {} standard "
+      "deviations away), errors are {:.3f} px instead of {:.3f} px (RMS). {}Measure this value "
+      "again, or adjust it with --refine",
       freed.name, value(freed.found), value(freed.stated), deviations, freed.rms_found,
       freed.rms_stated, lengths);
 }
@@ -141,19 +141,19 @@ std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLi
   const DropCounts& dropped = report.dropped;
   std::vector<std::string> lines;
   if (many(dropped.errors))
-    lines.push_back(fmt::format(
-        "{} of {} observations have errors above {:.3g} px, with which none is believed: is this "
-        "the housing, and the lens in air?",
-        dropped.errors, distinct, limits.max_error));
+    lines.push_back(
+        fmt::format("{} of {} observations have errors above {:.3g} px and are dropped: check the "
+                    "housing and the lens in air",
+                    dropped.errors, distinct, limits.max_error));
   if (many(dropped.weak_images))
     lines.push_back(
-        fmt::format("{} of {} observations are of images with fewer than {} that fit, and are left "
-                    "out",
+        fmt::format("{} of {} observations belong to images with fewer than {} observations that "
+                    "fit, and are left out",
                     dropped.weak_images, distinct, limits.min_observations));
   if (many(dropped.weak_points))
     lines.push_back(
-        fmt::format("{} of {} observations are of points seen by one image, or under "
-                    "less than {:.3g} degrees, and are left out",
+        fmt::format("{} of {} observations belong to points that only one image sees, or that are "
+                    "seen under less than {:.3g} degrees, and are left out",
                     dropped.weak_points, distinct, limits.min_angle));
   return lines;
 }

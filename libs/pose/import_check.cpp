@@ -59,17 +59,17 @@ std::string misfit(const PortCheck& check, const Bundle& bundle, bool ports) {
   std::string line =
       ports
           ? fmt::format(
-                "Port, lens, scale and poses do not fit together: the sparse points are {:.2f} px "
-                "off behind the ports, {:.2f} px without them, where {:.2f} px are expected",
+                "Port, lens, scale and poses do not fit together: the sparse points have errors of "
+                "{:.2f} px behind the ports, {:.2f} px without them, where {:.2f} px are expected",
                 check.residual, check.in_air, check.noise)
           : fmt::format(
-                "Lens and poses do not fit together: the sparse points are {:.2f} px off, "
+                "Lens and poses do not fit together: the sparse points have errors of {:.2f} px, "
                 "where {:.2f} px are expected",
                 check.residual, check.noise);
   if (!check.explained())
     return line +
-           "; no single change of port, lens or scale explains it. Were the poses "
-           "refined with this lens and housing?";
+           "; no single change of port, lens or scale explains it. Check that the poses were "
+           "refined with this lens and housing";
   return line + fmt::format(". Likely cause: {} ({:.2f} px); {}", cause_of(check.best, bundle),
                             check.best_residual, advice_for(check.best));
 }
@@ -108,25 +108,26 @@ std::optional<std::string> by_pictures(const PortCheck& check, const io::ColmapM
               behind);
   if (ports && !check.fits() && *at_tracks > kAgree && *at_tracks > behind + kClearlyMore)
     return fmt::format(
-        "The poses were solved without the port, as a pinhole's: the sparse points are {:.2f} px "
-        "off behind the ports, {:.2f} px without them, where {:.2f} px are expected, and the "
-        "photographs agree with the tracks ({:.2f}) and not with the ports ({:.2f}). "
-        "RefinePoses, with the lens calibrated in air, makes refractive poses of them",
+        "The poses were computed without the port, for a pinhole camera: the sparse points have "
+        "errors of {:.2f} px behind the ports, {:.2f} px without them, where {:.2f} px are "
+        "expected, and the photographs agree with the tracks ({:.2f}) and not with the ports "
+        "({:.2f}). RefinePoses, with the lens calibrated in air, computes refractive poses from "
+        "them",
         check.residual, check.in_air, check.noise, *at_tracks, behind);
   if (*at_tracks > kAgree) return {};
   const double given = std::max(ports ? behind : *at_tracks, 0.0);
   const std::string what = fmt::format(
-      "The photographs do not show what {} predict: patches around the sparse points correlate by "
-      "{:.2f}",
+      "The photographs do not agree with {}: patches around the sparse points have a correlation "
+      "of {:.2f}",
       ports ? "poses and ports" : "the poses", given);
   if (const auto better = change_by_pictures(pictures, bundle, given))
-    return fmt::format("{}, and by {:.2f} with one change. Likely cause: {}; {}", what,
+    return fmt::format("{}, and of {:.2f} with one change. Likely cause: {}; {}", what,
                        better->second, cause_of(better->first, bundle), advice_for(better->first));
   if (given >= kNothingInCommon || *at_tracks >= kNothingInCommon) return {};
   return fmt::format(
-      "{}, and no single change of port, lens or scale explains it: are these the photographs, "
-      "and {}?",
-      what, ports ? "this what they were taken through" : "were they taken in air");
+      "{}, and no single change of port, lens or scale explains it: check that the photographs "
+      "belong to the poses and were taken {}",
+      what, ports ? "through these ports" : "in air");
 }
 
 }  // namespace

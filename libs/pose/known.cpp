@@ -35,7 +35,7 @@ class Connected {
   std::size_t images_;
 };
 
-constexpr const char* kNoChain = "no chain of points leads from one end to the other";
+constexpr const char* kNoChain = "no chain of points connects the two ends";
 
 std::string left_out(const BundleImage& image) {
   return fmt::format("image '{}' is left out: too few of its observations fit", image.name);
@@ -59,8 +59,8 @@ std::optional<std::string> why_lost_between_points(const Bundle& bundle,
     if (std::ranges::find(bundle.observations, index, &Observation::point) ==
         bundle.observations.end())
       return fmt::format(
-          "point {} is left out: fewer than two of its observations fit, or under too narrow an "
-          "angle",
+          "point {} is left out: fewer than two of its observations fit, or their angle is too "
+          "small",
           source);
     ends.push_back(index);
   }

@@ -151,31 +151,33 @@ std::string cause_of(const PortChange& change, const Bundle& bundle) {
   const PortValues port = first_port(bundle).value_or(PortValues{});
   switch (change.of) {
     case Of::nothing:
-      return "none that one change explains";
+      return "no single change explains the errors";
     case Of::port_left_out:
-      return "the poses were solved without the port, as a pinhole's";
+      return "the poses were computed without the port, for a pinhole camera";
     case Of::thin_port:
-      return "the photographs were taken through a port, which is not given";
+      return "the photographs were taken through a port that is not given";
     case Of::index:
       return fmt::format("the water's index n_water {:.6g} ({:.6g} fits)", port.n_water,
                          change.value);
     case Of::distance:
       return fmt::format("the port's distance is {}", times(1 / change.value));
     case Of::normal:
-      return fmt::format("the port's normal, {:.3g} degrees off the optical axis (the axis fits)",
-                         port.tilt);
+      return fmt::format(
+          "the port's normal, {:.3g} degrees off the optical axis (a normal along the axis fits)",
+          port.tilt);
     case Of::centre:
-      return "the dome's centre (at the lens it fits)";
+      return "the dome's centre (a centre at the camera centre fits)";
     case Of::scale:
-      return fmt::format("the model's lengths are {} for the port's, as with another unit",
-                         times(1 / change.value));
+      return fmt::format(
+          "the model's lengths are {} relative to the port's lengths, as with another unit",
+          times(1 / change.value));
     case Of::focal:
-      return fmt::format("the focal length is {}, as of another lens or size of image",
+      return fmt::format("the focal length is {}, as with another lens or image size",
                          times(1 / change.value));
     case Of::focal_in_air:
       return fmt::format(
-          "the tracks fit in air, with a focal length that is {:.4g} times this one: another lens, "
-          "or poses solved without the port",
+          "the tracks fit in air, with a focal length that is {:.4g} times the given one: another "
+          "lens, or poses computed without the port",
           change.value);
   }
   return {};
@@ -184,20 +186,20 @@ std::string cause_of(const PortChange& change, const Bundle& bundle) {
 std::string advice_for(const PortChange& change) {
   switch (change.of) {
     case Of::focal_in_air:
-      return "the lens must be the one calibrated in air, at this image size; RefinePoses makes "
-             "refractive poses of a pinhole's";
+      return "use the lens calibrated in air, at this image size; RefinePoses computes refractive "
+             "poses from the poses of pinhole cameras";
     case Of::port_left_out:
-      return "RefinePoses, with the lens calibrated in air, makes refractive poses of them";
+      return "RefinePoses, with the lens calibrated in air, computes refractive poses from them";
     case Of::thin_port:
       return "give --housing";
     case Of::scale:
-      return "bring the model to metres: AlignModel, or RefinePoses --scale-from; the port's "
-             "lengths are in metres, too";
+      return "scale the model to metres with AlignModel or RefinePoses --scale-from; the port's "
+             "lengths must also be in metres";
     case Of::focal:
-      return "the lens must be the one calibrated in air, at this image size";
+      return "use the lens calibrated in air, at this image size";
     default:
-      return "check lens, port and scale against each other; RefinePoses can adjust what was "
-             "measured badly (--refine)";
+      return "check lens, port and scale; RefinePoses --refine can adjust values that were "
+             "measured with low precision";
   }
 }
 

@@ -28,7 +28,7 @@ double known_scale(const Bundle& bundle, const AdjustOptions& options) {
   for (const KnownDistance& known : options.distances) {
     const double length =
         (place_of(bundle, known, known.first) - place_of(bundle, known, known.second)).norm();
-    if (!(length > 0)) fail("a known length of {} m is none in the model", known.metres);
+    if (!(length > 0)) fail("a known length of {} m is zero in the model", known.metres);
     return known.metres / length;
   }
   return 0;

@@ -56,7 +56,7 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
       models, [](const CameraModel& model) { return model.distortion.has_value(); });
   if (distorted && method == ProjectionMethod::line_search)
     fail(
-        "the line search is the paper's projection for straight lenses: undistort the images "
+        "the projection line-search is only for lenses without distortion: undistort the images "
         "(InterfaceCOLMAP --undistort 1)");
   if (!flat && !dome) {
     if (distorted) return with_distortion<T>(models);
@@ -65,9 +65,7 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
     return cameras;
   }
   if (dome && method == ProjectionMethod::line_search)
-    fail(
-        "the line search is the paper's projection through flat ports: a dome has only the exact "
-        "one");
+    fail("the projection line-search is only for flat ports: use the projection exact for domes");
   if (flat && dome) return each_of_its_kind<T>(models);
   const refractive::FlatPort<double> no_port;
   // A dome without effect. Points inside a dome are not visible, so that its radius must be smaller

@@ -52,7 +52,7 @@ void each_image(const Scene& scene, std::size_t p, const Visit& visit) {
   std::uint32_t previous = kNoId;
   for (const SparseView& view : scene.points[p].views) {
     if (view.image >= scene.images.size()) {
-      fail("points[{}]: view of image {}, but there are {} images", p, view.image,
+      fail("points[{}]: refers to image {}, but there are {} images", p, view.image,
            scene.images.size());
     }
     if (view.image == previous || !scene.images[view.image].calibrated) continue;
@@ -258,10 +258,12 @@ std::string of_others(std::size_t image, std::size_t trusted, const Observations
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, what);
   };
-  add(behind, "behind it");
-  add(outside, "where it images nothing");
+  add(behind, "behind the camera");
+  add(outside, "not visible to the camera");
   add(own.size() - behind - outside - trusted, "seen by no other image");
-  return reasons.empty() ? "" : fmt::format(" (of {} more, {})", own.size() - trusted, reasons);
+  return reasons.empty()
+             ? ""
+             : fmt::format(" ({} more do not count: {})", own.size() - trusted, reasons);
 }
 
 ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observations& observations,
@@ -384,7 +386,7 @@ std::string why_no_source_view(const std::vector<ViewScore>& neighbours,
       ++known->second;
   }
   std::string text =
-      fmt::format("no good images in view: {} with points in common", neighbours.size());
+      fmt::format("no suitable source view: {} images have common points", neighbours.size());
   for (std::size_t i = 0; i < reasons.size(); ++i)
     text += fmt::format("{}{} {}", i == 0 ? ", " : " and ", reasons[i].second, reasons[i].first);
   return text;

@@ -17,11 +17,11 @@ refractive::FlatPort<double> port_seen_from(const Pose& pose, const WaterSurface
   port.n_air = surface.n_air;
   port.n_glass = port.n_water = surface.n_water;  // without effect, since the thickness is 0
   if (!(port.distance > 0 && std::isfinite(port.distance)))
-    fail("{}: the camera's height over the water surface is {} m, it must be positive", where,
+    fail("{}: the camera's height over the water surface is {} m, but must be positive", where,
          port.distance);
   if (!(port.normal.z() > 0))
     fail(
-        "{}: the camera looks away from the water surface: {:.1f} degrees off its normal, it must "
+        "{}: the camera looks away from the water surface: {:.1f} degrees off its normal, but must "
         "be less than 90",
         where, std::acos(std::max(-1.0, port.normal.z())) * 180 / std::numbers::pi);
   return port;

@@ -117,7 +117,7 @@ void check_lens(const Lens& lens) {
          {Eigen::Vector2d(u, -0.5), Eigen::Vector2d(u, lens.height - 0.5), Eigen::Vector2d(-0.5, v),
           Eigen::Vector2d(lens.width - 0.5, v)})
       if (!reaches(lens, pixel))
-        fail("a lens with the coefficients {} {} {} {} images nothing at pixel ({}, {})",
+        fail("a lens with the coefficients {} {} {} {} has no ray at pixel ({}, {})",
              lens.bend->k[0], lens.bend->k[1], lens.bend->k[2], lens.bend->k[3], pixel.x(),
              pixel.y());
   }

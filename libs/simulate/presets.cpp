@@ -170,7 +170,7 @@ void check_submerged(const Preset& preset, const TriangleMesh& mesh) {
   if (!preset.water_level) return;
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     if (!(vertex.z() < *preset.water_level))
-      fail("the water surface is {} m high: the scene stands out of it, with {} m",
+      fail("the water surface is at a height of {} m, but the scene reaches {} m",
            *preset.water_level, vertex.z());
 }
 
@@ -199,8 +199,8 @@ Preset make_preset(const PresetOptions& options) {
   const auto found = std::ranges::find(kAll, name, [](const Named& one) { return one.name; });
   if (found == std::end(kAll))
     fail(
-        "preset '{}' is unknown: there are reef, outcrop, closeup, survey, thicket, sand and "
-        "transect, and the same in haze: NAME-hazy",
+        "preset '{}' is unknown: must be reef, outcrop, closeup, survey, thicket, sand or "
+        "transect, or one of them with haze: NAME-hazy",
         options.name);
   found->make(preset, options.seed, options.views > 0 ? options.views : found->views);
   preset.terrain.relief = options.relief;

@@ -50,7 +50,7 @@ RayScene::RayScene(const TriangleMesh& mesh) : state_(std::make_unique<State>())
   for (const Face& face : mesh.faces)
     for (const std::uint32_t corner : face)
       if (corner >= mesh.vertices.size())
-        fail("mesh face refers to vertex {} of {}", corner, mesh.vertices.size());
+        fail("a mesh face refers to vertex {}, but there are {}", corner, mesh.vertices.size());
   State& s = *state_;
   s.vertices = mesh.vertices;
   s.vertices.emplace_back(Eigen::Vector3f::Zero());
@@ -58,7 +58,7 @@ RayScene::RayScene(const TriangleMesh& mesh) : state_(std::make_unique<State>())
 
   s.device.reset(rtcNewDevice(nullptr));
   if (!s.device)
-    fail("Embree gives no device (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
+    fail("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
   s.scene.reset(rtcNewScene(s.device.get()));
   rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -112,7 +112,7 @@ class Export(Scene):
                     self.assertEqual(len(line), 1, said)
                     looked_in = os.path.normpath(os.path.join(start, place))
                     self.assertIn(f"5 images below {looked_in}", line[0])
-                    self.assertEqual(f"{missing} of them are not there" in line[0], missing > 0)
+                    self.assertEqual(f"{missing} of them do not exist" in line[0], missing > 0)
                     self.assertEqual(f"working folder, {start}, which -w sets" in line[0],
                                      missing > 0)
         self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, cwd=start)
@@ -120,7 +120,7 @@ class Export(Scene):
     def test_goes_to_no_file_name(self):
         folder = self.copy("air")
         for name in ("x.mvs", "new/scene.mvs", "cloud.ply", "cameras.txt"):
-            self.refuses(f"--output-file {name}: -o names the folder", "InterfaceCOLMAP", "-i",
+            self.refuses(f"--output-file {name}: must be a folder", "InterfaceCOLMAP", "-i",
                          "scene.mvs", "-w", folder, "-o", name)
             self.assertFalse(os.path.exists(os.path.join(folder, name)))
         self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "dive.2")

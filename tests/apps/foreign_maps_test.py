@@ -36,7 +36,7 @@ class ForeignMaps(Scene):
             write(path, foreign.bytes())
             self.assert_refused_and_kept(folder, name)
             write(path, whole)
-        self.assertIn("depth maps are there already", self.succeeds(*self.command(folder)).stdout)
+        self.assertIn("depth maps exist already", self.succeeds(*self.command(folder)).stdout)
 
     def test_are_overwritten_when_asked(self):
         for medium in ("air", "water"):
@@ -63,7 +63,7 @@ class ForeignMaps(Scene):
         for wrong in (whole[:1000], b""):
             write(path, wrong)
             said = self.succeeds(*self.command(folder)).stdout
-            self.assertIn("depth0001.dmap: is damaged", said)
+            self.assertIn("depth0001.dmap: the depth map or its side file is damaged", said)
             self.assertEqual(read(path), whole)
 
 
@@ -121,9 +121,10 @@ class FusingWhatExists(Scene):
 
     def test_what_cannot_be_fused(self):
         folder = self.copy("air", ".dmap", ".dmap.json", "_dense.ply", "_dense.mvs")
-        self.refuses("no depth map is there", *self.command(folder, *self.FUSE))
+        self.refuses("no depth map found", *self.command(folder, *self.FUSE))
         folder = self.copy("water", "depth0001.dmap.json", "_dense.ply", "_dense.mvs")
-        self.refuses("depth0001.dmap: is a pinhole's", *self.command(folder, *self.FUSE))
+        self.refuses("depth0001.dmap: is the depth map of a pinhole camera",
+                     *self.command(folder, *self.FUSE))
         self.refuses("disparity", *self.command(folder, "--fusion-mode", "-2"))
 
     def test_maps_of_other_poses_or_lenses(self):
@@ -135,7 +136,7 @@ class FusingWhatExists(Scene):
             other = Dmap(whole)
             other.camera[number] = change(other.camera[number])
             write(path, other.bytes())
-            self.refuses("depth0002.dmap: its camera sees the scene",
+            self.refuses("depth0002.dmap: its camera projects the scene",
                          *self.command(folder, *self.FUSE))
         write(path, whole[:-4])
         self.refuses("depth0002.dmap: has", *self.command(folder, *self.FUSE))

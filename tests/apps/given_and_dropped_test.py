@@ -73,7 +73,7 @@ class Scales(ProgramTest):
 
     def assert_has_no_scale(self, result, out):
         self.assertIn("The model has no scale", result.stdout)
-        self.assertIn("All lengths: not known", result.stdout)
+        self.assertIn("All lengths are unknown", result.stdout)
         self.assertNotIn("lengths are known", result.stdout)
         self.assertNotIn(" inf", result.stdout)
         self.assertIsNone(self.report(out)["scale_sigma"])
@@ -169,7 +169,8 @@ class Scales(ProgramTest):
         write(self.path("mixed.json"), json.dumps(mixed))
         known = ("--scale-from", self.between_images(self.names[1], self.names[4]))
         for expected, arguments in (
-                ("--scale-sigma 0.1: --scale-from is missing", ("--scale-sigma", "0.1")),
+                ("--scale-sigma 0.1: is the standard deviation of --scale-from",
+                 ("--scale-sigma", "0.1")),
                 ("--normal-sigma 1: --refine does not name normal", ("--normal-sigma", "1")),
                 ("--focal-sigma 0.1: --refine does not name focal",
                  ("--refine", "index", "--focal-sigma", "0.1")),
@@ -409,10 +410,10 @@ class NoEffect(ProgramTest):
             write(self.path("near", "sparse", "0", part + ".txt"),
                   read(self.path("near", "sparse", part + ".txt")))
         said = self.succeeds(*command, "--cameras", self.path("near")).stdout
-        self.assertEqual(said.count("is the model that is read"), 1, said)
+        self.assertEqual(said.count("this model is read"), 1, said)
         said = self.succeeds(*command, "--cameras", self.path("near"), "--align", "centres",
                              "--estimated", self.path("near", "sparse", "0")).stdout
-        self.assertEqual(said.count("is the model that is read"), 1, said)
+        self.assertEqual(said.count("this model is read"), 1, said)
 
     def test_centres_of_other_images(self):
         tiny(self.path("near"))
@@ -423,9 +424,9 @@ class NoEffect(ProgramTest):
             write(self.path("more", part), read(self.path("near", "sparse", part)))
         command = ("AlignModel", "-i", self.path("near"), "-o", self.path("out"), "--reference")
         said = self.succeeds(*command, self.path("more")).stdout
-        self.assertIn("1 of 4 centres are of no image of the model, and do not count, first lost.png",
+        self.assertIn("1 of 4 centres belong to no image of the model and are ignored, first lost.png",
                       said)
-        self.assertNotIn("of no image", self.succeeds(*command, self.path("near")).stdout)
+        self.assertNotIn("belong to no image", self.succeeds(*command, self.path("near")).stdout)
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ class Base(ProgramTest):
 
 class Names(Base):
     def test_a_base_name_of_several_images_is_refused(self):
-        expected = (f"{self.path('port.json')}: housing.images.0000.png could be cam0/0000.png or "
+        expected = (f"{self.path('port.json')}: housing.images.0000.png matches cam0/0000.png and "
                     "cam1/0000.png")
         for images in ({"0000.png": "main"}, {"0000.png": "none", "0001.png": "main"}):
             self.refuses(expected, *self.command(*self.housing(images, "other")))
@@ -65,14 +65,14 @@ class Names(Base):
         # base name is ambiguous, too.
         self.succeeds(*self.command())
         before = files_below(self.folder)
-        self.refuses(f"{self.path('port.json')}: housing.images.0000.png could be ",
+        self.refuses(f"{self.path('port.json')}: housing.images.0000.png matches ",
                      "DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder,
                      *self.housing({"0000.png": "main"}))
         self.assertEqual(files_below(self.folder), before)
 
     def test_the_same_of_other_programs(self):
         port = self.housing({"0000.png": "main"})
-        expected = "housing.images.0000.png could be cam0/0000.png or cam1/0000.png"
+        expected = "housing.images.0000.png matches cam0/0000.png and cam1/0000.png"
         self.refuses(expected, "RefinePoses", "-i", self.path("colmap"), "--lens",
                      self.path("colmap", "sparse"), "-o", self.path("out"), *port)
 
@@ -80,7 +80,7 @@ class Names(Base):
         self.succeeds(*self.command())
         write(self.path("scene.lenses.json"), json.dumps(
             {"version": 1, "lenses": {}, "default": "none", "images": {"0000.png": "none"}}))
-        self.refuses(f"{self.path('scene.lenses.json')}: lenses.images.0000.png could be ",
+        self.refuses(f"{self.path('scene.lenses.json')}: lenses.images.0000.png matches ",
                      "DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder)
 
     def test_names_that_tell_images_apart(self):

@@ -65,7 +65,7 @@ class Masks(ProgramTest):
             self.put(RIGHT, "masks", name + ".png")
         said = self.densify("--mask-path", "masks")
         self.assertEqual(self.matched(0), (False, True))
-        warnings = [line for line in said.splitlines() if "which differs" in line]
+        warnings = [line for line in said.splitlines() if "differs and is ignored" in line]
         self.assertEqual(len(warnings), 1, said)
         for part in (self.path("masks", "0000.mask.png"), self.path("masks", "0000.png.png"),
                      "3 images"):
@@ -100,7 +100,7 @@ class Masks(ProgramTest):
         self.assertEqual(self.matched(0), (True, True))
 
     def test_a_folder_that_lacks_masks(self):
-        self.refuses("masks: is no folder of masks", *self.arguments("--mask-path", "masks"))
+        self.refuses("masks: is not a folder of masks", *self.arguments("--mask-path", "masks"))
         self.put(LEFT, "masks", "0000.mask.png")
         self.put(LEFT, "masks", "0002.mask.png")
         self.refuses(f"no mask for image {self.images[1]}: looked for 0001.mask.png, 0001.png.png, "

@@ -118,8 +118,8 @@ class MixedPortsTest(ProgramTest):
 
     def test_the_published_methods_are_refused_in_one_line(self):
         self.import_scene(self.mixed, "scene")
-        for option, reason in ((("--projection", "line-search"), "a dome has only the exact one"),
-                               (("--warp", "homography"), "matched together with the affine one")):
+        for option, reason in ((("--projection", "line-search"), "use the projection exact for domes"),
+                               (("--warp", "homography"), "use the warp affine for images")):
             self.refuses(reason, "DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("scene"),
                          "--refractive", *option)
 

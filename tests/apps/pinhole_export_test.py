@@ -280,7 +280,7 @@ class Files(Exports):
         self.assertEqual(run(*command, file_size_limit=20000).returncode, 1)
         self.assertEqual(self.contents(folder), before)  # the earlier export survives
         said = self.succeeds(*command).stdout
-        self.assertEqual(said.count("depth0003.dmap: is not as the earlier export wrote it"), 1)
+        self.assertEqual(said.count("depth0003.dmap: was changed after the earlier export"), 1)
         found = self.contents(folder)
         self.assertEqual(found.pop("images/notes.txt"), b"mine\n")
         for name in ("depth0009.dmap", "depth0003.dmap"):
@@ -371,12 +371,13 @@ class Refusals(Exports):
 
     def test_scenes_of_pinholes(self):
         dry = self.copy("work", leave_out=("*.housing.json",))
-        self.refused("as it is", dry, "--pinhole-export", "pinholes")
-        self.refused("as it is", self.at("work", "pinholes"), "--pinhole-export", "again")
+        self.refused("has a port or a distorted lens", dry, "--pinhole-export", "pinholes")
+        self.refused("has a port or a distorted lens", self.at("work", "pinholes"),
+                     "--pinhole-export", "again")
 
     def test_cameras_taken_for_pinholes(self):
-        self.refused("as it is", self.copy("work"), "--pinhole-export", "pinholes",
-                     "--camera-model", "pinhole")
+        self.refused("has a port or a distorted lens", self.copy("work"), "--pinhole-export",
+                     "pinholes", "--camera-model", "pinhole")
 
     def test_folders_of_others_and_of_inputs(self):
         work = self.copy("work")
@@ -384,11 +385,11 @@ class Refusals(Exports):
         write(os.path.join(work, "a_file"), "mine\n")
         os.symlink(work, os.path.join(work, "link"))
         write(os.path.join(self.truth, "pinhole_export.json"), "{}\n")  # as in an export
-        for folder, expected in (("other", "holds other files"), (".", "inputs lie there"),
-                                 ("link", "inputs lie there"), ("a_file", "is a file"),
+        for folder, expected in (("other", "contains other files"), (".", "contains inputs"),
+                                 ("link", "contains inputs"), ("a_file", "is a file"),
                                  ("a_file/below", "a_file"),
-                                 (os.path.join(self.truth, "water"), "inputs lie there"),
-                                 (self.truth, "inputs lie there")):
+                                 (os.path.join(self.truth, "water"), "contains inputs"),
+                                 (self.truth, "contains inputs")):
             self.refuses(expected, *self.command(work, "--pinhole-export", folder))
         self.assertEqual(read(os.path.join(work, "other", "notes.txt")), b"mine\n")
 

@@ -108,7 +108,7 @@ class Pixels(ProgramTest):
                                (whole[:len(whole) // 2], "truncated"),
                                (b"GIF89a" + bytes(50), "is GIF, a format that is not supported"),
                                (self.stored[1][:2000], "truncated"),
-                               (b"never an image", "is in no image format that is supported")):
+                               (b"never an image", "is not in a supported image format")):
             for path, picture in zip(self.images, self.stored):
                 write(path, picture)
             write(self.images[1], data)

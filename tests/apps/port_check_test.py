@@ -9,7 +9,7 @@ import tempfile
 
 from programs import ProgramTest, main, read, run, write
 
-WARNINGS = ("do not fit together", "do not show what", "poses were solved without")
+WARNINGS = ("do not fit together", "photographs do not agree with", "poses were computed without")
 
 
 class Import(ProgramTest):
@@ -113,7 +113,7 @@ class Import(ProgramTest):
     def test_photographs_that_no_port_was_before(self):
         """Poses and photographs of a pinhole camera, with a housing. COLMAP's poses from
         photographs under water are solved without a port, too."""
-        self.warns("The poses were solved without the port", medium="air", housing={})
+        self.warns("The poses were computed without the port", medium="air", housing={})
 
     def test_a_housing_that_is_forgotten(self):
         self.warns("give --housing")

@@ -361,14 +361,14 @@ class Figure3(ProgramTest):
         self.assertEqual(self.all_bytes("a"), self.all_bytes("b"))
 
     def test_wrong_input(self):
-        self.refuses("'figure9' is no experiment", PROGRAM, "figure9", "-o", self.path("a"))
+        self.refuses("'figure9' is not an experiment", PROGRAM, "figure9", "-o", self.path("a"))
         self.refuses("no output folder", PROGRAM, "figure3")
         self.refuses("'figure4' belongs to no option", PROGRAM, "figure3", "figure4", "-o",
                      self.path("a"))
         self.refuses("cannot be created", PROGRAM, "figure3", "-o", "/proc/none")
         write(self.path("file"), "")
         self.refuses("cannot be created", PROGRAM, "figure3", "-o", self.path("file"))
-        self.refuses("begins the name of no part", PROGRAM, "figure3", "-o", self.path("a"),
+        self.refuses("no part has a name that begins", PROGRAM, "figure3", "-o", self.path("a"),
                      "--part", "setup3")
         self.refuses("not for all", PROGRAM, "all", "-o", self.path("a"), "--part", "setup1")
 
@@ -386,7 +386,7 @@ class Figure3(ProgramTest):
     def test_help_without_an_experiment(self):
         result = run(PROGRAM)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("sensitivity, need or all", result.stdout)
+        self.assertIn("sensitivity, need, all or completeness", result.stdout)
 
 
 main()

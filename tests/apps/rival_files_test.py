@@ -30,7 +30,7 @@ class Import(ProgramTest):
         sparse = self.path("colmap", "sparse")
         write(os.path.join(sparse, "cameras.bin"), b"stale")
         said = self.imported()
-        self.assertIn("cameras.txt is read, as COLMAP does, and not cameras.bin", said)
+        self.assertIn("cameras.txt is read, as in COLMAP; ignored: cameras.bin", said)
         self.assertEqual(read(self.path("scene.mvs")), scene)
 
     def test_images_in_two_places(self):
@@ -39,7 +39,8 @@ class Import(ProgramTest):
         ours, other = self.path("colmap", "images"), self.path("images")
         self.assertNotIn("not in", self.imported(*here), "they hold no image of the model")
         write(self.path("images", "0000.png"), b"")
-        self.assertIn(f"Images in {ours}/, not in {other}/, which holds", self.imported(*here))
+        self.assertIn(f"Images in {ours}/, not in {other}/, which also contains",
+                      self.imported(*here))
         self.assertNotIn("not in", self.imported("-w", self.path("colmap")))
 
     def test_a_housing_beside_the_scene(self):
@@ -48,15 +49,15 @@ class Import(ProgramTest):
         self.assertNotIn("differ", self.imported("--housing", self.path("port.json")))
         write(self.path("other.json"), PORT % 0.03)
         said = self.imported("--housing", self.path("other.json"))
-        self.assertIn(f"{self.path('scene.housing.json')}: is not used, but "
-                      f"{self.path('other.json')}, whose ports differ", said)
+        self.assertIn(f"{self.path('scene.housing.json')}: is not used "
+                      f"({self.path('other.json')} is used instead), and its ports differ", said)
         densify = ("DensifyPointCloud", "-i", self.path("scene.mvs"), "-w", self.folder,
                    "--resolution-level", "0", "--iters", "1", "--geometric-iters", "0",
                    "--refractive", "1")
         self.assertNotIn("differ", self.succeeds(*densify).stdout)
         said = self.succeeds(*densify, "--housing", self.path("port.json")).stdout
-        self.assertIn(f"{self.path('scene.housing.json')}: is not used, but "
-                      f"{self.path('port.json')}, whose ports differ", said)
+        self.assertIn(f"{self.path('scene.housing.json')}: is not used "
+                      f"({self.path('port.json')} is used instead), and its ports differ", said)
 
     def test_a_housing_and_a_model_with_ports(self):
         camera = f"PINHOLE {tiny_scene.WIDTH} {tiny_scene.HEIGHT} {tiny_scene.FOCAL} " \
@@ -66,7 +67,7 @@ class Import(ProgramTest):
         write(self.path("port.json"), PORT % 0.02)
         self.assertNotIn("differ", self.imported("--housing", self.path("port.json")))
         write(self.path("port.json"), PORT % 0.03)
-        self.assertIn("and not those of the model in",
+        self.assertIn("are used; the ports of the model in",
                       self.imported("--housing", self.path("port.json")))
 
     def test_nothing_that_is_read_is_written_over(self):
@@ -89,8 +90,8 @@ class Import(ProgramTest):
     def test_two_images_of_one_name(self):
         path = self.path("colmap", "sparse", "images.txt")
         write(path, read(path).replace(b"0002.png", b"./0001.png"))
-        self.refuses("images 2 and 3 have one name", "InterfaceCOLMAP", "-i", self.path("colmap"),
-                     "-o", self.path("scene.mvs"))
+        self.refuses("images 2 and 3 have the same name", "InterfaceCOLMAP", "-i",
+                     self.path("colmap"), "-o", self.path("scene.mvs"))
 
     def test_two_images_that_undistort_to_one_name(self):
         tiny_scene.write_colmap(self.path("colmap"), f"SIMPLE_RADIAL {tiny_scene.WIDTH} "

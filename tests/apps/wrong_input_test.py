@@ -109,9 +109,9 @@ class InterfaceColmap(ProgramTest):
         # A port directly at the lens only multiplies the sines of angles by the index.
         write(os.path.join(sparse, "cameras.txt"), f"1 {camera} FLATPORT 0 0 1 0 0 1 1.333 1.333\n")
         convert = ("InterfaceCOLMAP", "-i", self.path("colmap"), "-o", self.path("scene.mvs"))
-        warning = "the poses were solved without refraction"
+        warning = "the poses were computed without refraction"
         said = self.succeeds(*convert).stdout
-        self.assertIn("The points are 0.000 px off in air: " + warning, said)
+        self.assertIn("The points have an error of 0.000 px in air: " + warning, said)
 
         def through_the_port(u, v, point):
             x, y = (u - tiny_scene.CX) / tiny_scene.FOCAL, (v - tiny_scene.CY) / tiny_scene.FOCAL
@@ -127,7 +127,7 @@ class InterfaceColmap(ProgramTest):
                                 for number in through_the_port(*numbers[k:k + 3]))
         write(path, "\n".join(lines) + "\n")
         said = self.succeeds(*convert).stdout
-        self.assertIn("carry ports: its points are 0.000 px off", said)
+        self.assertIn("have ports: its points have an error of 0.000 px", said)
         self.assertNotIn(warning, said)
 
     def test_wrong_housings(self):
@@ -328,7 +328,7 @@ class Densify(ProgramTest):
         for border in ("nan", "inf", "-inf"):
             self.refuses_scene("--roi-border", "--roi-border", border)
         self.refuses_scene("--number-views-fuse -1", "--number-views-fuse", "-1")
-        self.refuses_scene("no such housing file", "--refractive", "1")
+        self.refuses_scene("housing file not found", "--refractive", "1")
 
 
 class OtherPrograms(ProgramTest):
@@ -348,7 +348,7 @@ class OtherPrograms(ProgramTest):
         for name, place in (("here.ply", 0), ("elsewhere.ply", 600000)):
             write(self.path(name), triangle.format(place))
         for align in ("none", "icp"):
-            self.refuses("not in the same coordinates", "EvaluateReconstruction", "-i",
+            self.refuses("do not have the same coordinates", "EvaluateReconstruction", "-i",
                          self.path("elsewhere.ply"), "-m", self.path("here.ply"), "--align", align)
         self.refuses("no-such.ply", "EvaluateReconstruction", "-i", self.path("no-such.ply"), "-m",
                      self.path("garbage.ply"))

@@ -64,16 +64,16 @@ TEST(Advice, NamesThatNoBoardIsTilted) {
 
 TEST(Advice, NamesThatAllDistancesAreOne) {
   EXPECT_THAT(gaps(calibrated({.nearest = 0.36, .farthest = 0.38})),
-              Contains(HasSubstr("another distance than 0.3")));
+              Contains(HasSubstr("a distance other than 0.3")));
 }
 
 TEST(Advice, RefusesBoardsInTheMiddleOfTheImageAndSaysWhatIsMissing) {
   const std::string said = refusal(
       {.views = 5, .nearest = 0.8, .farthest = 1, .noise = 0.2, .within = box(0.3, 0.3, 0.7, 0.7)});
-  EXPECT_THAT(said, HasSubstr("5 photographs leave "));
+  EXPECT_THAT(said, HasSubstr("5 photographs determine the "));
   for (const char* edge : {"left", "right", "upper", "lower"})
     EXPECT_THAT(said, HasSubstr(std::string("corners near the image's ") + edge + " edge"));
-  EXPECT_THAT(said, HasSubstr("what would help most is the board at the image's "));
+  EXPECT_THAT(said, HasSubstr("the most useful next photograph shows the board at the image's "));
   EXPECT_THAT(said, Not(HasSubstr("tilted by")));  // the boards are tilted
   EXPECT_THAT(said, Not(HasSubstr("\n")));
 }
@@ -86,7 +86,7 @@ TEST(Advice, RefusesBoardsThatAllFaceTheCamera) {
                                     .noise = 0.2,
                                     .within = box(0.25, 0.25, 0.75, 0.75)});
   EXPECT_THAT(said, HasSubstr("a board tilted by 20 degrees or more"));
-  EXPECT_THAT(said, HasSubstr("nor another distance than 0."));
+  EXPECT_THAT(said, HasSubstr("nor a distance other than 0."));
 }
 
 // Few photographs, all with the board in the middle.

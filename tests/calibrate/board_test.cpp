@@ -41,12 +41,13 @@ TEST(Board, WrongDescriptionsAreNamed) {
   EXPECT_THAT(error("checkerboard:9x6"), HasSubstr("COLUMNSxROWS:SQUARE"));
   EXPECT_THAT(error("checkerboard:9:0.03"), HasSubstr("'9' is not COLUMNSxROWS"));
   EXPECT_THAT(error("checkerboard:9x2:0.03"), HasSubstr("9 columns and 2 rows"));
-  EXPECT_THAT(error("checkerboard:9x6:30"), HasSubstr("'30' is no length in metres"));
-  EXPECT_THAT(error("checkerboard:9x6:nan"), HasSubstr("'nan' is no length"));
-  EXPECT_THAT(error("checkerboard:9x6:3cm"), HasSubstr("'3cm' is no number"));
+  EXPECT_THAT(error("checkerboard:9x6:30"), HasSubstr("'30' is not a length in metres"));
+  EXPECT_THAT(error("checkerboard:9x6:nan"), HasSubstr("'nan' is not a length"));
+  EXPECT_THAT(error("checkerboard:9x6:3cm"), HasSubstr("'3cm' is not a number"));
   EXPECT_THAT(error("charuco:8x6:0.03"), HasSubstr("SQUARE:MARKER"));
   EXPECT_THAT(error("charuco:8x6:0.03:0.04"), HasSubstr("does not fit into a square"));
-  EXPECT_THAT(error("charuco:8x6:0.03:0.02:9X9"), HasSubstr("'9X9' is none of OpenCV's"));
+  EXPECT_THAT(error("charuco:8x6:0.03:0.02:9X9"),
+              HasSubstr("'9X9' is not a dictionary of markers of OpenCV"));
   EXPECT_THAT(error("charuco:20x20:0.03:0.02"), HasSubstr("200 markers, but"));
 }
 

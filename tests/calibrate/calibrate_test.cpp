@@ -197,7 +197,7 @@ TEST(Calibrate, RefusesTooFewPhotographs) {
   taken.views[1].corners.clear();
   const std::string error = test::error_of(
       [&] { calibrate(kPinhole, flat_port(), taken.views, corners_of(kBoard), unknown(kPlace)); });
-  EXPECT_NE(error.find("2 photographs show 8 corners of the board or more, at least 3"),
+  EXPECT_NE(error.find("2 photographs show 8 or more corners of the board, at least 3"),
             std::string::npos)
       << error;
 }

@@ -155,10 +155,10 @@ TEST_F(CalibrateHousing, RefusesPhotographsThatDoNotSuffice) {
   const Outcome outcome =
       run("--housing flat.json -o housing.json --report report.json --max-distance-sigma 0.0001");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, HasSubstr("CalibrateHousing: 4 photographs leave "));
+  EXPECT_THAT(outcome.output, HasSubstr("CalibrateHousing: 4 photographs determine the "));
   EXPECT_THAT(outcome.output, HasSubstr("no photograph shows corners near the image's left edge"));
   EXPECT_THAT(outcome.output, HasSubstr("a board tilted by 20 degrees or more"));
-  EXPECT_THAT(outcome.output, HasSubstr("what would help most is the board "));
+  EXPECT_THAT(outcome.output, HasSubstr("the most useful next photograph shows the board "));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "housing.json"));
   // The report has the missing photographs, too.
   const auto report = io::read_json(folder_ / "report.json");
@@ -199,8 +199,8 @@ TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
           "--board chess: must begin with checkerboard:");
   refuses("-i nowhere -o out.json --board checkerboard:9x6:0.025 " + lens + housing,
           "nowhere: does not exist");
-  refuses(all + "-o out.json", "1 photographs show 8 corners of the board or more, at least 3");
-  refuses(all + "-o out.json --refine tilt", "'tilt' is none of normal, distance");
+  refuses(all + "-o out.json", "1 photographs show 8 or more corners of the board, at least 3");
+  refuses(all + "-o out.json --refine tilt", "'tilt' is not one of normal, distance");
   refuses(all + "-o out.json --refine centre", "there is a flat port");
   refuses(all + "-o out.json --refine focal", "stays as calibrated in air");
   refuses(all + "-o out.json --refine thickness", "needs --thickness-sigma");
@@ -214,7 +214,7 @@ TEST_F(CalibrateHousing, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + housing + "--lens two.txt -o out.json", "two.txt: has 2 cameras");
   write_lens("large.txt", {{1, "PINHOLE", 1280, 960, {760, 760, 640, 480}}});
   refuses(kInput + housing + "--lens large.txt -o out.json",
-          "view0.png: is 640 x 480, the lens 1280 x 960");
+          "view0.png: is 640 x 480 pixels, but the lens is calibrated for 1280 x 960");
   refuses(all + "-o out.json --port side", "--port side: ");
   io::Housing two = io::read_housing(folder_ / "dome.json");
   two.ports["side"] = io::to_housing_port(flat_port());

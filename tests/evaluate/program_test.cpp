@@ -155,7 +155,7 @@ TEST_F(Programs, CountTheWorthOfThePointsThatCount) {
   EXPECT_LT(json["accuracy"]["count"], 15000) << "of 20000";
   EXPECT_EQ(json["calibration"]["points"], json["accuracy"]["count"]);
   EXPECT_NEAR(json["points_by_views"][0]["share"].get<double>(), 0.25, 0.03);
-  refuses("no strip", "-i cloud.ply -m truth.ply --cameras true --samples 5000 --strip");
+  refuses("not a strip", "-i cloud.ply -m truth.ply --cameras true --samples 5000 --strip");
   refuses("--strip needs --cameras", "-i cloud.ply -m truth.ply --strip");
   refuses("--gross is -1", "-i cloud.ply -m truth.ply --gross -1");
 }
@@ -171,8 +171,8 @@ TEST_F(Programs, WarnOfHousingEntriesWithoutAnImage) {
                               "-i cloud.ply -m truth.ply --cameras true --samples 5000 --housing "
                               "housing.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image goes by images.0001.png"));
-  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image goes by cameras.9"));
+  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image matches images.0001.png"));
+  EXPECT_THAT(outcome.output, HasSubstr("housing.json: no image matches cameras.9"));
   EXPECT_THAT(outcome.output, testing::Not(HasSubstr("0001.jpg")));
 }
 
@@ -288,7 +288,7 @@ TEST_F(Programs, AlignModelRefusesWhatFixesNoSimilarity) {
     io::write_colmap_text(folder_ / name, *wrong);
   }
   refuses("lie on one line", "-i line --reference true -o out", "AlignModel");
-  refuses("renamed: the models have 2 images of the same name",
+  refuses("renamed: the models have 2 images with the same name",
           "-i renamed --reference true -o out", "AlignModel");
   refuses("nowhere", "-i nowhere --reference true -o out", "AlignModel");
   refuses("--reference is missing", "-i line -o out", "AlignModel");

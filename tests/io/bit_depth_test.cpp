@@ -57,8 +57,9 @@ TEST(BitDepth, IsFoundOverTheWholeSetAndStatedOnce) {
     for (const fs::path& path : paths) headers.push_back(read_image_header(path));
     const LogCapture log;
     EXPECT_EQ(common_bit_depth(paths, headers, 0), most);
-    EXPECT_EQ(log.text(),
-              fmt::format("The values of 5 images of 16 bits use {} (see --bit-depth)\n", most));
+    EXPECT_EQ(
+        log.text(),
+        fmt::format("The values of 5 images of 16 bits use {} bits (see --bit-depth)\n", most));
     EXPECT_EQ(common_bit_depth(paths, headers, 14), 14);
   }
   fs::remove_all(folder);

@@ -144,10 +144,10 @@ TEST_F(Calibmar, WrongFilesAreNamed) {
     std::string text = kFlat;
     return text.replace(text.find(old), old.size(), now);
   };
-  EXPECT_THAT(error_of(with("FLATPORT", "PORTHOLE")), HasSubstr("'PORTHOLE' is neither"));
+  EXPECT_THAT(error_of(with("FLATPORT", "PORTHOLE")), HasSubstr("'PORTHOLE' is not FLATPORT"));
   EXPECT_THAT(error_of("model: PINHOLE\nparameters: [9, 9, 4, 3]\nwidth: 8\nheight: 6\n"
                        "non_svp_model: none\nnon_svp_parameters: []\n"),
-              HasSubstr("non_svp_model: the port 'none' is neither"));
+              HasSubstr("non_svp_model: the port 'none' is not FLATPORT"));
   EXPECT_THAT(error_of(with("0.0253", "x")), HasSubstr("non_svp_parameters has 'x'"));
   EXPECT_THAT(error_of(with("0.0253, ", "")), HasSubstr("has 7 numbers, expected 8"));
   EXPECT_THAT(error_of(with("0, 0, 1, ", "0, 0, -1, ")), HasSubstr("points backwards"));
@@ -155,7 +155,7 @@ TEST_F(Calibmar, WrongFilesAreNamed) {
   EXPECT_THAT(error_of(with("1920", "[1, 2]")), HasSubstr("width has 2 numbers"));
   EXPECT_THAT(error_of(with("OPENCV", "LENS")), HasSubstr("unknown model 'LENS'"));
   EXPECT_THAT(error_of(with("960, ", "")), HasSubstr("has 7 parameters, expected 8"));
-  EXPECT_THAT(error_of("hello\n"), HasSubstr("line 1: 'hello' is no 'key: value'"));
+  EXPECT_THAT(error_of("hello\n"), HasSubstr("line 1: 'hello' is not 'key: value'"));
   EXPECT_THAT(error_of(""), HasSubstr("is missing"));
 }
 

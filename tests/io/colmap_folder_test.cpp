@@ -106,8 +106,8 @@ TEST_F(ColmapFolderTest, NamesBothFiles) {
   write_colmap_text(folder_, changed({true, false, true}));
   write_colmap_binary(folder_, small_model());
   EXPECT_THAT(said_on_reading(),
-              HasSubstr(folder_.string() + ": cameras.bin, points3D.bin are read, as COLMAP does, "
-                                           "and not cameras.txt, points3D.txt, which differ"));
+              HasSubstr(folder_.string() + ": cameras.bin, points3D.bin are read, as in COLMAP; "
+                                           "ignored: cameras.txt, points3D.txt, which differ"));
 }
 
 // The order of the elements and rounding in the quaternions do not count as differences.
@@ -130,7 +130,7 @@ TEST_F(ColmapFolderTest, WarnsOfAFileThatCannotBeRead) {
   write_colmap_binary(folder_, small_model());
   test::put(folder_ / "images.txt", "stale");
   EXPECT_THAT(said_on_reading(),
-              HasSubstr("images.bin is read, as COLMAP does, and not images.txt"));
+              HasSubstr("images.bin is read, as in COLMAP; ignored: images.txt"));
 }
 
 // A folder with only a lens needs no complete model.
@@ -142,10 +142,10 @@ TEST_F(ColmapFolderTest, CamerasAloneGoByTheSameOrder) {
   for (const char* name : {"images.bin", "points3D.bin"}) fs::remove(folder_ / name);
   const LogCapture log;
   EXPECT_EQ(focal(), 500.01) << "the text model is whole";
-  EXPECT_THAT(log.text(), HasSubstr("cameras.txt is read, as COLMAP does, and not cameras.bin"));
+  EXPECT_THAT(log.text(), HasSubstr("cameras.txt is read, as in COLMAP; ignored: cameras.bin"));
   for (const char* name : {"images.txt", "points3D.txt"}) fs::remove(folder_ / name);
   EXPECT_EQ(focal(), 500) << "of two files alone the binary one";
-  EXPECT_THAT(log.text(), HasSubstr("cameras.bin is read, as COLMAP does, and not cameras.txt"));
+  EXPECT_THAT(log.text(), HasSubstr("cameras.bin is read, as in COLMAP; ignored: cameras.txt"));
   EXPECT_EQ(read_colmap_cameras(folder_ / "cameras.txt").at(0).params[0], 500.01);
 }
 
@@ -168,10 +168,9 @@ TEST_F(ColmapFolderTest, NamesModelsInOtherPlaces) {
     return std::pair(found, log.text());
   };
   EXPECT_EQ(said().first, sparse / "0");
-  EXPECT_THAT(said().second,
-              HasSubstr((sparse / "0").string() + ": is the model that is read, and not " +
-                        folder_.string() + ", " + (sparse / "1").string() + ", " +
-                        (sparse / "2").string() + "\n"));
+  EXPECT_THAT(said().second, HasSubstr((sparse / "0").string() + ": this model is read; ignored: " +
+                                       folder_.string() + ", " + (sparse / "1").string() + ", " +
+                                       (sparse / "2").string() + "\n"));
   write_colmap_binary(sparse, small_model());
   EXPECT_EQ(said().first, sparse);
   EXPECT_THAT(said().second, HasSubstr((sparse / "0").string() + ", " + folder_.string() + "\n"));

@@ -187,7 +187,7 @@ TEST_F(ColmapTest, RefusesTwoImagesOfOneName) {
   for (const char* name : {"c.jpg", "./c.jpg", "left/../c.jpg", ".//c.jpg"}) {
     model.images[2].name = name;
     write_colmap_text(folder_, model);
-    EXPECT_EQ(error(), folder_.string() + ": images 2 and 4 have one name, " + name);
+    EXPECT_EQ(error(), folder_.string() + ": images 2 and 4 have the same name, " + name);
   }
   for (const char* name : {"left/c.jpg", "C.jpg", "c.jpg.jpg"}) {
     model.images[2].name = name;
@@ -248,7 +248,7 @@ TEST_F(ColmapTest, NamesWhatIsWrongInImagesAndPoints) {
     return error();
   };
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 -3 1\n\n"), HasSubstr("name is missing"));
-  EXPECT_THAT(images("5 0 0 0 0 -1 -2 -3 1 a.jpg\n\n"), HasSubstr("no rotation"));
+  EXPECT_THAT(images("5 0 0 0 0 -1 -2 -3 1 a.jpg\n\n"), HasSubstr("not a rotation"));
   EXPECT_THAT(images("5 nan 0 0 0 -1 -2 -3 1 a.jpg\n\n"), HasSubstr("qw is 'nan'"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 inf 1 a.jpg\n\n"), HasSubstr("tz is 'inf'"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 -3 2 a.jpg\n1 2 9\n"), HasSubstr("camera 2"));

@@ -192,7 +192,7 @@ TEST_F(Underwater, RefusesWrongTails) {
   EXPECT_THAT(text("FLATPORT 0 0 1 0.02 0.014 1 1.52"), HasSubstr("parameter is missing"));
   EXPECT_THAT(text("FLATPORT 0 0 1 0.02 0.014 1 1.52 1.333 5"), HasSubstr("unexpected '5'"));
   EXPECT_THAT(text("FLATPORT 0 0 -1 0.02 0.014 1 1.52 1.333"), HasSubstr("cameras.txt: line 1"));
-  EXPECT_THAT(text("FLATPORT 0 0 0 0.02 0.014 1 1.52 1.333"), HasSubstr("no direction"));
+  EXPECT_THAT(text("FLATPORT 0 0 0 0.02 0.014 1 1.52 1.333"), HasSubstr("not a direction"));
   EXPECT_THAT(text("FLATPORT 0 0 1 nan 0.014 1 1.52 1.333"), HasSubstr("nan"));
   EXPECT_THAT(text("DOMEPORT 0 0 0.2 0.05 0.007 1 1.52 1.333"), HasSubstr("cameras.txt: line 1"));
   EXPECT_THAT(text("WINDOW 0 0 1"), HasSubstr("unexpected 'WINDOW"));

@@ -228,8 +228,8 @@ TEST_F(DmapTest, NamesWhatIsWrong) {
   EXPECT_THAT(error_with(28, std::uint16_t{65535}), HasSubstr("image name"));
   EXPECT_THAT(error_with(kIds, 0u), HasSubstr("no ids"));
   EXPECT_THAT(error_with(kIds, 0xFFFFFFFFu), HasSubstr("ids"));
-  EXPECT_THAT(error_with(kK, 0.0), HasSubstr("K is no calibration matrix"));
-  EXPECT_THAT(error_with(kR + 8, 0.5), HasSubstr("R is no rotation"));
+  EXPECT_THAT(error_with(kK, 0.0), HasSubstr("K is not a calibration matrix"));
+  EXPECT_THAT(error_with(kR + 8, 0.5), HasSubstr("R is not a rotation"));
   EXPECT_THAT(error_with(kC, std::nan("")), HasSubstr("C is not finite"));
   EXPECT_THAT(error_with(kDepth + 4, -1.0f), HasSubstr("pixel (1, 0) is -1"));
   EXPECT_THAT(error_with(kDepth + 4, std::nanf("")), HasSubstr("depth at pixel 1 is nan"));
@@ -329,7 +329,7 @@ TEST_F(DmapTest, ReadsTheHeaderAloneAsTheWholeMap) {
     const std::string bytes = read_file(file_);
     for (const std::string& wrong : {bytes + "x", bytes.substr(0, bytes.size() - 1)}) {
       test::put(file_, wrong);
-      EXPECT_THAT(error_of([&] { read_dmap_header(file_); }), HasSubstr("its header says"));
+      EXPECT_THAT(error_of([&] { read_dmap_header(file_); }), HasSubstr("according to its header"));
     }
   }
 }

@@ -81,7 +81,7 @@ TEST_F(GeoOffset, ASceneWithAnotherOnesFileIsSaid) {
   const LogCapture log;
   enter_local_frame(scene, scene_);
   EXPECT_THAT(log.text(), HasSubstr(file_.string()));
-  EXPECT_THAT(log.text(), HasSubstr(" m from the origin"));
+  EXPECT_THAT(log.text(), HasSubstr(" m from this origin"));
 }
 
 TEST_F(GeoOffset, AFarSceneWithoutAFileEntersAFrame) {
@@ -90,7 +90,7 @@ TEST_F(GeoOffset, AFarSceneWithoutAFileEntersAFrame) {
   EXPECT_EQ(enter_local_frame(scene, scene_).origin, Eigen::Vector3d(534010, 3378480, 10));
   EXPECT_EQ(scene.images[0].pose.centre, Eigen::Vector3d(2, -4, -3));
   EXPECT_EQ(scene.points[0].position, Eigen::Vector3f(2, -4, -3));
-  EXPECT_THAT(log.text(), HasSubstr("known to 0.25 m only"));
+  EXPECT_THAT(log.text(), HasSubstr("a resolution of only 0.25 m"));
 }
 
 TEST_F(GeoOffset, ANearSceneStaysAsItIs) {

@@ -330,8 +330,8 @@ TEST_F(HousingTest, RefusesEntriesThatSeveralImagesGoBy) {
         continue;
       }
       EXPECT_EQ(error_of([&] { attach_ports(scene, housing, "h.json"); }),
-                "h.json: housing.images.0.jpg could be /x/cam0/0.jpg or /x/cam1/0.jpg: write as "
-                "much of the path as tells them apart");
+                "h.json: housing.images.0.jpg matches /x/cam0/0.jpg and /x/cam1/0.jpg: give more "
+                "of the path");
       // All images but one have an entry of their own.
       for (int folder = 1; folder < folders; ++folder)
         housing.images[fmt::format("cam{}/0.jpg", folder)] = "main";
@@ -359,7 +359,7 @@ TEST_F(HousingTest, AnEntryThatIsAWholeNameIsThatImagesAlone) {
       error_of([&] {
         for_images(housing, std::vector<NamedCamera>{{"l/0.jpg", 7}, {"r/0.jpg", 7}}, "h.json");
       }),
-      HasSubstr("h.json: housing.images.0.jpg could be l/0.jpg or r/0.jpg"));
+      HasSubstr("h.json: housing.images.0.jpg matches l/0.jpg and r/0.jpg"));
 }
 
 TEST_F(HousingTest, EveryLineNamesTheFile) {
@@ -370,7 +370,7 @@ TEST_F(HousingTest, EveryLineNamesTheFile) {
   scene.images.emplace_back().path = "/x/a.jpg";
   LogCapture log;
   attach_ports(scene, housing, "h.json");
-  EXPECT_THAT(log.text(), HasSubstr("h.json: no image goes by images.gone.jpg"));
+  EXPECT_THAT(log.text(), HasSubstr("h.json: no image matches images.gone.jpg"));
   housing.cameras = {{1, "main"}};
   EXPECT_THAT(error_of([&] { attach_ports(scene, housing, "h.json"); }),
               testing::StartsWith("h.json: housing.cameras "));

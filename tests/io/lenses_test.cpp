@@ -99,10 +99,10 @@ TEST_F(LensesTest, RefusesEntriesThatSeveralImagesGoBy) {
   lenses.lenses["wide"] = barrel();
   lenses.images["0.jpg"] = "wide";
   write_lenses(file_, lenses);
-  EXPECT_EQ(error_of([&] { attach_lenses_beside(scene_, scene_file_); }),
-            file_.string() +
-                ": lenses.images.0.jpg could be /x/cam0/0.jpg or /x/cam1/0.jpg: write as much of "
-                "the path as tells them apart");
+  EXPECT_EQ(
+      error_of([&] { attach_lenses_beside(scene_, scene_file_); }),
+      file_.string() +
+          ": lenses.images.0.jpg matches /x/cam0/0.jpg and /x/cam1/0.jpg: give more of the path");
 }
 
 TEST_F(LensesTest, ReadsBackWhatItWrites) {
@@ -177,7 +177,7 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   EXPECT_THAT(with("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(with("perspective", "catadioptric"), HasSubstr("main.type is 'catadioptric'"));
   EXPECT_THAT(with("-0.1]", "0, 0, 0, 0, 0]"), HasSubstr("main.radial is [1,0,0,0,0,0]"));
-  EXPECT_THAT(with("-0.1", "\"x\""), HasSubstr("main.radial[1] is no number"));
+  EXPECT_THAT(with("-0.1", "\"x\""), HasSubstr("main.radial[1] is not a number"));
   EXPECT_THAT(with("[1,", "[0,"), HasSubstr("main.radial begins with 0"));
   EXPECT_THAT(with("\"radial\"", "\"spread\": -1, \"radial\""), HasSubstr("main.spread is -1"));
   EXPECT_THAT(with("\"radial\"", "\"k1\": 1, \"radial\""), HasSubstr("'k1'"));
@@ -187,7 +187,7 @@ TEST_F(LensesTest, NamesKeyAndValue) {
   EXPECT_THAT(with("{ \"main\":", "{ \"none\":"), HasSubstr("'none' cannot be the name"));
   // The lens folds back at its centre.
   EXPECT_THAT(with("-0.1]", "-0.1], \"tangential\": [999, 999], \"thin_prism\": [99, 0]"),
-              HasSubstr("lenses.main: is no lens of b.jpg"));
+              HasSubstr("lenses.main: is not a valid lens for b.jpg"));
 }
 
 TEST_F(LensesTest, RefusesNumbersThatAreNotFinite) {
@@ -207,7 +207,7 @@ TEST_F(LensesTest, WarnsOfNamesThatNoImageHas) {
   add("b.jpg", std::nullopt);
   const LogCapture log;
   attach_lenses_beside(scene_, scene_file_);
-  EXPECT_THAT(log.text(), HasSubstr(file_.string() + ": no image goes by images.a.jpg"));
+  EXPECT_THAT(log.text(), HasSubstr(file_.string() + ": no image matches images.a.jpg"));
 }
 
 TEST_F(LensesTest, SurvivesDamage) {

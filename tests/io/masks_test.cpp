@@ -116,7 +116,7 @@ TEST_F(MasksTest, TellWhyABaseNameIsNotTaken) {
   EXPECT_TRUE(found[0].path.empty());
   EXPECT_EQ(found[0].looked_for, "0001.mask.png, 0001.jpg.png, 0001_mask.png and 0001.png in " +
                                      (masks_ / "cam0").string() + " (not in " + masks_.string() +
-                                     ": several images are called 0001 there)");
+                                     ", because several images have the name 0001 there)");
 }
 
 TEST_F(MasksTest, ImagesAreNoMasks) {
@@ -167,7 +167,7 @@ TEST_F(MasksTest, RivalsAreThoseWithOtherLabels) {
 }
 
 TEST_F(MasksTest, TheFolderMustExist) {
-  EXPECT_THAT(error_of([&] { find({"a.jpg"}, folder_ / "no"); }), HasSubstr("no: is no folder"));
+  EXPECT_THAT(error_of([&] { find({"a.jpg"}, folder_ / "no"); }), HasSubstr("no: is not a folder"));
 }
 
 }  // namespace

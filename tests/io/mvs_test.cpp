@@ -319,7 +319,7 @@ TEST_F(MvsTest, NamesWhatIsWrong) {
   EXPECT_THAT(error([](D& d) { d.k[8] = 2; }), HasSubstr("calibration matrix"));
   EXPECT_THAT(error([](D& d) { d.width = 0; }), HasSubstr("0x480"));
   EXPECT_THAT(error([](D& d) { d.height = 0xFFFFFFFFu; }), HasSubstr("4294967295"));
-  EXPECT_THAT(error([](D& d) { d.pose_r[0] = 1; }), HasSubstr("no rotation"));
+  EXPECT_THAT(error([](D& d) { d.pose_r[0] = 1; }), HasSubstr("not a rotation"));
   EXPECT_THAT(error([](D& d) { d.pose_r[8] = -1; }), HasSubstr("determinant"));
   EXPECT_THAT(error([](D& d) { d.pose_r[0] = kNan; }), HasSubstr("pose R"));
   EXPECT_THAT(error([](D& d) { d.camera_r[0] = kNan; }), HasSubstr("camera R"));
@@ -359,7 +359,7 @@ TEST_F(MvsTest, RefusesOtherFiles) {
   EXPECT_THAT(message("garbage that is no scene"), HasSubstr("version 0"));
   EXPECT_THAT(message(bytes_of({}) + "x"), HasSubstr("1 bytes follow"));
   test::put(folder_ / "scene.ply", "garbage that is no scene");
-  EXPECT_THAT(error_of([&] { read_mvs(folder_ / "scene.ply", folder_); }), HasSubstr("no .mvs"));
+  EXPECT_THAT(error_of([&] { read_mvs(folder_ / "scene.ply", folder_); }), HasSubstr("not a .mvs"));
   EXPECT_THAT(error_of([&] { read_mvs(folder_ / "none.mvs", folder_); }), HasSubstr("none.mvs"));
   EXPECT_THAT(error_of([&] { read_mvs(folder_, folder_); }), HasSubstr("folder"));
 }

@@ -339,7 +339,7 @@ TEST_F(PhotographTest, MessagesTellCutFilesFromOtherFormats) {
     return error_of([&] { read_photograph(path); });
   };
   EXPECT_THAT(says("GIF89a and so on"), HasSubstr("a.jpg: is GIF, a format that is not supported"));
-  EXPECT_THAT(says("Dear diary, today"), HasSubstr("a.jpg: is in no image format"));
+  EXPECT_THAT(says("Dear diary, today"), HasSubstr("a.jpg: is not in a supported image format"));
   for (const char* extension : {".jpg", ".png", ".tiff", ".webp", ".bmp"}) {
     std::vector<unsigned char> bytes;
     cv::imencode(extension, random_pixels({40, 30}, CV_8UC3, 8, random_), bytes);
@@ -352,8 +352,8 @@ TEST_F(PhotographTest, MessagesTellCutFilesFromOtherFormats) {
                                                              [&] { read_image_size(path); },
                                                              [&] { read_image_header(path); }})
     EXPECT_EQ(error_of(read), path.string() +
-                                  ": pixels are floating-point numbers of 32 bits; "
-                                  "photographs have whole ones of 8 or 16");
+                                  ": pixels are floating-point numbers of 32 bits; photographs "
+                                  "must have whole numbers of 8 or 16");
 }
 
 }  // namespace

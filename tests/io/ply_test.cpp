@@ -345,7 +345,7 @@ TEST_F(PlyTest, NamesWhatIsWrongInAMesh) {
   EXPECT_THAT(message("3 0 1 2 0", "2 0 1 0"), HasSubstr("2 corners"));
   EXPECT_THAT(message("4 0 1 2 3", "255 0 1 2 3"), HasSubstr("vertex_index"));
   EXPECT_THAT(message("vertex_index", "corners"), HasSubstr("vertex_indices"));
-  EXPECT_THAT(message("element face 2", "element edge 2"), HasSubstr("no mesh"));
+  EXPECT_THAT(message("element face 2", "element edge 2"), HasSubstr("not a mesh"));
 }
 
 TEST_F(PlyTest, NamesWhatIsWrongInAHeader) {
@@ -356,7 +356,7 @@ TEST_F(PlyTest, NamesWhatIsWrongInAHeader) {
   const auto message = [&](const std::string& from, const std::string& to) {
     return error(replaced(good, from, to));
   };
-  EXPECT_THAT(message("ply\n", "plx\n"), HasSubstr("no PLY file"));
+  EXPECT_THAT(message("ply\n", "plx\n"), HasSubstr("not a PLY file"));
   EXPECT_THAT(message("ascii", "utf8"), HasSubstr("utf8"));
   EXPECT_THAT(message("1.0", "2.0"), HasSubstr("2.0"));
   EXPECT_THAT(message("format ascii 1.0\n", ""), HasSubstr("format"));
@@ -367,7 +367,7 @@ TEST_F(PlyTest, NamesWhatIsWrongInAHeader) {
   EXPECT_THAT(message("vertex 1", "edge 1"), HasSubstr("no element vertex"));
   EXPECT_THAT(message("float y", "real y"), HasSubstr("real"));
   EXPECT_THAT(message("float y", "float x"), HasSubstr("declared twice"));
-  EXPECT_THAT(message("property float y\n", ""), HasSubstr("lacks x, y or z"));
+  EXPECT_THAT(message("property float y\n", ""), HasSubstr("has no x, y or z"));
   EXPECT_THAT(message("float y", "list float int y"), HasSubstr("counted in a float"));
   EXPECT_THAT(message("property float z", "property float z junk"), HasSubstr("junk"));
   EXPECT_THAT(message("end_header", "end_head"), HasSubstr("end_head"));

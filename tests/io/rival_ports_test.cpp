@@ -86,8 +86,9 @@ TEST(HousingBesideAScene, IsNamedWhereItDiffers) {
   EXPECT_EQ(said(given), "");
   renamed.images["b.jpg"] = "none";
   write_housing(beside, renamed);
-  EXPECT_THAT(said(given), HasSubstr(beside.string() + ": is not used, but " + given.string() +
-                                     ", whose ports differ, first for images/b.jpg"));
+  EXPECT_THAT(said(given),
+              HasSubstr(beside.string() + ": is not used (" + given.string() +
+                        " is used instead), and its ports differ, first for images/b.jpg"));
   EXPECT_EQ(said(beside), "") << "it is the one that is used";
   test::put(beside, "{");
   EXPECT_THAT(said(given), HasSubstr("malformed JSON"));

@@ -118,7 +118,7 @@ TEST(ColmapBundle, RefusesAWaterSurface) {
   EXPECT_EQ(test::error_of([&] {
               to_bundle(model, {&kLens, 1}, lake);
             }),
-            "port 'main' is a water surface, which is another port for every pose");
+            "port 'main' is a water surface, which is a different port for every pose");
 }
 
 TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
@@ -128,12 +128,12 @@ TEST(ColmapBundle, RefusesALensOfAnotherSizeOrNone) {
   EXPECT_EQ(test::error_of([&] {
               to_bundle(model, {&small, 1}, housing());
             }),
-            "camera 4 is 1024 x 768, its in-air lens 512 x 768");
+            "camera 4 is 1024 x 768, but its lens calibrated in air is 512 x 768");
   std::vector<io::ColmapCamera> others{kLens, kLens};
   others[0].id = 1;
   others[1].id = 2;
   EXPECT_EQ(test::error_of([&] { to_bundle(model, others, housing()); }),
-            "camera 4 has no in-air lens");
+            "camera 4 has no lens calibrated in air");
 }
 
 // A model as COLMAP-Underwater writes it. Its camera has the port, whether the poses were computed

@@ -243,8 +243,8 @@ TEST_F(RefinePoses, CountsAnImageOnceInATrack) {
   write("sparse", model);
   const Outcome outcome = run(kInput + "-o more --scale-from " + baseline());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr(
-                                  fmt::format("{} observations are of an image that sees", added)));
+  EXPECT_THAT(outcome.output,
+              ::testing::HasSubstr(fmt::format("{} observations are ignored", added)));
   const auto once = nlohmann::json::parse(read_file(folder_ / "once" / "report.json"));
   const auto more = nlohmann::json::parse(read_file(folder_ / "more" / "report.json"));
   EXPECT_EQ(more["observations_after"], once["observations_after"]);
@@ -340,16 +340,17 @@ TEST_F(RefinePoses, SaysWhichOfTwoPortsItTakes) {
   for (const char* agreeing :
        {"", "--lens same.yaml", "--housing housing.json", "--lens lens --housing housing.json"})
     EXPECT_THAT(lines(agreeing), ::testing::Not(::testing::HasSubstr("differ"))) << agreeing;
-  EXPECT_THAT(lines("--lens other.yaml"),
-              ::testing::ContainsRegex("ports are those of .*other.yaml, and not those of the "
-                                       "model in .*colmap-underwater, which differ, first for "
-                                       "image0.jpg"));
+  EXPECT_THAT(
+      lines("--lens other.yaml"),
+      ::testing::ContainsRegex("The ports of .*other.yaml are used; the ports of the model in "
+                               ".*colmap-underwater differ and are ignored, first for image0.jpg"));
   EXPECT_THAT(lines("--lens other.yaml --housing housing.json"),
-              ::testing::ContainsRegex("ports are those of .*housing.json, and not those of "
-                                       ".*other.yaml, which differ"));
-  EXPECT_THAT(lines("--lens other_lens"),
-              ::testing::ContainsRegex("lenses are those of .*other_lens, and not those of "
-                                       ".*colmap-underwater, which differ, first for camera 1"));
+              ::testing::ContainsRegex("The ports of .*housing.json are used; the ports of "
+                                       ".*other.yaml differ and are ignored"));
+  EXPECT_THAT(
+      lines("--lens other_lens"),
+      ::testing::ContainsRegex("The lenses of .*other_lens are used; the lenses of "
+                               ".*colmap-underwater differ and are ignored, first for camera 1"));
 }
 
 TEST_F(RefinePoses, RefusesAWaterSurface) {
@@ -408,7 +409,8 @@ TEST_F(RefinePoses, LeavesOutAnImageOfWhichNothingFits) {
   write("sparse", model);
   const Outcome outcome = run(kInput + "-o out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg: too few observations fit"));
+  EXPECT_THAT(outcome.output,
+              ::testing::HasSubstr("image11.jpg: left out: too few observations fit"));
   const io::ColmapModel refined = io::read_colmap_model(folder_ / "out" / "sparse");
   EXPECT_EQ(refined.images.size(), 11u);
   const auto report = io::read_json(folder_ / "out" / "report.json");
@@ -437,7 +439,7 @@ TEST_F(RefinePoses, WarnsOfANumberThatDoesNotFitThePhotographs) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
     EXPECT_THAT(outcome.output,
                 ::testing::ContainsRegex("do not fit the photographs: with index of water at .* "
-                                         "errors are .* px for .* px"));
+                                         "errors are .* px instead of .* px"));
   }
 }
 
@@ -457,9 +459,11 @@ TEST_F(RefinePoses, DoesNotAskForTheHousingWhereImagesHaveFewObservations) {
   write("sparse", model);
   const Outcome outcome = run(kInput + "-o out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr("image11.jpg: too few observations fit"));
-  EXPECT_THAT(outcome.output, ::testing::HasSubstr("are of images with fewer than 30 that fit"));
-  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("is this the housing")));
+  EXPECT_THAT(outcome.output,
+              ::testing::HasSubstr("image11.jpg: left out: too few observations fit"));
+  EXPECT_THAT(outcome.output,
+              ::testing::HasSubstr("belong to images with fewer than 30 observations that fit"));
+  EXPECT_THAT(outcome.output, ::testing::Not(::testing::HasSubstr("check the housing")));
 }
 
 // A model with ports, aligned to centres in another unit.
@@ -489,11 +493,11 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses("-i . --lens lens --housing housing.json", "--output-folder is missing");
   refuses("-i nowhere --lens lens --housing housing.json -o out", "nowhere");
   refuses(kInput + "-o out --poses perhaps", "--poses perhaps: must be adjust or known");
-  refuses(kInput + "-o out --poses known --scale-from " + baseline(), "--poses known says");
-  refuses(kInput + "-o out --refine tilt", "'tilt' is none of normal, distance");
+  refuses(kInput + "-o out --poses known --scale-from " + baseline(), "contradicts --poses known");
+  refuses(kInput + "-o out --refine tilt", "'tilt' is not one of normal, distance");
   refuses(kInput + "-o out --scale-from 3", "must begin with images:, points: or positions:");
   refuses(kInput + "-o out --scale-from images:image0.jpg,lost.jpg,1", "no image 'lost.jpg'");
-  refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,-1", "-1 m is no distance");
+  refuses(kInput + "-o out --scale-from images:image0.jpg,image1.jpg,-1", "-1 m is not a distance");
   refuses(kInput + "-o out --scale-from points:1000,7,1", "point 7 is not in the model");
   refuses(kInput + "-o out --scale-from positions:lost.txt", "lost.txt");
   refuses(kInput + "-o out --refine centre", "there is a flat port");
@@ -508,7 +512,7 @@ TEST_F(RefinePoses, RefusesInOneLineThatNamesTheFault) {
   refuses(kInput + "-o out --scale-from positions:two.txt", "two.txt:2: must be NAME X Y Z");
   write_atomically(folder_ / "few.txt", "image0.jpg 1 0 0\nlost.jpg 2 0 1\nimage2.jpg 3 0 0\n");
   refuses(kInput + "-o out --scale-from positions:few.txt",
-          "few.txt: 2 positions of images of the model");
+          "few.txt: contains 2 positions of images of the model");
   write_atomically(folder_ / "line.txt", "image0.jpg 1 0 0\nimage1.jpg 2 0 0\nimage2.jpg 3 0 0\n");
   refuses(kInput + "-o out --scale-from positions:line.txt", "lie on one line");
   write_atomically(folder_ / "dry.json", "{\"version\": 1, \"ports\": {}, \"default\": \"none\"}");

@@ -113,7 +113,7 @@ TEST_F(WriteResults, AModelWithoutScaleSaysSo) {
   lost.unused = {"--scale-from"};
   for (const auto& [what, known_now] : {std::pair{results(), none}, std::pair{lost, known()}}) {
     const std::vector<std::string> lines = uncertainty_lines(what, known_now);
-    EXPECT_THAT(lines.back(), HasSubstr("All lengths: not known"));
+    EXPECT_THAT(lines.back(), HasSubstr("All lengths are unknown"));
     for (const std::string& line : lines) {
       EXPECT_THAT(line, ::testing::Not(HasSubstr("inf")));
       EXPECT_THAT(line, ::testing::Not(HasSubstr("%")));

@@ -114,10 +114,10 @@ TEST(CameraList, RefusesWhatCannotBeMatched) {
   const std::vector<CameraModel> mixed{test::behind_port(dry), behind_dome()};
   EXPECT_THAT(
       test::error_of([&] { make_camera_list<float>(mixed, ProjectionMethod::line_search); }),
-      HasSubstr("line search"));
+      HasSubstr("projection line-search"));
   const std::vector<CameraModel> dome{behind_dome()};
   EXPECT_THAT(test::error_of([&] { make_camera_list<float>(dome, ProjectionMethod::line_search); }),
-              HasSubstr("line search"));
+              HasSubstr("projection line-search"));
   const std::vector<CameraModel> barrel{with_barrel(test::behind_port(dry))};
   EXPECT_THAT(
       test::error_of([&] { make_camera_list<float>(barrel, ProjectionMethod::line_search); }),

@@ -170,7 +170,7 @@ TEST(ScoreNeighbours, SaysWhereThePointsOfAnUnusableImageLie) {
   scene.images[0].pose.rotation =
       Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY()) * scene.images[0].pose.rotation;
   EXPECT_EQ(score_neighbours(scene)[0].problem,
-            "it sees only 0 sparse points (of 289 more, 289 behind it)");
+            "it sees only 0 sparse points (289 more do not count: 289 behind the camera)");
 
   scene = make_scene(test::dry_camera());
   for (SparsePoint& point : scene.points)
@@ -180,7 +180,7 @@ TEST(ScoreNeighbours, SaysWhereThePointsOfAnUnusableImageLie) {
     scene.points.push_back(alone);
   }
   EXPECT_EQ(score_neighbours(scene)[2].problem,
-            "it sees only 0 sparse points (of 289 more, 289 seen by no other image)");
+            "it sees only 0 sparse points (289 more do not count: 289 seen by no other image)");
 }
 
 // Any number of neighbours with one reason for rejection each. Every neighbour must be counted
@@ -214,7 +214,8 @@ RC_GTEST_PROP(WhyNoSourceView, CountsEachNeighbourOnce, ()) {
     neighbours.insert(neighbours.end(), counts[kind], kinds[kind].first);
   RC_ASSERT(choose_source_views(neighbours, 5, options).empty());
   const std::string said = why_no_source_view(neighbours, options);
-  RC_ASSERT(said.starts_with(fmt::format("no good images in view: {} with", neighbours.size())));
+  RC_ASSERT(
+      said.starts_with(fmt::format("no suitable source view: {} images have", neighbours.size())));
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     const std::string part = fmt::format(" {} {}", counts[kind], kinds[kind].second);
     RC_ASSERT((said.find(part) != std::string::npos) == (counts[kind] > 0));

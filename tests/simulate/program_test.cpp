@@ -60,10 +60,10 @@ TEST_F(SimulateUnderwater, PhotographsThroughTheSurface) {
   EXPECT_EQ(surface.normal, Eigen::Vector3d(0, 0, -1));
   EXPECT_EQ(surface.point.z(), 0.5);
   EXPECT_EQ(surface.n_water, 1.34);
-  refuses("--tilt-degrees is of a housing", kSmall + "--water-level 0.5 --tilt-degrees 3 -o b");
-  refuses("--dome-radius is of a housing", kSmall + "--water-level 0.5 --dome-radius 0.1 -o b");
+  refuses("--tilt-degrees is for a housing", kSmall + "--water-level 0.5 --tilt-degrees 3 -o b");
+  refuses("--dome-radius is for a housing", kSmall + "--water-level 0.5 --dome-radius 0.1 -o b");
   refuses("view 0: the camera is -", kSmall + "--water-level 5 -o b");
-  refuses("surface is 0 m high: the scene stands out of it", kSmall + "--water-level 0 -o b");
+  refuses("surface is at a height of 0 m, but the scene reaches", kSmall + "--water-level 0 -o b");
 }
 
 TEST_F(SimulateUnderwater, WritesAWholeSceneAndItsTruthAgain) {
