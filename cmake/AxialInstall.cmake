@@ -7,8 +7,12 @@ include(CMakePackageConfigHelpers)
 
 # Programs.
 install(TARGETS ${AXIAL_PROGRAMS} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
-install(PROGRAMS apps/pipeline/reconstruct DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs
-  RENAME axial-reconstruct)
+foreach(script reconstruct colmap-model)
+  install(PROGRAMS apps/pipeline/${script} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs RENAME axial-${script})
+endforeach()
+# The package of these scripts, which they look for in this folder of the prefix.
+install(DIRECTORY apps/pipeline/axial_pipeline DESTINATION share/axialmvs COMPONENT programs
+  FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 
@@ -67,6 +71,6 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME axialmvs)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# axial-reconstruct runs python3 and colmap.
+# The scripts run python3 and colmap.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
 include(CPack)

@@ -9,9 +9,8 @@
 # again. The table is build/acceptance/table.md. Exit code 1 if a point fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-source apps/pipeline/steps.sh
 bash apps/pipeline/install-deps.sh
-build_programs
 cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
-cmake --build --preset release --target held_out_check matching_benchmark RefinePoses
+cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
+  EvaluateReconstruction AlignModel RefinePoses held_out_check matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parse_number.h"
-#include "base/subprocess.h"
 #include "evaluate/alignment.h"
 #include "io/colmap.h"
 #include "io/housing.h"
@@ -38,56 +37,6 @@ Words options_of(const SceneOptions& o) {
   words += o.port;
   words += o.more;
   return words;
-}
-
-// The model with the most images; empty if there is none.
-fs::path largest_model(const fs::path& models) {
-  fs::path best;
-  std::size_t most = 0;
-  for (const auto& entry : fs::directory_iterator(models)) {
-    const std::size_t images = io::read_colmap_model(entry.path()).images.size();
-    if (images <= most) continue;
-    most = images;
-    best = entry.path();
-  }
-  return best;
-}
-
-void extract_and_match(const Chain& chain, const fs::path& folder, const fs::path& images,
-                       const Calibration& calibration) {
-  const std::string threads = std::to_string(chain.max_threads > 0 ? int(chain.max_threads) : -1);
-  const Words database{"--database_path", (folder / "database.db").string()};
-  Words features{"colmap", "feature_extractor"};
-  features += database;
-  features += {"--image_path",
-               images.string(),
-               "--ImageReader.single_camera",
-               "1",
-               "--ImageReader.camera_model",
-               calibration.model,
-               "--ImageReader.camera_params",
-               calibration.parameters,
-               "--SiftExtraction.use_gpu",
-               "0",
-               "--SiftExtraction.num_threads",
-               threads};
-  run_subprocess(features, folder / "features.log");
-  Words matches{"colmap", "exhaustive_matcher"};
-  matches += database;
-  matches += {"--SiftMatching.use_gpu", "0", "--SiftMatching.num_threads", threads};
-  run_subprocess(matches, folder / "matches.log");
-}
-
-// If COLMAP's mapper finds no poses it fails with this message: a result, not an error.
-void map(const Chain& chain, const fs::path& folder, const fs::path& images, bool refine) {
-  const std::string flag = refine ? "1" : "0";
-  run_unless_excused(
-      {"colmap", "mapper", "--database_path", (folder / "database.db").string(), "--image_path",
-       images.string(), "--output_path", (folder / "models").string(), "--Mapper.num_threads",
-       std::to_string(chain.max_threads > 0 ? int(chain.max_threads) : -1),
-       "--Mapper.ba_refine_focal_length", flag, "--Mapper.ba_refine_principal_point", "0",
-       "--Mapper.ba_refine_extra_params", flag},
-      folder / "mapper.log", {"failed to create sparse model"});
 }
 
 Words densify_words(const fs::path& folder, const DenseOptions& options) {
@@ -154,15 +103,18 @@ Calibration calibration_of(const fs::path& colmap_model) {
 
 ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const SimulatedScene& scene,
                          const std::string& medium, const Calibration& calibration) {
-  const fs::path folder = scene.folder / name, metric = folder / "metric";
-  const Json inputs{medium, calibration.model, calibration.parameters, calibration.refine};
+  const fs::path folder = scene.folder / name, model = folder / "model", metric = folder / "metric";
+  Words arguments{"--images", scene.images(medium).string(), "-o", folder.string()};
+  arguments += {"--camera-model", calibration.model};
+  arguments += {"--camera-parameters", calibration.parameters};
+  if (calibration.refine) arguments += {"--refine"};
+  const Json inputs{medium, calibration.model, calibration.parameters, calibration.refine, "model"};
   step(folder, inputs, [&] {
-    extract_and_match(chain, folder, scene.images(medium), calibration);
-    make_folder(folder / "models");
-    map(chain, folder, scene.images(medium), calibration.refine);
+    // That COLMAP finds no poses is a result, not an error.
+    run_sibling(chain, "axial-colmap-model", arguments, folder / "colmap.log",
+                {"COLMAP found no poses"});
   });
-  const fs::path model = largest_model(folder / "models");
-  if (model.empty() || io::read_colmap_model(model).images.size() < 3) return {};
+  if (!fs::is_directory(model) || io::read_colmap_model(model).images.size() < 3) return {};
   // A step of its own, so that changes of the project's programs do not run COLMAP again.
   step(metric, {content_of(model), content_of_programs({"AlignModel"})}, [&] {
     run_sibling(

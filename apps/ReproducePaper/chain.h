@@ -71,8 +71,8 @@ Calibration self_calibration(const SimulatedScene& scene);
 // The lens that COLMAP found in `colmap_model`, fixed.
 Calibration calibration_of(const std::filesystem::path& colmap_model);
 
-// Poses and sparse points from photographs. `model` is empty if COLMAP found poses for fewer than
-// three images.
+// Poses and sparse points from photographs, by the script axial-colmap-model. `model` is empty if
+// COLMAP found poses for fewer than three images.
 struct ColmapPoses {
   std::filesystem::path model;  // aligned with the true camera centres, in metres
   std::size_t images = 0;       // registered

@@ -10,7 +10,9 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from support import runs  # noqa: E402
-from support.runs import BIN, measured, step  # noqa: E402
+from support.runs import PROGRAMS, measured  # noqa: E402
+from axial_pipeline.colmap_model import colmap_model  # noqa: E402
+from axial_pipeline.truth import self_calibrated_lens  # noqa: E402
 
 # None: the scene is in git. Otherwise: SimulateUnderwater's options for it. The dome is decentred
 # by 5 mm, along all three axes.
@@ -73,15 +75,14 @@ def raw_model(truth, base):
     is kept as long as the photographs: for good if they are in git, else in the scene's folder."""
     in_git = SCENES[truth.name] is None
     work = base / "colmap" / f"{truth.name}-water-1" if in_git else truth.data / "colmap"
-    lens = (truth.data / "sparse" / "cameras.txt").read_text().split("PINHOLE")[1].split()[2:6]
-    step("colmap_model", truth.data / "water", work, "OPENCV", ",".join(lens) + ",0,0,0,0", "free")
+    colmap_model(truth.data / "water", work, self_calibrated_lens(truth.data))
     return work / "model"
 
 
 def refine(truth, model, output, *options):
     """Runs RefinePoses. Returns the RMS reprojection error [px] and the number of observations."""
-    measured(output.parent / f"{output.name}.log", BIN / "RefinePoses", "-i", model, "--lens",
-             truth.data / "sparse", "--housing", truth.data / "housing.json", "-o", output, *options)
+    measured(output.parent / f"{output.name}.log", *PROGRAMS.refine_poses(
+        model, truth.data / "sparse", truth.data / "housing.json", output, *options))
     report = json.loads((output / "report.json").read_text())
     return report["rms_after_px"], report["observations_after"]
 
@@ -90,7 +91,7 @@ def align(model, reference, output):
     """Runs AlignModel. Returns the scale, the RMS distance of the centres [mm] and the largest
     rotation error [degrees]."""
     log = output.parent / f"{output.name}.log"
-    measured(log, BIN / "AlignModel", "-i", model, "--reference", reference, "-o", output)
+    measured(log, *PROGRAMS.align(model, reference, output))
     text = log.read_text()
     return [float(re.search(pattern, text)[1]) for pattern in
             (r"scale ([\d.]+)", r"RMS ([\d.]+) mm", r"largest ([\d.]+) degrees")]

@@ -2,10 +2,6 @@
 """apps/pipeline/reconstruct: from raw underwater photographs to a cloud in one command, which goes
 on after it was killed at any step."""
 
-import contextlib
-import importlib.machinery
-import importlib.util
-import io
 import json
 import os
 import pathlib
@@ -13,13 +9,11 @@ import select
 import shlex
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
-import unittest.mock
 
 from programs import BIN, main, read, run
 
@@ -37,99 +31,6 @@ def camera_centres(images):
                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
         centre = [-sum(rotation[row][column] * t[row] for row in range(3)) for column in range(3)]
         yield " ".join([rest[-1], *map(str, centre)]) + "\n"
-
-
-def loaded():
-    """The script as a module."""
-    loader = importlib.machinery.SourceFileLoader("reconstruct", str(SCRIPT))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("reconstruct", loader))
-    loader.exec_module(module)
-    return module
-
-
-class WithAnotherColmap(unittest.TestCase):
-    """Functions of the script, with a stand-in for COLMAP and its models."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="axial_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.module = loaded()
-
-    def options_where_colmap_says(self, text):
-        program = self.folder / "colmap"
-        program.write_text(f"#!/bin/sh\necho '{text}'\n")
-        program.chmod(0o755)
-        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
-            return self.module.on_the_cpu("feature_extractor", "SiftExtraction.use_gpu",
-                                          "FeatureExtraction.use_gpu")
-
-    def test_keeps_every_version_off_the_graphics_card(self):
-        self.assertEqual(self.options_where_colmap_says("--SiftExtraction.use_gpu arg (=1)"),
-                         ["--SiftExtraction.use_gpu", 0])
-        self.assertEqual(self.options_where_colmap_says("--FeatureExtraction.use_gpu arg (=1)"),
-                         ["--FeatureExtraction.use_gpu", 0])
-        self.assertEqual(self.options_where_colmap_says("--other arg"), [])
-
-    def start_of(self, text, model):
-        lens = self.folder / "lens"
-        lens.write_bytes(text)
-        return self.module.start_of_lens(lens, model)
-
-    def test_starts_from_the_lens_in_air_times_the_waters_index(self):
-        one = b"# a comment\n\n1 SIMPLE_RADIAL 640 480 1000 320 240 -0.1\n"
-        two = b"1 OPENCV 640 480 1000 2000 320 240 1 2 3 4\n"
-        calibmar = b"model: OPENCV\nwidth: 640\nparameters: [1000, 2000, 320,\n  240, 1, 2, 3, 4]\n"
-        for text, model, expected in [(one, "OPENCV", "1333,1333,320,240,0,0,0,0"),
-                                      (one, "RADIAL", "1333,320,240,0,0"),
-                                      (two, "PINHOLE", "1333,2666,320,240"),
-                                      (two, "SIMPLE_RADIAL", "1999.5,320,240,0"),
-                                      (calibmar, "OPENCV", "1333,2666,320,240,0,0,0,0")]:
-            self.assertEqual(self.start_of(text, model),
-                             ["--ImageReader.camera_params", expected])
-        for text, model in [(one, "UNKNOWN"), (b"\x01\xff\0", "OPENCV"), (b"", "OPENCV"),
-                            (b"1 OPENCV 640 480 a\n", "OPENCV")]:
-            self.assertEqual(self.start_of(text, model), [])
-
-    def test_reads_positions_as_refine_poses_does(self):
-        """The same lines as in tests/io/position_file_test.cpp."""
-        images = {"a.jpg", "dive 1/a b.jpg", "#5 of 7.jpg", '"q" 1.jpg'}
-        for line, name in (("a.jpg 1 2 3", "a.jpg"), ("dive 1/a b.jpg 1 2 3\r", "dive 1/a b.jpg"),
-                           ("#5 of 7.jpg 1 2 3", "#5 of 7.jpg"), ("#a.jpg 1 2 3", None),
-                           ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
-                           ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
-                           ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
-            self.assertEqual(self.module.name_of_position(line, images.__contains__), name, line)
-
-    def test_says_which_positions_are_of_no_photograph(self):
-        for name in ("a.jpg", "b.jpg", "c.jpg"):
-            (self.folder / name).touch()
-        file, said = self.folder / "positions.txt", io.StringIO()
-        file.write_text("a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
-        with contextlib.redirect_stdout(said):
-            self.module.check_positions(file, self.folder)
-        self.assertIn("1 of 4 names are no photographs", said.getvalue())
-        self.assertIn("C.jpg first", said.getvalue())
-
-    def largest_of(self, *sizes):
-        for number, size in enumerate(sizes):
-            model = self.folder / "models" / str(number)
-            model.mkdir(parents=True)
-            (model / "images.bin").write_bytes(struct.pack("<Q", size))
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said):
-            self.module.largest(self.folder / "models")
-        best = self.folder / "models" / "best"
-        return self.module.registered(best), said.getvalue()
-
-    def test_says_how_many_pieces_there_are(self):
-        size, said = self.largest_of(3, 9, 2)
-        self.assertEqual(size, 9)
-        self.assertIn("9 images have poses", said)
-        self.assertIn("2 more models, of 3, 2 images", said)
-
-    def test_says_nothing_of_pieces_where_there_is_one(self):
-        self.assertNotIn("more", self.largest_of(4)[1])
 
 
 # A stand-in for every program of the pipeline; its file name tells which one. It runs in the folder
@@ -334,6 +235,7 @@ class Reconstruct(unittest.TestCase):
                 (["--lens", "nowhere.txt"], "--lens nowhere.txt: is not there"),
                 (["--scale-from", "positions:none"],
                  "--scale-from positions:none: the file is not there"),
+                (["--densify", "'a b"], "--densify 'a b: No closing quotation"),
                 (["--programs", str(self.scene)],
                  f"--programs {self.scene.resolve()}: RefinePoses is not there; build it first")]:
             ended = self.ended(out, *options)

@@ -58,6 +58,7 @@ class Case(unittest.TestCase):
                                    "instruction sets: SSE2, AVX2, AVX-512\n$")
             self.assertTrue(list((prefix / "share/man/man1").glob(program + ".1*")), program)
         self.assertIn("--housing", output_of(prefix / "bin/axial-reconstruct", "--help"))
+        self.assertIn("--camera-model", output_of(prefix / "bin/axial-colmap-model", "--help"))
         self.assertTrue((prefix / "share/doc").is_dir())
 
 

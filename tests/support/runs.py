@@ -14,7 +14,12 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "apps" / "pipeline"))
+from axial_pipeline import truth as pipeline_truth  # noqa: E402
+from axial_pipeline.programs import Programs  # noqa: E402
+
 BIN = ROOT / "build" / "release" / "bin"
+PROGRAMS = Programs(BIN)
 SHARED = ROOT.parent / "shared" / "data"
 
 
@@ -45,13 +50,6 @@ def measured(log, *command):
             "memory": usage.ru_maxrss * 1024}
 
 
-def step(name, *arguments):
-    """Runs a shell function of apps/pipeline/steps.sh."""
-    script = f'source apps/pipeline/steps.sh; bin={BIN}; {name} "$@"'
-    subprocess.run(["bash", "-euo", "pipefail", "-c", script, name, *map(str, arguments)], cwd=ROOT,
-                   check=True)
-
-
 # Scenes with ground truth.
 
 TOLERANCES = {"closeup": 0.002, "reef": 0.005}  # of F-scores [m]
@@ -72,7 +70,7 @@ def synthetic(name, base):
     data = ROOT / "data" / "synthetic" / name
     if not data.is_dir():
         raise Skipped(f"no {data}")
-    step("make_truth", name, base / "truth" / name)
+    pipeline_truth.make_truth(PROGRAMS, name, base / "truth" / name)
     return Truth(name, data, base / "truth" / name / "mesh.ply", TOLERANCES[name])
 
 
@@ -84,7 +82,7 @@ def simulated(name, base, *options, tolerance=0.002):
     mark = folder / "made-by"
     if not mark.exists() or mark.read_text() != made_by:
         shutil.rmtree(folder, ignore_errors=True)
-        measured(folder / "simulate.log", BIN / "SimulateUnderwater", "-o", folder, *options)
+        measured(folder / "simulate.log", *PROGRAMS.simulate(folder, *options))
         mark.write_text(made_by)
     return Truth(name, folder, folder / "mesh.ply", tolerance)
 
@@ -98,9 +96,9 @@ def survey(views, base):
     folder = base / "survey"
     if not (folder / "rendered").exists():
         shutil.rmtree(folder, ignore_errors=True)
-        measured(base / "survey.log", BIN / "SimulateUnderwater", "--preset", "survey", "--views",
-                 SURVEY_VIEWS, "--width", 640, "--height", 480, "--samples", 1, "--truth", 0,
-                 "--medium", "air", "-o", folder)
+        measured(base / "survey.log", *PROGRAMS.simulate(
+            folder, "--preset", "survey", "--views", SURVEY_VIEWS, "--width", 640, "--height", 480,
+            "--samples", 1, "--truth", 0, "--medium", "air"))
         (folder / "rendered").touch()
     if views == SURVEY_VIEWS:
         return folder / "sparse", folder / "air"
@@ -118,9 +116,8 @@ ONE_SWEEP = ("--iters", 1, "--geometric-iters", 1)
 
 def import_scene(folder, model, images, housing=None):
     """Imports a COLMAP model to `folder`/scene.mvs."""
-    port = ["--housing", housing] if housing else []
-    measured(folder / "import.log", BIN / "InterfaceCOLMAP", "-i", model, "--image-folder", images,
-             "-o", folder / "scene.mvs", *port)
+    measured(folder / "import.log",
+             *PROGRAMS.import_scene(model, images, folder / "scene.mvs", housing))
 
 
 def densify(folder, *options):
@@ -129,8 +126,7 @@ def densify(folder, *options):
     for pattern in ("depth*.dmap*", "scene_dense.*"):
         for path in folder.glob(pattern):
             path.unlink()
-    cost = measured(folder / "densify.log", BIN / "DensifyPointCloud", "-i", "scene.mvs", "-w",
-                    folder, *options)
+    cost = measured(folder / "densify.log", *PROGRAMS.densify("scene.mvs", folder, *options))
     return cost | {"points": points_in(folder), "megapixels": megapixels(folder)}
 
 
@@ -153,10 +149,10 @@ def evaluate(folder, truth, medium, align="none"):
     """Compares the dense cloud of `folder` with the true mesh. Lengths are in metres."""
     housing = truth.housing(medium)
     file = folder / f"evaluation-{align}.json"
-    measured(folder / "evaluate.log", BIN / "EvaluateReconstruction", "-i",
-             folder / "scene_dense.ply", "-m", truth.mesh, "--cameras", truth.data / "sparse",
-             "--tolerance", truth.tolerance, "--json", file, "--align", align,
-             *(["--housing", housing] if housing else []))
+    measured(folder / "evaluate.log", *PROGRAMS.evaluate(
+        folder / "scene_dense.ply", truth.mesh, "--cameras", truth.data / "sparse", "--tolerance",
+        truth.tolerance, "--json", file, "--align", align,
+        *(["--housing", housing] if housing else [])))
     result = json.loads(file.read_text())
     return {"mean": result["accuracy"]["mean"], "median": result["accuracy"]["median"],
             "points": result["accuracy"]["count"], "f": result["scores"][0]["f_score"]}

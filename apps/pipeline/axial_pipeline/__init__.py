@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs COLMAP and the programs of AxialMVS in sequence, from photographs to a dense cloud. Needs
+only the standard library.
+
+reconstruct    photographs taken under water to a cloud: the command axial-reconstruct
+colmap_model   photographs to a COLMAP model: the command axial-colmap-model
+demo           a simulated scene reconstructed in three ways, compared with the truth
+colmap, lens   COLMAP's commands, its models, and the lens that it starts with
+programs       commands of AxialMVS's programs
+running        running commands, with logs
+steps          steps that are not repeated when a killed run is started again
+"""

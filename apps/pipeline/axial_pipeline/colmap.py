@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""COLMAP's commands, as lists of words, and the models that COLMAP writes."""
+
+import shutil
+import struct
+import subprocess
+
+from .failure import Failure
+
+# How versions of COLMAP call the options of features and of matches.
+EXTRACTION = ("SiftExtraction", "FeatureExtraction")
+MATCHING = ("SiftMatching", "FeatureMatching")
+
+
+def check_installed():
+    if not shutil.which("colmap"):
+        raise Failure("colmap is not installed")
+
+
+def on_the_cpu(command, families, threads=None):
+    """The options that keep a command of COLMAP off the graphics card and, if `threads` is given,
+    limit its threads. `families`: the option names' first parts in all versions of COLMAP. Returns
+    no options if the installed version knows none of them."""
+    known = subprocess.run(["colmap", command, "--help"], capture_output=True, text=True)
+    for family in families:
+        if f"--{family}.use_gpu " in known.stdout + known.stderr:
+            limit = [] if threads is None else [f"--{family}.num_threads", threads]
+            return [f"--{family}.use_gpu", 0, *limit]
+    return []
+
+
+def features(database, images, camera_model, parameters=None, threads=None):
+    """Extracts features. All photographs share one camera. `parameters`: those that the camera
+    starts with, in COLMAP's order."""
+    start = ["--ImageReader.camera_params", parameters] if parameters else []
+    return ["colmap", "feature_extractor", "--database_path", database, "--image_path", images,
+            "--ImageReader.single_camera", 1, "--ImageReader.camera_model", camera_model, *start,
+            *on_the_cpu("feature_extractor", EXTRACTION, threads)]
+
+
+def matches(database, matcher, threads=None):
+    """Matches features. `matcher`: "exhaustive" for all pairs of images, or "sequential"."""
+    command = f"{matcher}_matcher"
+    return ["colmap", command, "--database_path", database, *on_the_cpu(command, MATCHING, threads)]
+
+
+def mapper(database, images, models, refine=None, threads=None):
+    """Writes a numbered model into `models` for each group of images that COLMAP can join.
+    `refine`: whether COLMAP refines the focal lengths and the distortion; if it is not given, COLMAP
+    decides."""
+    limit = [] if threads is None else ["--Mapper.num_threads", threads]
+    refined = [] if refine is None else [
+        "--Mapper.ba_refine_focal_length", int(refine), "--Mapper.ba_refine_principal_point", 0,
+        "--Mapper.ba_refine_extra_params", int(refine)]
+    return ["colmap", "mapper", "--database_path", database, "--image_path", images,
+            "--output_path", models, *limit, *refined]
+
+
+# What the mapper prints when it finds no poses.
+NO_MODEL = "failed to create sparse model"
+
+
+def database_files(database):
+    """The files of a database, with those that a killed command leaves beside it."""
+    return [database, *(database.with_name(database.name + end) for end in ("-wal", "-shm"))]
+
+
+def is_model(folder):
+    return any((folder / name).is_file() for name in ("images.bin", "images.txt"))
+
+
+def registered(model):
+    """The number of images of a model, binary or text."""
+    if (model / "images.bin").is_file():
+        with open(model / "images.bin", "rb") as file:
+            return struct.unpack("<Q", file.read(8))[0]
+    lines = (model / "images.txt").read_text().splitlines()
+    # Every image has two lines. The second line is empty if the image has no observations.
+    return sum(bool(line) for line in [line for line in lines if not line.startswith("#")][::2])
+
+
+def by_size(models):
+    """The models in the folder `models` and their numbers of images, the largest model first."""
+    found = [(registered(model), model) for model in models.iterdir() if is_model(model)]
+    return [(model, count) for count, model in sorted(found, reverse=True)]
+
+
+def largest(models, log):
+    """The first of by_size(). `log`: the mapper's, for the Failure if there is no model."""
+    found = by_size(models)
+    if not found:
+        raise Failure(f"COLMAP found no poses: see {log}")
+    return found[0]

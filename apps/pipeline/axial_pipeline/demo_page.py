@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page of the demo's results: HTML in one file, with all pictures in it."""
+
+import base64
+import html
+import math
+import string
+
+from .demo_table import cells, headings
+
+
+def html_table(rows):
+    head = "".join(f"<th>{html.escape(h)}</th>" for h in headings(rows))
+    body = "".join(
+        f'<tr><th><i style="background:{row["color"]}"></i>{html.escape(cells(row)[0])}</th>' +
+        "".join(f"<td>{cell}</td>" for cell in cells(row)[1:]) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def nice_step(length, wanted):
+    """1, 2 or 5 times a power of ten, so that at most `wanted` steps make up `length`."""
+    raw = length / wanted
+    power = 10 ** math.floor(math.log10(raw))
+    return next(m * power for m in (1, 2, 5, 10) if m * power >= raw)
+
+
+WIDTH, HEIGHT = 960, 320  # of the chart
+LEFT, RIGHT, TOP, BOTTOM = 56, 16, 16, 46  # its margins
+
+
+class Axes:
+    """Places of the chart: distances [m] up to `upper`, and shares [%] up to `highest`."""
+
+    def __init__(self, upper, highest):
+        self.upper, self.highest = upper, highest
+
+    def x(self, metres):
+        return LEFT + (WIDTH - LEFT - RIGHT) * metres / self.upper
+
+    def y(self, share):
+        return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * share / self.highest
+
+    def grid(self):
+        step = nice_step(self.highest, 4)
+        for i in range(int(self.highest / step) + 1):
+            yield (f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" '
+                   f'y1="{self.y(i * step):.1f}" y2="{self.y(i * step):.1f}"/>'
+                   f'<text x="{LEFT - 8}" y="{self.y(i * step) + 4:.1f}" text-anchor="end">'
+                   f'{i * step:g}</text>')
+        step = nice_step(self.upper * 1e3, 8)
+        for i in range(int(self.upper * 1e3 / step + 1e-9) + 1):
+            yield (f'<text x="{self.x(i * step / 1e3):.1f}" y="{HEIGHT - BOTTOM + 18}" '
+                   f'text-anchor="middle">{i * step:g}</text>')
+
+    def titles(self, bin_width):
+        middle = (LEFT + WIDTH - RIGHT) / 2
+        yield (f'<text x="{middle}" y="{HEIGHT - 6}" text-anchor="middle">distance from the true '
+               f'surface [mm]</text><text transform="translate(14 {(HEIGHT - BOTTOM) / 2}) '
+               f'rotate(-90)" text-anchor="middle">% of the points per {bin_width * 1e3:g} mm</text>')
+
+
+def shares_of(row):
+    """The percentage of the row's points in each bin of its histogram."""
+    counts = row["histogram"]["counts"]
+    total = sum(counts) + row["histogram"]["beyond"]
+    return [100 * count / total for count in counts]
+
+
+def curve(row, shares, axes, bin_width):
+    line = " ".join(f"{axes.x((i + 0.5) * bin_width):.1f},{axes.y(share):.1f}"
+                    for i, share in enumerate(shares))
+    median = axes.x(min(row["median_m"], axes.upper))
+    return (f'<polyline points="{line}" stroke="{row["color"]}"/>'
+            f'<line x1="{median:.1f}" x2="{median:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}" '
+            f'stroke="{row["color"]}" stroke-dasharray="2 4"/>')
+
+
+def histogram_svg(rows):
+    """The distances of each cloud's points from the true surface as histograms on common axes."""
+    upper, shares = rows[0]["histogram"]["upper"], [shares_of(row) for row in rows]
+    axes, bin_width = Axes(upper, max(map(max, shares)) * 1.05), upper / len(shares[0])
+    parts = [*axes.grid(),
+             *(curve(row, share, axes, bin_width) for row, share in zip(rows, shares)),
+             *axes.titles(bin_width)]
+    legend = "".join(f'<span><i style="background:{row["color"]}"></i>{row["title"]}: '
+                     f'{100 * row["histogram"]["beyond"] / max(row["points"], 1):.1f} % lie beyond '
+                     f'{upper * 1e3:g} mm</span>' for row in rows)
+    return (f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="error histograms">'
+            f'{"".join(parts)}</svg><p class="legend">{legend}</p>')
+
+
+def image(path, caption):
+    data = base64.b64encode(path.read_bytes()).decode()
+    return (f'<figure><img src="data:image/png;base64,{data}" alt="{html.escape(caption)}">'
+            f"<figcaption>{html.escape(caption)}</figcaption></figure>")
+
+
+def cloud_pictures(rows):
+    return "".join(f'<section class="card"><h3><i style="background:{row["color"]}"></i>'
+                   f'{html.escape(row["title"])}</h3><p>{html.escape(row["meaning"])}</p>' +
+                   image(row["folder"] / "evaluation.png",
+                         "Points seen from the first camera, coloured by error") + "</section>"
+                   for row in rows)
+
+
+def depth_pictures(rows):
+    figures = []
+    for row in rows:
+        for path in sorted(row["folder"].glob("depth-*.png")):
+            view = path.stem.removeprefix("depth-")
+            figures.append(image(path, f'{row["title"]}, view {view}: estimate, truth, error'))
+    return "".join(figures)
+
+
+PAGE = string.Template("""<!doctype html>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>AxialMVS: $scene</title>
+<style>
+:root { color-scheme: light; --ink: #0f172a; --soft: #475569; --line: #dbe3ec; --page: #f4f7fa; }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--page); color: var(--ink);
+       font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
+header { background: linear-gradient(160deg, #06263f, #0b4f6c 60%, #12708a); color: #fff;
+         padding: 3rem 1.25rem 2.5rem; }
+header div { max-width: 1100px; margin: auto; }
+main { max-width: calc(1100px + 2.5rem); margin: auto; }
+header h1 { margin: 0 0 .5rem; font-size: 2rem; line-height: 1.2; letter-spacing: -.01em; }
+header p { margin: 0; max-width: 46rem; color: #d5e7f0; }
+main { padding: 1.5rem 1.25rem 4rem; }
+h2 { margin: 2.5rem 0 .75rem; font-size: 1.3rem; }
+h3 { margin: 0 0 .25rem; font-size: 1.05rem; }
+p { margin: .25rem 0 .75rem; color: var(--soft); }
+.panel, .card { background: #fff; border: 1px solid var(--line); border-radius: 10px;
+                padding: 1rem 1.25rem; }
+.panel { overflow-x: auto; }
+table { width: 100%; border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .55rem .75rem; text-align: right; white-space: nowrap; }
+th:first-child { text-align: left; }
+thead th { color: var(--soft); font-weight: 500; font-size: .85rem; }
+tbody tr { border-top: 1px solid var(--line); }
+i { display: inline-block; width: .7rem; height: .7rem; border-radius: 50%; margin-right: .5rem; }
+.cards { display: grid; gap: 1rem; grid-template-columns: repeat(auto-fit, minmax(320px, 1fr)); }
+figure { margin: .5rem 0 0; }
+.depths figure { background: #fff; border: 1px solid var(--line); border-radius: 10px;
+                 padding: 1rem; margin-bottom: 1rem; }
+img { width: 100%; height: auto; display: block; border-radius: 4px; }
+figcaption { color: var(--soft); font-size: .85rem; margin-top: .4rem; }
+svg { width: 100%; height: auto; } svg text { fill: var(--soft); font-size: 12px; }
+svg polyline { fill: none; stroke-width: 2.2; stroke-linejoin: round; }
+svg .grid { stroke: var(--line); }
+.legend span { margin-right: 1.5rem; white-space: nowrap; display: inline-block; }
+</style></head><body>
+<header><div><h1>Dense reconstruction through a flat port: $scene</h1>
+<p>$description Simulated with ground truth; $size resolution.</p></div></header>
+<main>
+<h2>Three ways to reconstruct it</h2>
+<div class="panel">$table</div>
+<p>Distances are from every reconstructed point to the true surface, none left out. The F-score also
+counts what is missing of the surface that at least two views see. Clouds are where their camera
+centres put them: the true centres in (a) and (b), centres fitted to them in (c), where a lens model
+that has swallowed the refraction has its centre elsewhere. The last row takes that part away: there
+the cloud is moved rigidly onto the true surface. Seconds are those of DensifyPointCloud.</p>
+<h2>How far the points are from the truth</h2>
+<div class="panel">$histograms</div>
+<p>Dashed: medians.</p>
+<h2>Where they are wrong</h2>
+<div class="cards">$clouds</div>
+<h2>Depth maps beside the truth</h2>
+<div class="depths">$depths</div>
+</main></body></html>
+""")
+
+
+def page(rows, lines, **texts):
+    """The text of the page. `rows`: the runs. `lines`: the rows of the table. `texts`: the scene's
+    name and description, and the size of the images."""
+    return PAGE.substitute(texts, table=html_table(lines), histograms=histogram_svg(rows),
+                           clouds=cloud_pictures(rows), depths=depth_pictures(rows))

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The commands of AxialMVS's programs, as lists of words. Nothing is run here."""
+
+import pathlib
+
+PACKAGE = pathlib.Path(__file__).resolve().parent
+
+
+def default_folder(script_folder):
+    """The folder of the programs: that of the script if they are installed beside it, otherwise
+    that of the release build."""
+    if (script_folder / "DensifyPointCloud").exists():
+        return script_folder
+    return PACKAGE.parents[2] / "build" / "release" / "bin"
+
+
+class Programs:
+    """The programs in one folder. Every method returns a command. `options` are words that the
+    command gets in addition."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    def import_scene(self, model, images, scene, housing=None):
+        """A COLMAP model and its photographs to the scene file `scene`."""
+        port = ["--housing", housing] if housing else []
+        return [self.folder / "InterfaceCOLMAP", "-i", model, "--image-folder", images, *port, "-o",
+                scene]
+
+    def densify(self, scene, folder, *options):
+        """`scene` to depth maps and a dense cloud in `folder`."""
+        return [self.folder / "DensifyPointCloud", "-i", scene, "-w", folder, *options]
+
+    def refine_poses(self, model, lens, housing, output, *options):
+        return [self.folder / "RefinePoses", "-i", model, "--lens", lens, "--housing", housing, "-o",
+                output, *options]
+
+    def align(self, model, reference, output):
+        """`model` aligned to the camera centres of the model `reference`."""
+        return [self.folder / "AlignModel", "-i", model, "--reference", reference, "-o", output]
+
+    def evaluate(self, estimate, truth, *options):
+        """A cloud against a true mesh, or a depth map against true distances."""
+        return [self.folder / "EvaluateReconstruction", "-i", estimate, "-m", truth, *options]
+
+    def simulate(self, output, *options):
+        return [self.folder / "SimulateUnderwater", *options, "-o", output]

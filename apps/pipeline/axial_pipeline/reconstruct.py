@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From photographs taken under water to a dense cloud, in one command:
+
+    reconstruct --images DIR --lens cameras.txt --housing housing.json -o OUT
+
+COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
+poses. DensifyPointCloud computes the cloud. The command of every step is printed and can be typed by
+hand. A killed run that is started again with the same options continues with the step that was
+killed; with other options, it continues with the first step that differs. While a run is at work, a
+second run in the same folder is refused.
+"""
+
+import argparse
+import fcntl
+import json
+import os
+import pathlib
+import shlex
+
+from . import colmap, files, lens, positions
+from .failure import Failure, run_main
+from .programs import Programs, default_folder
+from .steps import Step, run_all
+
+
+def options(script_folder):
+    programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
+    parser = argparse.ArgumentParser(description=__doc__.split(":\n\n")[0] + ".")
+    parser.add_argument("--images", required=True, help="folder of the raw underwater photographs")
+    parser.add_argument("--lens", required=True,
+                        help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
+                        "calibration.yaml")
+    parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
+                        "calibration.yaml")
+    parser.add_argument("-o", "--output", required=True, help="folder for all files that are made")
+    parser.add_argument("--scale-from", default="",
+                        help="what is known in metres, as for RefinePoses")
+    parser.add_argument("--refine", default="",
+                        help="what else is unknown, as for RefinePoses")
+    parser.add_argument("--matcher", choices=["exhaustive", "sequential"], default="exhaustive",
+                        help="pairs of images that COLMAP matches (default: %(default)s)")
+    parser.add_argument("--lens-model", default="OPENCV",
+                        help="lens model that COLMAP calibrates; it absorbs the refraction "
+                        "(default: %(default)s)")
+    parser.add_argument("--refine-poses", default="",
+                        help="more options for RefinePoses, in one word: "
+                        "--refine-poses='--scale-sigma 0.1'")
+    parser.add_argument("--densify", default="",
+                        help="more options for DensifyPointCloud, in one word")
+    parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
+                        "positions: gives: the cloud is measured against it")
+    parser.add_argument("--programs", default=programs,
+                        help="folder of the programs (default: %(default)s)")
+    return parser.parse_args()
+
+
+def words_of(name, given):
+    """The words in the value of the option --`name`, which are options for a program."""
+    value = getattr(given, name.replace("-", "_"))
+    try:
+        return shlex.split(value)
+    except ValueError as error:
+        raise Failure(f"--{name} {value}: {error}") from None
+
+
+def check(given):
+    """Checks everything that can be known before hours of work, and makes all paths absolute,
+    because the programs look up relative paths in different folders."""
+    for name in ("images", "lens", "housing", "truth", "programs"):
+        path = getattr(given, name)
+        if path and not pathlib.Path(path).exists():
+            raise Failure(f"--{name} {path}: is not there")
+        if path:
+            setattr(given, name, str(pathlib.Path(path).resolve()))
+    file = positions.file_of(given.scale_from)
+    if file is not None:
+        if not pathlib.Path(file).is_file():
+            raise Failure(f"--scale-from {given.scale_from}: the file is not there")
+        given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
+        positions.check(pathlib.Path(file), pathlib.Path(given.images))
+    for program in ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud"):
+        if not (pathlib.Path(given.programs) / program).is_file():
+            raise Failure(f"--programs {given.programs}: {program} is not there; build it first")
+    for name in ("refine-poses", "densify"):
+        words_of(name, given)
+    colmap.check_installed()
+    given.output = str(pathlib.Path(given.output).resolve())
+    if pathlib.Path(given.output).is_relative_to(given.images):
+        raise Failure(f"--output {given.output}: lies in the folder of the images")
+
+
+def take_largest(models):
+    """Renames the model with the most images to models/best."""
+    best, count = colmap.largest(models, models.parent / "logs" / "poses.log")
+    others = [str(size) for _, size in colmap.by_size(models)[1:]]
+    print(f"    {count} images have poses", flush=True)
+    if others:
+        print(f"    COLMAP could not join them to all others: {len(others)} more models, of "
+              f"{', '.join(others)} images, are left in {models}", flush=True)
+    best.rename(models / "best")
+
+
+def colmap_steps(given, out):
+    features, database, models = out / "features.db", out / "database.db", out / "colmap"
+    start = lens.start_under_water(given.lens, given.lens_model)
+    yield Step("features", colmap.features(features, given.images, given.lens_model, start),
+               makes=features, reads=[given.images], changed=colmap.database_files(features))
+    yield Step("matches", colmap.matches(database, given.matcher), makes=database,
+               changed=colmap.database_files(database),
+               before=lambda: files.copy_once(features, database))
+    yield Step("poses", colmap.mapper(database, given.images, models), makes=models / "best",
+               anew=[models], before=models.mkdir, after=lambda: take_largest(models))
+
+
+def existing_files(words):
+    return [word for word in words if pathlib.Path(word).exists()]
+
+
+def refine_options(given):
+    known = ["--scale-from", given.scale_from] if given.scale_from else []
+    refine = ["--refine", given.refine] if given.refine else []
+    return [*known, *refine, *words_of("refine-poses", given)]
+
+
+def steps(given, out):
+    programs, densify = Programs(given.programs), words_of("densify", given)
+    refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
+    known_positions = positions.file_of(given.scale_from)
+    yield from colmap_steps(given, out)
+    yield Step("refine", programs.refine_poses(out / "colmap" / "best", given.lens, given.housing,
+                                               refined, *refine_options(given)),
+               makes=refined / "report.json",
+               reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
+                      *existing_files(words_of("refine-poses", given))])
+    yield Step("import", programs.import_scene(refined, given.images, scene,
+                                               refined / "housing.json"), makes=scene)
+    yield Step("densify", programs.densify(scene, out, "--refractive", 1, *densify), makes=cloud,
+               reads=existing_files(densify))
+    if given.truth:
+        yield Step("evaluate", programs.evaluate(cloud, given.truth, "--json",
+                                                 out / "evaluation.json", "--align", "icp"),
+                   makes=out / "evaluation.json", reads=[given.truth])
+
+
+def lines_of_poses(refined):
+    """The lines of the report about the result of RefinePoses, `refined`."""
+    yield (f"- reprojection error: {refined['rms_before_px']:.3f} px before, "
+           f"{refined['rms_after_px']:.3f} px after refining")
+    yield (f"- {refined['observations_after']} observations of {refined['points_after']} points "
+           f"in {sum(i['observations'] > 0 for i in refined['images'])} images")
+    sigma = refined["scale_sigma"]
+    if sigma is None:
+        yield "- nothing tells the scale"
+    elif sigma != 0:  # 0: the poses were known
+        yield f"- the scale is known to {100 * sigma:.2g} % (one standard deviation)"
+    for camera in refined["cameras"]:
+        for value in camera["free"]:
+            sigma = "not known" if value["sigma"] is None else f"+- {value['sigma']:.2g}"
+            yield (f"- camera {camera['id']}, {value['name']}: {value['value']:.6g} "
+                   f"{value['unit']}, {sigma}")
+
+
+def report(out, seconds):
+    """The text of report.md. `seconds`: the time of each step."""
+    refined = json.loads((out / "refined" / "report.json").read_text())
+    lines = ["# Reconstruction", "", *lines_of_poses(refined)]
+    if "evaluate" in seconds:
+        accuracy = json.loads((out / "evaluation.json").read_text())["accuracy"]
+        lines.append(f"- mean distance to the truth {1e3 * accuracy['mean']:.3f} mm, median "
+                     f"{1e3 * accuracy['median']:.3f} mm, {accuracy['count']} points")
+    lines += ["", "| step | seconds |", "|---|---|"]
+    lines += [f"| {name} | {time} |" for name, time in seconds.items()]
+    return "\n".join(lines) + "\n"
+
+
+def only_run_in(out):
+    """Refuses other runs in the folder `out` until the returned file is closed. Commands do not
+    inherit the file, so that the refusal ends with this process."""
+    lock = open(out / "lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise Failure(f"--output {out}: another run is at work there") from None
+    except OSError as error:
+        print(f"--output {out}: cannot be locked ({error.strerror}): take care that no other run is "
+              "at work there", flush=True)
+    return lock
+
+
+def reconstruct(given):
+    check(given)
+    out = pathlib.Path(given.output)
+    out.mkdir(parents=True, exist_ok=True)
+    with only_run_in(out):
+        seconds = run_all(list(steps(given, out)), out)
+        files.write(out / "report.md", report(out, seconds))
+    print(f"Cloud: {out / 'scene_dense.ply'}   Report: {out / 'report.md'}")
+
+
+def main(script_folder):
+    """`script_folder`: the folder of the command that the user typed."""
+    run_main("reconstruct", lambda: reconstruct(options(script_folder)),
+             "stopped; the same command goes on from here")

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Steps that are done once. A killed run that is started again with the same commands and inputs
+continues with the step that was killed. With other commands or inputs, it continues with the first
+step that differs."""
+
+import json
+import pathlib
+import shlex
+import time
+
+from . import files
+from .running import logged
+
+
+class Step:
+    """One command, the files from outside that it `reads`, and the file or folder that it `makes`.
+
+    `anew`: paths that are removed before the command starts, because the command would add to them.
+    `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
+    the command continues with them. `before`, `after`: functions, called before the command and
+    after its success."""
+
+    def __init__(self, name, command, makes, reads=(), anew=(), changed=(), before=lambda: None,
+                 after=lambda: None):
+        self.name = name
+        self.command = [str(word) for word in command]
+        self.makes = makes
+        self.reads = [pathlib.Path(path) for path in reads]
+        self.anew = anew
+        self.changed = changed
+        self.before = before
+        self.after = after
+
+    def fingerprint(self):
+        """Names, sizes and times of change of all files that the step reads."""
+        found = []
+        for path in self.reads:
+            found += sorted(path.rglob("*")) if path.is_dir() else [path]
+        return [[str(file), file.stat().st_size, file.stat().st_mtime_ns]
+                for file in found if file.is_file()]
+
+
+class Records:
+    """Says for each step whether it was begun and done, and with which chain: the commands and
+    inputs of all steps up to this one."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def read(self, step, state):
+        try:
+            return json.loads((self.folder / f"{step.name}.{state}.json").read_text())
+        except (OSError, ValueError):
+            return {}
+
+    def write(self, step, state, record):
+        files.write(self.folder / f"{step.name}.{state}.json", json.dumps(record))
+
+    def forget(self, step):
+        files.clear(self.folder / f"{step.name}.done.json")
+
+
+def perform(step, chain, records, logs):
+    """Runs a step that is not done. Returns its time in seconds."""
+    changed = records.read(step, "begun").get("chain") != chain
+    for path in [*step.anew, *(step.changed if changed else [])]:
+        files.clear(path)
+    records.write(step, "begun", {"chain": chain})
+    begin = time.monotonic()
+    logs.mkdir(exist_ok=True)
+    step.before()
+    logged(step.command, logs / f"{step.name}.log", step.name)
+    step.after()
+    seconds = round(time.monotonic() - begin, 1)
+    records.write(step, "done", {"chain": chain, "seconds": seconds})
+    return seconds
+
+
+def run_all(todo, out):
+    """Runs the steps that are not done, with records in `out`/steps and logs in `out`/logs. Returns
+    the time of every step in seconds, by the step's name."""
+    records, chain, seconds = Records(out / "steps"), [], {}
+    for number, step in enumerate(todo):
+        chain = [*chain, step.command, step.fingerprint()]
+        done = records.read(step, "done")
+        headline = f"[{number + 1}/{len(todo)}] {step.name}"
+        if done.get("chain") == chain and step.makes.exists():
+            seconds[step.name] = done["seconds"]
+            print(f"{headline}: done before", flush=True)
+            continue
+        for later in todo[number:]:
+            records.forget(later)
+        print(f"{headline}\n    {shlex.join(step.command)}", flush=True)
+        seconds[step.name] = perform(step, chain, records, out / "logs")
+    return seconds

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shared by the acceptance points: their list, their scenes, and runs that are kept."""
+
+import json
+import shutil
+
+from axial_pipeline import truth as pipeline_truth
+from axial_pipeline.colmap_model import colmap_model
+from support import runs
+from support.runs import PROGRAMS, ROOT
+
+BASE = ROOT / "build" / "acceptance"
+
+POINTS = {}  # by name: the function that measures the point, and the text of what is wanted
+
+
+def point(wanted):
+    def register(function):
+        POINTS[function.__name__.replace("_", "-")] = (function, wanted)
+        return function
+    return register
+
+
+def truth_of(scene):
+    return runs.synthetic(scene, BASE)
+
+
+def densified(folder, model, images, housing, *options):
+    """Runs InterfaceCOLMAP and DensifyPointCloud. Returns the cost of DensifyPointCloud. If
+    `folder` holds a cost already, nothing is run."""
+    cost = folder / "cost.json"
+    if cost.exists():
+        return json.loads(cost.read_text())
+    shutil.rmtree(folder, ignore_errors=True)
+    runs.import_scene(folder, model, images, housing)
+    result = runs.densify(folder, *(["--refractive"] if housing else []), *options)
+    cost.write_text(json.dumps(result))
+    return result
+
+
+def poses(scene, medium, number):
+    """The folder of COLMAP's poses of a run, aligned to the truth in metres. A run does not depend
+    on this source and is never repeated."""
+    data, work = truth_of(scene).data, BASE / "colmap" / f"{scene}-{medium}-{number}"
+    lens = pipeline_truth.true_lens if medium == "air" else pipeline_truth.self_calibrated_lens
+    colmap_model(data / medium, work, lens(data))
+    return pipeline_truth.align_to_truth(PROGRAMS, work, data)
+
+
+def cloud(work, scene, medium, model, name, *, housing=None, level=0):
+    truth, folder = truth_of(scene), work / f"{scene}-{name}"
+    densified(folder, model, truth.data / medium, housing, "--resolution-level", level)
+    return runs.evaluate(folder, truth, medium)
+
+
+def millimetres(result):
+    return (f"mean {result['mean'] * 1e3:.3f} mm, median {result['median'] * 1e3:.3f} mm, "
+            f"F {result['f']:.3f}, {result['points']:,} points")

@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The functions of apps/pipeline/axial_pipeline, without the programs and with a stand-in for
+COLMAP."""
+
+import contextlib
+import io
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+from programs import main
+
+PIPELINE = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline"
+sys.path.insert(0, str(PIPELINE))
+from axial_pipeline import (colmap, demo, demo_table, files, lens, positions,  # noqa: E402
+                            reconstruct, running, steps, truth)
+from axial_pipeline.failure import Failure  # noqa: E402
+from axial_pipeline.programs import Programs, default_folder  # noqa: E402
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def put_script(self, name, script):
+        self.write(name, f"#!/bin/sh\n{script}\n").chmod(0o755)
+
+    def model(self, number, images):
+        self.write(f"models/{number}/images.bin", struct.pack("<Q", images))
+
+    def said_by(self, function, *arguments):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            function(*arguments)
+        return said.getvalue()
+
+
+class ColmapCommands(InFolder):
+    def words(self, help_text, function, *arguments):
+        """The words of a command where `colmap ... --help` prints `help_text`."""
+        self.put_script("colmap", f"echo '{help_text}'")
+        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
+            return " ".join(map(str, function(*arguments)))
+
+    def test_every_version_is_kept_off_the_graphics_card(self):
+        for family in colmap.EXTRACTION:
+            said = f"--{family}.use_gpu arg (=1)"
+            self.assertEqual(self.words(said, colmap.features, "db", "images", "OPENCV", "1,2"),
+                             "colmap feature_extractor --database_path db --image_path images "
+                             "--ImageReader.single_camera 1 --ImageReader.camera_model OPENCV "
+                             f"--ImageReader.camera_params 1,2 --{family}.use_gpu 0")
+        for family in colmap.MATCHING:
+            said = f"--{family}.use_gpu arg (=1)"
+            self.assertEqual(self.words(said, colmap.matches, "db", "sequential", -1),
+                             "colmap sequential_matcher --database_path db "
+                             f"--{family}.use_gpu 0 --{family}.num_threads -1")
+        self.assertEqual(self.words("--other arg", colmap.matches, "db", "exhaustive"),
+                         "colmap exhaustive_matcher --database_path db")
+
+    def test_the_mapper_refines_what_is_said(self):
+        start = "colmap mapper --database_path db --image_path images --output_path models"
+        for arguments, more in (((), ""), ((True,), " --Mapper.ba_refine_focal_length 1 "
+                                           "--Mapper.ba_refine_principal_point 0 "
+                                           "--Mapper.ba_refine_extra_params 1"),
+                                ((False, 2), " --Mapper.num_threads 2 "
+                                 "--Mapper.ba_refine_focal_length 0 "
+                                 "--Mapper.ba_refine_principal_point 0 "
+                                 "--Mapper.ba_refine_extra_params 0")):
+            words = colmap.mapper("db", "images", "models", *arguments)
+            self.assertEqual(" ".join(map(str, words)), start + more)
+
+
+class ColmapModels(InFolder):
+    def test_images_of_binary_and_text_models_are_counted(self):
+        self.model(0, 7)
+        self.assertEqual(colmap.registered(self.folder / "models" / "0"), 7)
+        text = "# a\n1 1 0 0 0 0 0 0 1 a.jpg\n10 20 -1\n2 1 0 0 0 0 0 0 1 b.jpg\n\n"
+        self.write("models/1/images.txt", text)
+        self.assertEqual(colmap.registered(self.folder / "models" / "1"), 2)
+
+    def test_the_largest_model_is_the_first(self):
+        for number, images in enumerate((3, 9, 2)):
+            self.model(number, images)
+        (self.folder / "models" / "unfinished").mkdir()
+        found = colmap.by_size(self.folder / "models")
+        self.assertEqual([(model.name, size) for model, size in found],
+                         [("1", 9), ("0", 3), ("2", 2)])
+
+    def test_no_model_is_a_failure_that_names_the_log(self):
+        (self.folder / "models").mkdir()
+        with self.assertRaisesRegex(Failure, "COLMAP found no poses: see mapper.log"):
+            colmap.largest(self.folder / "models", "mapper.log")
+
+    def test_reconstruct_tells_of_the_models_that_it_leaves(self):
+        for number, images in enumerate((3, 9, 2)):
+            self.model(number, images)
+        said = self.said_by(reconstruct.take_largest, self.folder / "models")
+        self.assertEqual(colmap.registered(self.folder / "models" / "best"), 9)
+        self.assertIn("9 images have poses", said)
+        self.assertIn("2 more models, of 3, 2 images", said)
+
+    def test_reconstruct_tells_of_no_others_if_there_is_one(self):
+        self.model(0, 4)
+        self.assertNotIn("more", self.said_by(reconstruct.take_largest, self.folder / "models"))
+
+
+# A stand-in for COLMAP that writes its commands to the file `commands`. The mapper finds two models.
+COLMAP = """[ "$2" = --help ] && { echo "--SiftExtraction.use_gpu --SiftMatching.use_gpu "; exit; }
+echo "$*" >> commands
+[ "$1" = mapper ] || exit 0
+for number in 0 1; do
+  mkdir out/models/$number
+  printf "\\\\$((number + 2))\\\\0\\\\0\\\\0\\\\0\\\\0\\\\0\\\\0" > out/models/$number/images.bin
+done"""
+
+
+class ColmapModelCommand(InFolder):
+    """The command colmap-model, with a stand-in for COLMAP."""
+
+    def setUp(self):
+        super().setUp()
+        self.put_script("bin/colmap", COLMAP)
+        (self.folder / "images").mkdir()
+
+    def run_it(self, *more):
+        command = [sys.executable, "-B", str(PIPELINE / "colmap-model"), "--images", "images",
+                   "--camera-model", "PINHOLE", "--camera-parameters", "1,2,3,4", "-o", "out", *more]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60,
+                              env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+
+    def test_it_keeps_the_largest_model(self):
+        ended = self.run_it("--max-threads", "3")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual(colmap.registered(self.folder / "out" / "model"), 3)
+        self.assertEqual((self.folder / "commands").read_text().splitlines(), [
+            "feature_extractor --database_path out/database.db --image_path images "
+            "--ImageReader.single_camera 1 --ImageReader.camera_model PINHOLE "
+            "--ImageReader.camera_params 1,2,3,4 --SiftExtraction.use_gpu 0 "
+            "--SiftExtraction.num_threads 3",
+            "exhaustive_matcher --database_path out/database.db --SiftMatching.use_gpu 0 "
+            "--SiftMatching.num_threads 3",
+            "mapper --database_path out/database.db --image_path images --output_path out/models "
+            "--Mapper.num_threads 3 --Mapper.ba_refine_focal_length 0 "
+            "--Mapper.ba_refine_principal_point 0 --Mapper.ba_refine_extra_params 0"])
+        self.assertIn("kept from an earlier run", self.run_it().stdout)
+        self.assertEqual(len((self.folder / "commands").read_text().splitlines()), 3)
+
+    def test_that_colmap_finds_no_poses_is_told_apart_from_a_broken_colmap(self):
+        for script, said in ((f"echo '{colmap.NO_MODEL}'; exit 1", "COLMAP found no poses"),
+                             (f"echo '{colmap.NO_MODEL}'; exit 3", "colmap: exit code 3, all of its "
+                              "output is in out/mapper.log"),
+                             ("kill -9 $$", "colmap: signal 9"),
+                             ("exit 1", "colmap: exit code 1")):
+            self.put_script("bin/colmap", f"[ $1 = mapper ] || exit 0; {script}")
+            ended = self.run_it()
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn(f"colmap-model: {said}", ended.stderr.splitlines()[-1])
+
+    def test_wrong_options_are_refused(self):
+        for options, said in ((("--images", "none"), "--images none: is not a folder"),
+                              (("--max-threads", "-2"), "--max-threads -2: must not be negative")):
+            ended = self.run_it(*options)
+            self.assertEqual((ended.returncode, ended.stderr), (1, f"colmap-model: {said}\n"))
+        self.assertFalse((self.folder / "out").exists())
+
+
+class Lenses(InFolder):
+    def test_the_start_is_the_lens_in_air_times_the_waters_index(self):
+        one = b"# a comment\n\n1 SIMPLE_RADIAL 640 480 1000 320 240 -0.1\n"
+        two = b"1 OPENCV 640 480 1000 2000 320 240 1 2 3 4\n"
+        calibmar = b"model: OPENCV\nwidth: 640\nparameters: [1000, 2000, 320,\n  240, 1, 2, 3, 4]\n"
+        for text, model, expected in [(one, "OPENCV", "1333,1333,320,240,0,0,0,0"),
+                                      (one, "RADIAL", "1333,320,240,0,0"),
+                                      (two, "PINHOLE", "1333,2666,320,240"),
+                                      (two, "SIMPLE_RADIAL", "1999.5,320,240,0"),
+                                      (calibmar, "OPENCV", "1333,2666,320,240,0,0,0,0"),
+                                      (one, "UNKNOWN", None), (b"\x01\xff\0", "OPENCV", None),
+                                      (b"", "OPENCV", None),
+                                      (b"1 OPENCV 640 480 a\n", "OPENCV", None)]:
+            self.assertEqual(lens.start_under_water(self.write("lens", text), model), expected)
+
+    def test_parameters_of_a_pinhole_are_taken_as_they_stand(self):
+        self.write("cameras.txt", "# PINHOLE x\n1 PINHOLE 640 480 1000.50 1e3 320 240\n")
+        self.assertEqual(lens.pinhole_parameters(self.folder), "1000.50,1e3,320,240")
+        self.write("cameras.txt", "1 OPENCV 640 480 1 1 1 1 0 0 0 0\n")
+        with self.assertRaisesRegex(Failure, "cameras.txt: has no PINHOLE camera"):
+            lens.pinhole_parameters(self.folder)
+
+
+class Positions(InFolder):
+    def test_names_are_read_as_refine_poses_reads_them(self):
+        """The same lines as in tests/io/position_file_test.cpp."""
+        images = {"a.jpg", "dive 1/a b.jpg", "#5 of 7.jpg", '"q" 1.jpg'}
+        for line, name in (("a.jpg 1 2 3", "a.jpg"), ("dive 1/a b.jpg 1 2 3\r", "dive 1/a b.jpg"),
+                           ("#5 of 7.jpg 1 2 3", "#5 of 7.jpg"), ("#a.jpg 1 2 3", None),
+                           ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
+                           ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
+                           ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
+            self.assertEqual(positions.name_in(line, images.__contains__), name, line)
+
+    def test_names_of_no_photograph_are_told(self):
+        for name in ("a.jpg", "b.jpg", "c.jpg"):
+            self.write(name, "")
+        file = self.write("positions.txt",
+                          "a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
+        said = self.said_by(positions.check, file, self.folder)
+        self.assertIn("1 of 4 names are no photographs", said)
+        self.assertIn("C.jpg first", said)
+
+    def test_only_the_form_with_positions_names_a_file(self):
+        self.assertEqual(positions.file_of("positions:a/b.txt"), "a/b.txt")
+        self.assertIsNone(positions.file_of("images:a,b,1"))
+        self.assertIsNone(positions.file_of(""))
+
+
+class Running(InFolder):
+    def failure_of(self, script, **options):
+        log = self.folder / "log"
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            with self.assertRaises(Failure) as caught:
+                running.logged(["sh", "-c", script], log, **options)
+        return str(caught.exception).replace(str(log), "LOG"), said.getvalue()
+
+    def test_a_failure_says_how_the_command_ended(self):
+        self.assertEqual(self.failure_of("echo a; echo b; exit 3"),
+                         ("sh: exit code 3, all of its output is in LOG", "a\nb\n"))
+        self.assertEqual(self.failure_of("kill -9 $$", name="step")[0],
+                         "step: signal 9, all of its output is in LOG")
+        self.assertEqual(running.ending(255), "exit code 255")
+
+    def test_a_command_that_cannot_be_started_is_named(self):
+        log = self.folder / "log"
+        self.assertEqual(running.exit_code_of([self.folder / "none"], log), 127)
+        self.assertIn("none: cannot be started: No such file", log.read_text())
+
+    def test_an_excuse_counts_with_exit_code_1_alone(self):
+        log = self.folder / "log"
+        command = ["sh", "-c", "echo nothing found; exit 1"]
+        self.assertFalse(running.logged(command, log, excuse="nothing"))
+        self.assertTrue(running.logged(["true"], log, excuse="nothing"))
+        self.failure_of("echo nothing found; exit 2", excuse="nothing")
+        self.failure_of("echo other; exit 1", excuse="nothing")
+
+
+class Steps(InFolder):
+    def steps(self, word):
+        first, second, read = (self.folder / name for name in ("first", "second", "read"))
+        if not read.exists():
+            read.touch()
+        return [steps.Step("first", ["sh", "-c", f"echo {word} >> {first}"], first, reads=[read],
+                           changed=[first]),
+                steps.Step("second", ["cp", first, second], second)]
+
+    def run_all(self, word):
+        """Returns which steps were not repeated."""
+        said = self.said_by(steps.run_all, self.steps(word), self.folder)
+        return [line.split()[1].rstrip(":") for line in said.splitlines() if "done before" in line]
+
+    def test_steps_are_repeated_from_the_first_that_differs(self):
+        self.assertEqual(self.run_all("a"), [])
+        self.assertEqual(self.run_all("a"), ["first", "second"])
+        (self.folder / "second").unlink()
+        self.assertEqual(self.run_all("a"), ["first"])
+        self.assertEqual(self.run_all("b"), [])
+        self.assertEqual((self.folder / "second").read_text(), "b\n")
+        self.write("read", "changed")
+        self.assertEqual(self.run_all("b"), [])
+
+    def test_a_step_that_failed_is_repeated(self):
+        broken = [self.steps("a")[0],
+                  steps.Step("second", ["sh", "-c", "exit 1"], self.folder / "second")]
+        with self.assertRaisesRegex(Failure, "second: exit code 1"):
+            self.said_by(steps.run_all, broken, self.folder)
+        self.assertEqual(self.run_all("a"), ["first"])
+
+
+class ProgramCommands(InFolder):
+    def test_commands(self):
+        programs = Programs("bin")
+        for command, words in (
+                (programs.import_scene("m", "i", "s"), "InterfaceCOLMAP -i m --image-folder i -o s"),
+                (programs.import_scene("m", "i", "s", "h"),
+                 "InterfaceCOLMAP -i m --image-folder i --housing h -o s"),
+                (programs.densify("s", "f", "--refractive", 1),
+                 "DensifyPointCloud -i s -w f --refractive 1"),
+                (programs.align("m", "r", "o"), "AlignModel -i m --reference r -o o")):
+            self.assertEqual(" ".join(map(str, command)), f"bin/{words}")
+
+    def test_programs_beside_the_script_come_first(self):
+        self.assertEqual(default_folder(self.folder),
+                         PIPELINE.parents[1] / "build" / "release" / "bin")
+        self.write("DensifyPointCloud", "")
+        self.assertEqual(default_folder(self.folder), self.folder)
+
+
+class Demo(InFolder):
+    def test_a_depth_map_has_the_number_of_its_image(self):
+        images = self.write("images.txt", "# 1 2 3\n6 1 0 0 0 0 0 0 1 0005.jpg\n"
+                            "1 2 3 4 5 6 7 8 9\n7 1 0 0 0 0 0 0 1 0006.jpg\n\n")
+        self.assertEqual(demo.depth_map_number(images, "0005.jpg"), 5)
+        self.assertIsNone(demo.depth_map_number(images, "0004.jpg"))
+
+    def test_truth_is_made_once_by_each_program(self):
+        programs, made = Programs(self.folder), self.folder / "made"
+        script = 'while [ "$1" != -o ]; do shift; done; mkdir -p "$2"; echo >> ' + str(made)
+        for version in ("1", "2"):
+            self.put_script("SimulateUnderwater", f"{script} # {version}")
+            for _ in range(2):
+                truth.make_truth(programs, "reef", self.folder / "truth")
+        self.assertEqual(made.read_text(), "\n\n")
+
+    def test_the_tables_columns_are_aligned(self):
+        row = {"mark": "(a)", "title": "In air", "points": 12345, "mean_m": 4e-4, "median_m": 3e-4,
+               "rms_m": 5e-4, "tolerance_m": 0.002, "f_score": 0.8, "seconds": 9.5}
+        lines = demo_table.text_table([row, {**row, "title": "Elsewhere"}]).splitlines()
+        self.assertEqual(len(lines), 4)
+        self.assertEqual(len(set(map(len, lines))), 1)
+        self.assertIn("12,345", lines[2])
+        self.assertIn("F-score at 2 mm", lines[0])
+
+
+class Files(InFolder):
+    def test_a_copy_is_not_repeated(self):
+        source, target = self.write("source", "new"), self.write("target", "old")
+        files.copy_once(source, target)
+        self.assertEqual(target.read_text(), "old")
+        files.clear(target)
+        files.copy_once(source, target)
+        self.assertEqual(target.read_text(), "new")
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"source", "target"})
+
+    def test_whatever_is_there_is_cleared(self):
+        self.write("folder/file", "")
+        for path in ("folder", "folder"):
+            files.clear(self.folder / path)
+        self.assertFalse((self.folder / "folder").exists())
+
+
+if __name__ == "__main__":
+    main()
