@@ -33,7 +33,7 @@ stage "Build"
 mkdir -p build
 if ! cmake --preset release >build/configure.log 2>&1 </dev/null; then
   tail -n 20 build/configure.log >&2
-  die "cmake --preset release: failed, all of its output is in build/configure.log"
+  die "cmake --preset release: failed, its output is in build/configure.log"
 fi
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
   EvaluateReconstruction AlignModel

@@ -18,9 +18,9 @@ struct WeakTextureOptions {
   float least_confidence = 0.6f;
 };
 
-// A depth is unsure if its pixel has weak texture or is near a border. Clears an unsure depth if the
-// mean confidence of all unsure depths in the 9x9 window around it is below least_confidence. The
-// confidence of a single pixel is not enough for this decision, because the best of many planes
+// A depth is unsure if its pixel has weak texture or is near a border. Clears an unsure depth if
+// the mean confidence of all unsure depths in the 9x9 window around it is below least_confidence.
+// The confidence of a single pixel is not enough for this decision, because the best of many planes
 // correlates even with noise. `grey`: the image of the map; throws an Error if it does not have the
 // map's size. `border`: border_pixels() of the map; empty: none. A map without confidences is
 // returned unchanged.

@@ -236,9 +236,9 @@ class Running(InFolder):
 
     def test_a_failure_says_how_the_command_ended(self):
         self.assertEqual(self.failure_of("echo a; echo b; exit 3"),
-                         ("sh: exit code 3, all of its output is in LOG", "a\nb\n"))
+                         ("sh: exit code 3, its output is in LOG", "a\nb\n"))
         self.assertEqual(self.failure_of("kill -9 $$", name="step")[0],
-                         "step: signal 9, all of its output is in LOG")
+                         "step: signal 9, its output is in LOG")
         self.assertEqual(running.ending(255), "exit code 255")
 
     def test_a_command_that_cannot_be_started_is_named(self):

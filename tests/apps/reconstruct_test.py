@@ -138,7 +138,7 @@ class WithStandIns(unittest.TestCase):
         self.assertEqual(second.returncode, 1)
         self.assertEqual(second.stdout, "")
         self.assertEqual(second.stderr, f"reconstruct: --output {self.folder / 'out'}: "
-                                        "another run is at work there\n")
+                                        "another run uses this folder\n")
 
     def test_prints_the_commands_that_it_runs(self):
         said = self.ended().stdout.splitlines()
@@ -232,12 +232,12 @@ class Reconstruct(unittest.TestCase):
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"
         for options, message in [
-                (["--lens", "nowhere.txt"], "--lens nowhere.txt: is not there"),
+                (["--lens", "nowhere.txt"], "--lens nowhere.txt: not found"),
                 (["--scale-from", "positions:none"],
-                 "--scale-from positions:none: the file is not there"),
+                 "--scale-from positions:none: file not found"),
                 (["--densify", "'a b"], "--densify 'a b: No closing quotation"),
                 (["--programs", str(self.scene)],
-                 f"--programs {self.scene.resolve()}: RefinePoses is not there; build it first")]:
+                 f"--programs {self.scene.resolve()}: RefinePoses not found; build the programs first")]:
             ended = self.ended(out, *options)
             self.assertEqual(ended.returncode, 1)
             self.assertEqual(ended.stderr, f"reconstruct: {message}\n")

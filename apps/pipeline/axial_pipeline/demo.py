@@ -97,7 +97,7 @@ def reconstruct_three_ways(demo):
     """Returns the folder of the poses in air, which (a) and (b) share."""
     demo.stage("Poses from the photographs in air (COLMAP, true intrinsics)")
     poses = demo.poses("poses", "air", truth.true_lens(demo.data))
-    demo.stage("Poses as it is done today: COLMAP calibrates a lens from the photographs under water")
+    demo.stage("Poses without a port: COLMAP calibrates a lens from the photographs under water")
     poses_today = demo.poses("poses-today", "water", truth.self_calibrated_lens(demo.data))
     demo.stage("(a) In air")
     demo.reconstruct("air", poses, "air")
@@ -109,7 +109,7 @@ def reconstruct_three_ways(demo):
 
 
 def evaluate_all(demo, poses):
-    demo.stage("Against the truth")
+    demo.stage("Comparison with the ground truth")
     wet = ("--housing", demo.data / "housing.json")
     demo.evaluate("air", "evaluation")
     demo.evaluate("refractive", "evaluation", *wet)
@@ -133,7 +133,7 @@ def write_results(demo):
 
 def run(demo):
     demo.work.mkdir(parents=True, exist_ok=True)
-    demo.stage(f"Ground truth of the scene '{demo.scene}', remade from its seed")
+    demo.stage(f"Ground truth of the scene '{demo.scene}', simulated again from its seed")
     truth.make_truth(demo.programs, demo.scene, demo.truth)
     evaluate_all(demo, reconstruct_three_ways(demo))
     demo.stage(f"Done: {OUT}/{{air,refractive,selfcalibrated}}.ply, {OUT}/table.json, "

@@ -6,8 +6,8 @@
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
 poses. DensifyPointCloud computes the cloud. The command of every step is printed and can be typed by
 hand. A killed run that is started again with the same options continues with the step that was
-killed; with other options, it continues with the first step that differs. While a run is at work, a
-second run in the same folder is refused.
+killed; with other options, it continues with the first step that differs. A second run in
+the same folder is refused until the first run ends.
 """
 
 import argparse
@@ -32,11 +32,11 @@ def options(script_folder):
                         "calibration.yaml")
     parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
                         "calibration.yaml")
-    parser.add_argument("-o", "--output", required=True, help="folder for all files that are made")
+    parser.add_argument("-o", "--output", required=True, help="folder for all output files")
     parser.add_argument("--scale-from", default="",
-                        help="what is known in metres, as for RefinePoses")
+                        help="known lengths or positions [m], as for RefinePoses")
     parser.add_argument("--refine", default="",
-                        help="what else is unknown, as for RefinePoses")
+                        help="further unknowns, as for RefinePoses")
     parser.add_argument("--matcher", choices=["exhaustive", "sequential"], default="exhaustive",
                         help="pairs of images that COLMAP matches (default: %(default)s)")
     parser.add_argument("--lens-model", default="OPENCV",
@@ -69,18 +69,18 @@ def check(given):
     for name in ("images", "lens", "housing", "truth", "programs"):
         path = getattr(given, name)
         if path and not pathlib.Path(path).exists():
-            raise Failure(f"--{name} {path}: is not there")
+            raise Failure(f"--{name} {path}: not found")
         if path:
             setattr(given, name, str(pathlib.Path(path).resolve()))
     file = positions.file_of(given.scale_from)
     if file is not None:
         if not pathlib.Path(file).is_file():
-            raise Failure(f"--scale-from {given.scale_from}: the file is not there")
+            raise Failure(f"--scale-from {given.scale_from}: file not found")
         given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
         positions.check(pathlib.Path(file), pathlib.Path(given.images))
     for program in ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud"):
         if not (pathlib.Path(given.programs) / program).is_file():
-            raise Failure(f"--programs {given.programs}: {program} is not there; build it first")
+            raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
     for name in ("refine-poses", "densify"):
         words_of(name, given)
     colmap.check_installed()
@@ -95,8 +95,8 @@ def take_largest(models):
     others = [str(size) for _, size in colmap.by_size(models)[1:]]
     print(f"    {count} images have poses", flush=True)
     if others:
-        print(f"    COLMAP could not join them to all others: {len(others)} more models, of "
-              f"{', '.join(others)} images, are left in {models}", flush=True)
+        print(f"    COLMAP could not join all images: {len(others)} more models, of "
+              f"{', '.join(others)} images, remain in {models}", flush=True)
     best.rename(models / "best")
 
 
@@ -150,7 +150,7 @@ def lines_of_poses(refined):
            f"in {sum(i['observations'] > 0 for i in refined['images'])} images")
     sigma = refined["scale_sigma"]
     if sigma is None:
-        yield "- nothing tells the scale"
+        yield "- the scale is not known"
     elif sigma != 0:  # 0: the poses were known
         yield f"- the scale is known to {100 * sigma:.2g} % (one standard deviation)"
     for camera in refined["cameras"]:
@@ -180,10 +180,10 @@ def only_run_in(out):
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise Failure(f"--output {out}: another run is at work there") from None
+        raise Failure(f"--output {out}: another run uses this folder") from None
     except OSError as error:
-        print(f"--output {out}: cannot be locked ({error.strerror}): take care that no other run is "
-              "at work there", flush=True)
+        print(f"--output {out}: cannot be locked ({error.strerror}): make sure that no other run "
+              "uses this folder", flush=True)
     return lock
 
 
@@ -200,4 +200,4 @@ def reconstruct(given):
 def main(script_folder):
     """`script_folder`: the folder of the command that the user typed."""
     run_main("reconstruct", lambda: reconstruct(options(script_folder)),
-             "stopped; the same command goes on from here")
+             "stopped; the same command continues from here")

@@ -97,7 +97,7 @@ def logged(command, log, name=None, excuse=None):
         return False
     for line in text.strip().splitlines()[-LINES_SHOWN:]:
         print(line, file=sys.stderr)
-    raise Failure(f"{name or name_of(command)}: {ending(code)}, all of its output is in {log}")
+    raise Failure(f"{name or name_of(command)}: {ending(code)}, its output is in {log}")
 
 
 def shown(command, output=None):
