@@ -160,8 +160,8 @@ class ColmapModelCommand(InFolder):
 
     def test_that_colmap_finds_no_poses_is_told_apart_from_a_broken_colmap(self):
         for script, said in ((f"echo '{colmap.NO_MODEL}'; exit 1", "COLMAP found no poses"),
-                             (f"echo '{colmap.NO_MODEL}'; exit 3", "colmap: exit code 3, all of its "
-                              "output is in out/mapper.log"),
+                             (f"echo '{colmap.NO_MODEL}'; exit 3", "colmap: exit code 3, its output "
+                              "is in out/mapper.log"),
                              ("kill -9 $$", "colmap: signal 9"),
                              ("exit 1", "colmap: exit code 1")):
             self.put_script("bin/colmap", f"[ $1 = mapper ] || exit 0; {script}")
