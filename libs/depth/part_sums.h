@@ -25,6 +25,11 @@ struct PartSums {
 
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
+// weight * (intensity - mean)^2 of texel k.
+inline float reference_square(const ReferencePatch& patch, std::size_t k) {
+  return patch.weight[k] > 0 ? patch.deviation[k] * patch.deviation[k] / patch.weight[k] : 0.0f;
+}
+
 // In [-1, 1], or kNoCorrelation.
 template <class T>
 T part_correlation(const PartSums<T>& sums) {

@@ -24,11 +24,6 @@ struct ReferencePatch {
   float mean;
   float variance;  // sum of weight * (intensity - mean)^2 with intensities from 0 to 1
   float texture;   // the same sum with the weights before normalisation, which are at most 1
-
-  // weight * (intensity - mean)^2 of texel k.
-  float square(std::size_t k) const {
-    return weight[k] > 0 ? deviation[k] * deviation[k] / weight[k] : 0.0f;
-  }
 };
 
 inline constexpr float kOutsideCost = 1.2f;  // cost of a patch without a correlation

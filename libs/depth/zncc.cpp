@@ -68,7 +68,7 @@ float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const T
     const float weight = share * patch.weight[k], deviation = share * patch.deviation[k];
     sums.weights += weight;
     sums.reference += deviation;
-    sums.reference_square += share * patch.square(k);
+    sums.reference_square += share * reference_square(patch, k);
     sums.mean += weight * value;
     sums.square += weight * value * value;
     sums.cross += deviation * value;

@@ -123,9 +123,8 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma) {
   const std::string deviations = freed.deviations < 100 ? fmt::format("{:.0f}", freed.deviations)
                                                         : std::string("more than 100");
   const std::string lengths =
-      std::isfinite(scale_sigma)
-          ? fmt::format("The lengths then have a larger error than the {:.2g} % given above. ",
-                        100 * scale_sigma)
+      std::isfinite(scale_sigma) && scale_sigma > 0
+          ? fmt::format("The lengths then have a larger error than {:.2g} %. ", 100 * scale_sigma)
           : std::string();
   return fmt::format(
       "Lens, port and scale do not fit the photographs: with {} at {} (given: {}, {} standard "

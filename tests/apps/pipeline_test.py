@@ -217,7 +217,7 @@ class Positions(InFolder):
         file = self.write("positions.txt",
                           "a.jpg 0 0 0\nb.jpg 1 0 0\n# d.jpg\nc.jpg 0 1 0\nC.jpg 0 1 0\n")
         said = self.said_by(positions.check, file, self.folder)
-        self.assertIn("1 of 4 names are no photographs", said)
+        self.assertIn("1 of 4 names are not photographs", said)
         self.assertIn("C.jpg first", said)
 
     def test_only_the_form_with_positions_names_a_file(self):

@@ -374,7 +374,7 @@ class Figure3(ProgramTest):
 
     def test_wrong_pages_are_refused_before_anything_is_computed(self):
         page = self.path("page.md")
-        for text, said in ((None, "page.md"), ("no table", "has no line '<!-- figure3"),
+        for text, said in ((None, "page.md"), ("no table", "has no line such as '<!-- figure3"),
                            ("<!-- figure3.md -->\n", "has no '<!-- end -->'"),
                            ("<!-- figure3.md -->\n<!-- figure4.md -->\n<!-- end -->\n",
                             "has no '<!-- end -->'")):

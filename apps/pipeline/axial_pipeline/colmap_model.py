@@ -30,7 +30,7 @@ def colmap_model(images, work, calibration, threads=None):
     for path in (model, models, *colmap.database_files(database)):
         files.clear(path)  # COLMAP would add to the results of a killed run
     models.mkdir(parents=True)
-    print(f"  features of {sum(1 for _ in images.rglob('*.jpg'))} images", flush=True)
+    print("  features", flush=True)
     logged(colmap.features(database, images, calibration.model, calibration.parameters, threads),
            work / "features.log")
     print("  matches of all pairs", flush=True)

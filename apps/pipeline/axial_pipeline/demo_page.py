@@ -156,11 +156,11 @@ svg .grid { stroke: var(--line); }
 <main>
 <h2>Three ways to reconstruct it</h2>
 <div class="panel">$table</div>
-<p>Distances are from every reconstructed point to the true surface, none left out. The F-score also
-counts what is missing of the surface that at least two views see. Clouds are where their camera
-centres put them: the true centres in (a) and (b), centres fitted to them in (c), where a lens model
-that has swallowed the refraction has its centre elsewhere. The last row takes that part away: there
-the cloud is moved rigidly onto the true surface. Seconds are those of DensifyPointCloud.</p>
+<p>Distances are measured from every reconstructed point to the true surface. The F-score also counts
+missing parts of the surface that at least two views see. The camera centres determine where a cloud
+lies. In (a) and (b) they are the true centres. In (c) they are fitted to the true centres, but a lens
+model that has absorbed the refraction has its centre elsewhere. For the last row, the cloud of (c)
+was moved rigidly onto the true surface. Seconds are those of DensifyPointCloud.</p>
 <h2>How far the points are from the truth</h2>
 <div class="panel">$histograms</div>
 <p>Dashed: medians.</p>

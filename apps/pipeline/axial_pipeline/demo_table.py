@@ -5,11 +5,11 @@ import json
 
 RUNS = [
     ("air", "In air", "(a)", "#0f766e",
-     "The photographs without refraction: what the cameras and the engine can do."),
+     "The photographs without refraction: the accuracy of cameras and matching alone."),
     ("refractive", "Under water, refractive", "(b)", "#1d4ed8",
-     "Through the port, under the same poses, every ray refracted exactly."),
+     "The photographs through the port, with the same poses. Every ray is refracted exactly."),
     ("selfcalibrated", "Under water, self-calibrated", "(c)", "#b45309",
-     "Today's practice: COLMAP absorbs the refraction in a lens model, the engine believes it."),
+     "The usual practice: COLMAP absorbs the refraction in a lens model, and matching uses this model."),
 ]
 SCENES = {
     "closeup": "Twelve views around an object with overhangs, 0.5 to 0.9 m away, through 1.8 cm of "

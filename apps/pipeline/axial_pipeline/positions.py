@@ -60,5 +60,5 @@ def check(file, images):
         raise Failure(f"{file}: {len(names) - len(missing)} of its names are photographs in "
                       f"{images}, at least {LEAST_NAMES} are needed")
     if missing:
-        print(f"{file}: {len(missing)} of {len(names)} names are no photographs in {images} and "
-              f"are passed over, {missing[0]} first", flush=True)
+        print(f"{file}: {len(missing)} of {len(names)} names are not photographs in {images} and "
+              f"are ignored, {missing[0]} first", flush=True)

@@ -76,6 +76,8 @@ def exit_code_of(command, log):
 
 def ending(code):
     """How a command ended, in words."""
+    if code < 0:  # the process that keeps the command was killed itself
+        return f"signal {-code}"
     is_signal = 128 < code <= 128 + signal.SIGRTMAX
     return f"signal {code - 128}" if is_signal else f"exit code {code}"
 

@@ -48,7 +48,7 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
         deviation *= share;
         sums.weights.part += weight;
         sums.reference.part += deviation;
-        sums.reference_square.part += share * Part(patch.square(texel));
+        sums.reference_square.part += share * Part(reference_square(patch, texel));
         at_x = max(min(x, window.last_x - 1), Ints(0));
         at_y = max(min(y, window.last_y - 1), Ints(0));
       }
