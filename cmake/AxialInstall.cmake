@@ -14,7 +14,8 @@ endforeach()
 install(DIRECTORY apps/pipeline/axial_pipeline DESTINATION share/axialmvs COMPONENT programs
   FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs
+  PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE)
 
 # Man pages, from --help.
 find_program(AXIAL_HELP2MAN help2man)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pages of docs/ and the README: the options reference is what the programs print, links lead
+somewhere, and quoted messages are in the source."""
+
+import difflib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from programs import BIN, main
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "docs"))
+import options_reference  # noqa: E402
+
+PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "data").rglob("*.md")]
+
+
+class OptionsReference(unittest.TestCase):
+    def generated(self, **environment):
+        """The page that the generator writes now, in another folder and environment."""
+        with tempfile.TemporaryDirectory(prefix="axial_") as folder:
+            page = pathlib.Path(folder) / "page.md"
+            done = subprocess.run(
+                [sys.executable, str(ROOT / "docs" / "options_reference.py"), BIN, "-o", page],
+                cwd=folder, env={**os.environ, **environment}, text=True, capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return page.read_text(encoding="utf-8")
+
+    def test_page_is_what_the_programs_print(self):
+        page = (ROOT / "docs" / "options-reference.md").read_text(encoding="utf-8")
+        new = self.generated()
+        if new != page:
+            differences = "\n".join(difflib.unified_diff(
+                page.splitlines(), new.splitlines(), "docs/options-reference.md", "--help",
+                lineterm="", n=0))
+            self.fail(f"{differences}\ndocs/options-reference.md is not what --help prints. This "
+                      f"command renews it:\n    {options_reference.COMMAND}")
+
+    def test_page_does_not_depend_on_the_environment(self):
+        self.assertEqual(self.generated(COLUMNS="40", LC_ALL="C", AXIAL_BIN="/elsewhere"),
+                         self.generated(COLUMNS="200"))
+
+    def test_broken_lines_are_joined(self):
+        """The program breaks lines at blanks, and words that are longer than half a line."""
+        joined = options_reference.joined
+        self.assertEqual(joined(["base of ", "paths"], 10), "base of paths")
+        self.assertEqual(joined(["01234 6789", "paths"], 10), "01234 6789 paths")
+        self.assertEqual(joined(["012 abcdef", "ghi jk"], 10), "012 abcdefghi jk")
+
+
+class Links(unittest.TestCase):
+    def anchors(self, page):
+        """The anchors that GitHub gives to the headings of a page."""
+        found = set()
+        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+        for heading in re.findall(r"^#+ (.*)$", text, re.M):
+            plain = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+            anchor = re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")
+            number = 0
+            while (f"{anchor}-{number}" if number else anchor) in found:
+                number += 1
+            found.add(f"{anchor}-{number}" if number else anchor)
+        return found
+
+    def test_links_lead_to_files_and_headings(self):
+        for page in PAGES:
+            for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+                if re.match(r"[a-z]+:", link):
+                    continue
+                file, _, anchor = link.partition("#")
+                target = (page.parent / file).resolve() if file else page
+                where = f"{page.relative_to(ROOT)}: {link}"
+                self.assertTrue(target.exists(), where)
+                if anchor:
+                    self.assertIn(anchor, self.anchors(target), where)
+
+    def test_every_page_is_in_the_index(self):
+        index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+        for page in (ROOT / "docs").glob("*.md"):
+            if page.name != "README.md":
+                self.assertIn(f"({page.name})", index)
+
+
+class Messages(unittest.TestCase):
+    def test_quoted_messages_are_in_the_source(self):
+        """In troubleshooting.md, "..." stands for a value. A message may be put together from two
+        texts at a ": "."""
+        source = "\n".join(path.read_text(encoding="utf-8")
+                           for folder in ("apps", "libs") for path in (ROOT / folder).rglob("*")
+                           if path.suffix in (".cpp", ".h", ".py"))
+        source = re.sub(r'"\s*f?"', "", source)  # joins the literals of one message
+        page = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
+        quoted = re.findall(r"^    (.*)$", page, re.M)
+        self.assertGreater(len(quoted), 50)
+        for message in quoted:
+            for part in re.split(r"\.\.\.|: ", message):
+                self.assertIn(part.strip(" :"), source, message)
+
+
+if __name__ == "__main__":
+    main()
