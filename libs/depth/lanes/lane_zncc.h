@@ -20,6 +20,8 @@ struct LaneWindow {
   Ints whole;             // 1 in lanes whose window lies inside the image as a whole, else 0
 };
 
+namespace {  // one copy per translation unit: instruction sets must not share this code
+
 // Adds up one window per lane, grey levels in kGreyUnit. Without kPart the first three sums are
 // left out, and every window must be a whole one. With kPart texels outside are not sampled and
 // have a share of 0, and whole windows get the same bytes as without kPart.
@@ -73,8 +75,6 @@ Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi
   const T value = sums.cross / sqrt(T(patch.variance) * select(known, variance, T(1)));
   return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
 }
-
-namespace {  // one copy per translation unit: the linker would merge those of one instruction set
 
 // Where some windows leave their images: rare, so that it stays out of the way of the usual case.
 template <class Abi>

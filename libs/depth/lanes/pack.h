@@ -82,8 +82,10 @@ struct Pack {
   friend PackMask<Abi> operator>=(const Pack& a, const Pack& b) { return {a.part >= b.part}; }
 };
 
+// Always inline: otherwise instruction sets could share a copy.
 template <class Abi>
-Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes, Pack<Abi> no) {
+[[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
+                                               Pack<Abi> no) {
   stdx::where(mask.part, no.part) = yes.part;
   return no;
 }
