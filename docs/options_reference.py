@@ -4,8 +4,8 @@
 
     python3 docs/options_reference.py build/release/bin -o docs/options-reference.md
 
-Without -o the page goes to standard output. The test tests/apps/options_reference_test.py compares
-the page with the programs."""
+Without -o the page goes to standard output. The test tests/apps/documents_test.py compares the
+page with the programs."""
 
 import argparse
 import dataclasses

@@ -108,9 +108,10 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
   arguments += {"--camera-model", calibration.model};
   arguments += {"--camera-parameters", calibration.parameters};
   if (calibration.refine) arguments += {"--refine"};
+  // "model" is the layout of the folder. Folders that earlier versions left have no model/.
   const Json inputs{medium, calibration.model, calibration.parameters, calibration.refine, "model"};
   step(folder, inputs, [&] {
-    // That COLMAP finds no poses is a result, not an error.
+    // If COLMAP finds no poses, this is a result and not an error.
     run_sibling(chain, "axial-colmap-model", arguments, folder / "colmap.log",
                 {"COLMAP found no poses"});
   });

@@ -7,18 +7,20 @@
 #include <opencv2/core.hpp>
 
 #include "depth/patch_match.h"
+#include "depth/reference_patch.h"
 #include "scene/depth_map.h"
 
 namespace axial::depth {
 
-// Three times the radius of the matching window [px]. With the radius alone, a patch of wrong
-// depths 14 pixels wide remained in a test through a water surface.
-inline constexpr int kBorderWidth = 12;
+// [px]. With the radius of the window alone, a patch of wrong depths 14 pixels wide remained in the
+// test through a water surface (tests/apps/end_to_end_test.py).
+inline constexpr int kBorderWidth = 3 * kPatchRadius;
 
 // Returns 255 for pixels near borders, 0 elsewhere. A pixel with a depth is near a border if it
-// lies less than kBorderWidth from the border of the reference image, or if every source view shows
-// its surface point less than kBorderWidth from the source image's border or not at all. `map`: the
-// depth map of input.reference. Precondition: the map has the size of its image.
+// lies less than kBorderWidth from the border of the reference image, or if no source view shows
+// its surface point at least kBorderWidth from the border of the source image. `map`: the depth map
+// of input.reference. Throws an Error if input.projection does not support the cameras.
+// Precondition: the map has the size of its image.
 cv::Mat1b border_pixels(const MatchInput& input, const DepthMap& map);
 
 }  // namespace axial::depth

@@ -10,9 +10,9 @@
 
 namespace axial::depth {
 
-// The sums of ZNCC with weights of their own: the reference patch's weights times the texels'
-// shares (0 to 1, kLeastWeight's comment). With the share s, the patch's weight w and deviation
-// w d, and the source's grey level v, less any constant:
+// The sums of ZNCC over the texels of a window, each multiplied by the texel's share s, which is 0
+// to 1 (see kLeastWeight). w: the weight in the reference patch. d: the grey level in the reference
+// patch minus its mean. v: the grey level in the source patch minus a constant of the window.
 template <class T>
 struct PartSums {
   T weights = T(0);           // s w

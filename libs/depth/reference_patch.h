@@ -33,10 +33,10 @@ inline constexpr float kMaxCost = 2.0f;
 // NaN, too little of it lies inside, or it is flat. Less than every correlation.
 inline constexpr float kNoCorrelation = -2.0f;
 
-// The weight of a texel is multiplied by its distance to the edge of the source image [px], from 0
-// at the edge to 1 at one pixel or more. So the correlation is a continuous function of the
-// hypothesis. A patch has a correlation if the sum of these products is at least kLeastWeight (for
-// a patch inside the image, the sum is 1).
+// The weight of a texel is multiplied by the texel's share: its distance to the edge of the source
+// image [px], from 0 at the edge to 1 at one pixel or more. So the correlation is a continuous
+// function of the hypothesis. A patch has a correlation if the sum of these products is at least
+// kLeastWeight (for a patch inside the image, the sum is 1).
 inline constexpr float kLeastWeight = 0.3f;
 
 // A source patch is flat if its variance [grey levels^2] is not above this value.

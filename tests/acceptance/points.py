@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shared by the acceptance points: their list, their scenes, and runs that are kept."""
 
+import functools
 import json
 import shutil
 
@@ -17,6 +18,17 @@ POINTS = {}  # by name: the function that measures the point, and the text of wh
 def point(wanted):
     def register(function):
         POINTS[function.__name__.replace("_", "-")] = (function, wanted)
+        return function
+    return register
+
+
+def point_of_each_scene(wanted):
+    """Registers the function, which gets a folder and a scene, as one point for each scene."""
+    def register(function):
+        for scene in ("closeup", "reef"):
+            text = wanted[scene] if isinstance(wanted, dict) else wanted
+            name = f"{scene}-{function.__name__.replace('_', '-')}"
+            POINTS[name] = (functools.partial(function, scene=scene), text)
         return function
     return register
 

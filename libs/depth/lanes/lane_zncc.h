@@ -16,15 +16,17 @@ struct LaneWindow {
   Ints x, y;              // the first texel
   Ints right_x, right_y;  // the step to the next texel of a row
   Ints down_x, down_y;    // the step to the next row
-  Ints last_x, last_y;    // the last column and row of the image
-  Ints whole;             // 1 in lanes whose window lies inside the image as a whole, else 0
+  // These are set only if the window of a lane leaves its image.
+  Ints last_x, last_y;  // the last column and row of the image
+  Ints whole;           // 1 in lanes whose whole window lies inside the image, else 0
 };
 
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// Adds up one window per lane, grey levels in kGreyUnit. Without kPart the first three sums are
-// left out, and every window must be a whole one. With kPart texels outside are not sampled and
-// have a share of 0, and whole windows get the same bytes as without kPart.
+// Computes the sums over one window per lane, with grey levels in units of kGreyUnit. kPart:
+// windows may leave their images. Then, texels outside have a share of 0; their samples are taken
+// at the edge of the image. A whole window gets the same bytes as without kPart. Without kPart, the
+// first three sums stay 0.
 template <bool kPart, class Abi>
 PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<Abi>& sample,
                                 const LaneWindow<Abi>& window) {
@@ -33,7 +35,6 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
   constexpr int kSide = 5;
   constexpr int kWholeShare = static_cast<int>(kPositionUnit);
   const Part grey_mean(patch.mean * kGreyUnit);
-  const Ints whole = window.whole * kWholeShare;
   PartSums<Pack<Abi>> sums;
   Ints row_x = window.x, row_y = window.y;
   std::size_t texel = 0;
@@ -44,7 +45,8 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
       Ints at_x = x, at_y = y;
       if constexpr (kPart) {
         const Ints room = min(min(x, window.last_x - x), min(y, window.last_y - y));
-        const Ints counted = max(min(max(room, Ints(0)), Ints(kWholeShare)), whole);
+        const Ints counted =
+            max(min(max(room, Ints(0)), Ints(kWholeShare)), Ints(window.whole * kWholeShare));
         const Part share = stdx::static_simd_cast<Part>(counted) * Part(1 / kPositionUnit);
         weight *= share;
         deviation *= share;
@@ -64,7 +66,8 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
   return sums;
 }
 
-// The correlation of lanes whose window is a whole one.
+// The correlation of the lanes in `whole`, whose whole window lies inside the image, and
+// kNoCorrelation in the other lanes.
 template <class Abi>
 Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi>>& sums,
                             const PackMask<Abi>& whole) {
@@ -76,7 +79,8 @@ Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi
   return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
 }
 
-// Where some windows leave their images: rare, so that it stays out of the way of the usual case.
+// The correlation if the windows of the lanes in `partly` leave their images. A separate function,
+// because this case is rare and its code would slow down the usual case.
 template <class Abi>
 [[gnu::noinline]] Pack<Abi> lane_zncc_of_parts(const ReferencePatch& patch,
                                                const LaneSampler<Abi>& sample,
@@ -97,9 +101,9 @@ template <class Abi>
 // The correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as ZnccFunction. The
 // result of a lane does not depend on the other lanes. Whether the whole window is inside the image
 // is tested at its corners, because the warp is affine. Centre and steps are rounded to 1/65536 px,
-// which moves samples by at most 1e-3 px. The window keeps one pixel of distance to the image's
-// edge, so all samples meet the precondition of LaneSampler. `words`: SceneTables::words. `warp`:
-// d(source pixel)/d(reference pixel).
+// which moves samples by at most 1e-3 px. A whole window keeps one pixel of distance to the
+// image's edge, so its samples meet the precondition of LaneSampler. `words`: SceneTables::words.
+// `warp`: d(source pixel)/d(reference pixel).
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
@@ -115,7 +119,7 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   const PackMask<Abi> whole = centre.visible && x - extent_x >= T(1) && y - extent_y >= T(1) &&
                               x + extent_x <= image.width - T(2) &&
                               y + extent_y <= image.height - T(2);
-  // Not larger than positions can say.
+  // Larger windows have texels that positions in fixed point cannot represent.
   const T farthest(static_cast<float>(kLargestSide));
   const PackMask<Abi> partly = centre.visible && !whole && x > T(0) && y > T(0) &&
                                x < image.width - T(1) && y < image.height - T(1) &&

@@ -82,7 +82,8 @@ struct Pack {
   friend PackMask<Abi> operator>=(const Pack& a, const Pack& b) { return {a.part >= b.part}; }
 };
 
-// Always inline: otherwise instruction sets could share a copy.
+// Always inlined, because translation units for one instruction set must not share a copy either
+// (tests/depth/shared_names_test.py).
 template <class Abi>
 [[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
                                                Pack<Abi> no) {
