@@ -233,7 +233,7 @@ std::vector<std::string> content_of_files(const Project& project) {
 // number of threads, are not part of it.
 std::string fingerprint(const Project& project, const Options& options) {
   axial::Fingerprint print;
-  print.add("AxialMVS depth maps 11");  // the number is the version of the matching method
+  print.add("AxialMVS depth maps 12");  // the number is the version of the matching method
   add_options(print, options);
   if (!options.map_settings.empty()) print.add(options.map_settings);
   const std::vector<std::string> contents = content_of_files(project);

@@ -2,6 +2,7 @@
 #include "depth/border.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -48,21 +49,29 @@ std::vector<Source<Camera>> sources_of(const MatchInput& input,
   return sources;
 }
 
+enum class Block : std::uint8_t { kEmpty, kInside, kAtBorder };
+
 }  // namespace
 
 cv::Mat1b border_pixels(const MatchInput& input, const DepthMap& map) {
   cv::Mat1b border(map.depth.size(), std::uint8_t{0});
   const auto find = [&](const auto& cameras) {
     const auto sources = sources_of(input, cameras);
+    std::vector<Block> blocks;  // of the current rows
     each_ray(cameras[0], map.width(), map.height(), [&](int x, int y, const auto& ray) {
+      if (x == 0 && y % kBorderBlock == 0)
+        blocks.assign(static_cast<std::size_t>(map.width() / kBorderBlock + 1), Block::kEmpty);
       const float depth = map.depth(y, x);
       if (!(depth > 0)) return;
-      const Eigen::Vector3f point = ray.at(depth);
-      const bool away = inside({static_cast<float>(x), static_cast<float>(y)}, map.depth.size()) &&
-                        std::ranges::any_of(sources, [&](const auto& source) {
-                          return source.shows_inside(point);
-                        });
-      if (!away) border(y, x) = 255;
+      Block& block = blocks[static_cast<std::size_t>(x / kBorderBlock)];
+      if (block == Block::kEmpty) {
+        const Eigen::Vector3f point = ray.at(depth);
+        const bool shown = std::ranges::any_of(
+            sources, [&](const auto& source) { return source.shows_inside(point); });
+        block = shown ? Block::kInside : Block::kAtBorder;
+      }
+      const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+      if (block == Block::kAtBorder || !inside(pixel, map.depth.size())) border(y, x) = 255;
     });
   };
   std::visit(find, make_camera_list<float>(models_of(input), input.projection));
