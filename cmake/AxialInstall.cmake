@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cmake --install: programs, their man pages and documents (component "programs"); libraries, headers
-# and the CMake package AxialMVS (component "development"). cpack -G DEB makes a package of the
-# programs.
+# (not those of private/) and the CMake package AxialMVS (component "development"). cpack -G DEB makes
+# a package of the programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -48,7 +48,8 @@ foreach(library IN LISTS AXIAL_LIBRARIES)
   else()
     set(headers libs/${library})
   endif()
-  install(DIRECTORY ${headers} DESTINATION ${include_dir} COMPONENT development FILES_MATCHING PATTERN "*.h")
+  install(DIRECTORY ${headers} DESTINATION ${include_dir} COMPONENT development
+    FILES_MATCHING PATTERN "*.h" PATTERN private EXCLUDE)
 endforeach()
 install(EXPORT AxialMVSTargets NAMESPACE Axial:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/AxialMVSConfig.cmake.in ${PROJECT_BINARY_DIR}/AxialMVSConfig.cmake

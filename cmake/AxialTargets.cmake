@@ -85,7 +85,9 @@ if(NOT AXIAL_SANITIZE)
 endif()
 
 # add_axial_library(depth SOURCES a.cpp LINK scene opencv_core) adds libs/depth as the library
-# axial_depth. In LINK, the project's own libraries are written without the prefix axial_.
+# axial_depth. In LINK, the project's own libraries are written without the prefix axial_. Headers in
+# libs/depth/private are for this library alone: they are included as "private/x.h", which only its
+# own files find.
 function(axial_link target)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})
@@ -102,6 +104,9 @@ function(add_axial_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(axial_${name} STATIC ${ARG_SOURCES})
   target_include_directories(axial_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/libs>)
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/private)
+    target_include_directories(axial_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  endif()
   target_compile_features(axial_${name} PUBLIC cxx_std_20)
   target_link_libraries(axial_${name} PUBLIC $<BUILD_INTERFACE:axial_flags>)
   target_precompile_headers(axial_${name} REUSE_FROM axial_parsed)
@@ -120,18 +125,19 @@ endfunction()
 
 # The unit tests of these folders read files and manage memory, so they are built with the
 # sanitizers. The unit tests of the other folders are numeric and are built in release.
-set(AXIAL_SANITIZED_FOLDERS base io scene cloud)
+set(AXIAL_SANITIZED_FOLDERS base io scene picture cloud)
 
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
-#                [BUILD release] [TIMEOUT 300])
+#                [BUILD release] [TIMEOUT 300] [PRIVATE_OF io])
 # adds tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", or with the sanitizers
 # "sanitized/io/ply_test/...". PROGRAMS are the programs that the test runs; they are built first. A
 # test of LABELS unit (the default) is built in the build of its folder (see above), or in the build
 # that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds. Tests with other
-# labels are only built in release.
+# labels are only built in release. PRIVATE_OF names the library whose private headers the test may
+# include.
 add_custom_target(axial_tests)
 function(add_axial_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;BUILD" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;BUILD;PRIVATE_OF" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
@@ -161,6 +167,9 @@ function(add_axial_test name)
   string(REPLACE "/" "_" target ${name})
   add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${name}.cpp ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs ${PROJECT_SOURCE_DIR}/tests)
+  if(ARG_PRIVATE_OF)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs/${ARG_PRIVATE_OF})
+  endif()
   target_compile_definitions(${target} PRIVATE AXIAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${target} PRIVATE axial_test_flags ${AXIAL_PARSED_LIBRARIES} rapidcheck GTest::gmock

@@ -11,9 +11,9 @@
 #include "base/same_file.h"
 #include "base/version.h"
 #include "evaluate/alignment.h"
-#include "io/colmap.h"
-#include "io/colmap_scene.h"
-#include "io/geo_offset.h"
+#include "io/cameras/geo_offset.h"
+#include "io/colmap/colmap.h"
+#include "io/colmap/colmap_scene.h"
 #include "pose/import_check.h"
 
 namespace fs = std::filesystem;

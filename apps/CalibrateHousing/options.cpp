@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/version.h"
-#include "io/bit_depth.h"
+#include "io/images/bit_depth.h"
 
 using axial::fail;
 

@@ -10,8 +10,8 @@
 #include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/parallel.h"
-#include "io/bit_depth.h"
-#include "io/image.h"
+#include "io/images/bit_depth.h"
+#include "io/images/image.h"
 
 namespace fs = std::filesystem;
 using namespace axial;

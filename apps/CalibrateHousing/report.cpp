@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/json.h"
+#include "io/bytes/json.h"
 #include "pose/free_numbers.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "base/parallel.h"
 #include "base/shared_cache.h"
 #include "depth/agreement.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
 
 namespace densify {
 namespace {

@@ -14,8 +14,8 @@
 #include "base/same_file.h"
 #include "cloud/visibility.h"
 #include "fusion_stage.h"
-#include "io/mvs.h"
-#include "io/ply.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
 #include "outputs.h"
 
 namespace densify {

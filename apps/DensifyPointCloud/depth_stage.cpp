@@ -17,8 +17,8 @@
 #include "depth/filters.h"
 #include "depth/patch_match.h"
 #include "depth/weak_texture.h"
-#include "io/dmap.h"
-#include "io/dmap_pictures.h"
+#include "io/openmvs/dmap.h"
+#include "picture/dmap_pictures.h"
 
 namespace densify {
 namespace fs = std::filesystem;

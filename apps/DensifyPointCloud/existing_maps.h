@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/dmap.h"
+#include "io/openmvs/dmap.h"
 #include "project.h"
 
 namespace densify {

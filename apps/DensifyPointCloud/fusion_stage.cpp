@@ -10,8 +10,8 @@
 #include "cloud/crop.h"
 #include "cloud/fuse.h"
 #include "cloud/normals.h"
-#include "io/json.h"
-#include "io/ply.h"
+#include "io/bytes/json.h"
+#include "io/ply/ply.h"
 
 namespace densify {
 namespace {

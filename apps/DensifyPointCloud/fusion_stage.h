@@ -3,7 +3,7 @@
 
 #include "existing_maps.h"
 #include "image_store.h"
-#include "io/ply.h"
+#include "io/ply/ply.h"
 #include "memory_plan.h"
 #include "project.h"
 

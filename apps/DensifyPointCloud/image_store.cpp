@@ -7,7 +7,7 @@
 #include "base/first_error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "io/image.h"
+#include "io/images/image.h"
 
 namespace densify {
 namespace {

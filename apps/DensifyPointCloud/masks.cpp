@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "io/masks.h"
+#include "io/images/masks.h"
 
 namespace densify {
 

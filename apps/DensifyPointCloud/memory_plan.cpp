@@ -12,8 +12,8 @@
 #include "cloud_exports.h"
 #include "depth/filters.h"
 #include "depth/plane_map.h"
-#include "io/mvs_counts.h"
-#include "io/point_source.h"
+#include "io/openmvs/mvs_counts.h"
+#include "io/openmvs/point_source.h"
 #include "pinhole_export.h"
 
 namespace densify {

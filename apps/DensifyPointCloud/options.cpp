@@ -10,7 +10,7 @@
 #include "base/version.h"
 #include "cloud_exports.h"
 #include "dense_config.h"
-#include "io/bit_depth.h"
+#include "io/images/bit_depth.h"
 #include "without_effect.h"
 
 namespace densify {

@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "base/same_file.h"
 #include "depth_stage.h"
-#include "io/geo_offset.h"
-#include "io/housing.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/housing.h"
 
 namespace densify {
 namespace fs = std::filesystem;

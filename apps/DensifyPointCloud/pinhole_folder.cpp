@@ -11,10 +11,10 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/log.h"
-#include "io/colmap_export.h"
-#include "io/json.h"
-#include "io/masks.h"
-#include "io/written_files.h"
+#include "io/bytes/json.h"
+#include "io/bytes/written_files.h"
+#include "io/colmap/colmap_export.h"
+#include "io/images/masks.h"
 
 namespace densify {
 namespace fs = std::filesystem;

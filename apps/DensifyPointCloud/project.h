@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "io/housing.h"
-#include "io/image.h"
-#include "io/lenses.h"
+#include "io/cameras/housing.h"
+#include "io/cameras/lenses.h"
+#include "io/images/image.h"
 #include "options.h"
 #include "scene/local_frame.h"
 #include "scene/scene.h"

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "evaluate/parts_report.h"
-#include "io/ply_property.h"
+#include "io/ply/ply_property.h"
 
 using namespace axial;
 

@@ -15,11 +15,11 @@
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
 #include "evaluate/strip.h"
-#include "io/colmap_scene.h"
-#include "io/geo_offset.h"
-#include "io/image.h"
-#include "io/ply.h"
-#include "io/rival_ports.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/rival_ports.h"
+#include "io/colmap/colmap_scene.h"
+#include "io/images/image.h"
+#include "io/ply/ply.h"
 #include "runs.h"
 
 namespace fs = std::filesystem;

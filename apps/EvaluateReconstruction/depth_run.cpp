@@ -6,8 +6,8 @@
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
-#include "io/dmap.h"
-#include "io/image.h"
+#include "io/images/image.h"
+#include "io/openmvs/dmap.h"
 #include "runs.h"
 
 using namespace axial;

@@ -5,8 +5,8 @@
 #include "base/files_in.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
-#include "io/colmap.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
+#include "io/colmap/colmap.h"
 #include "options.h"
 #include "runs.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/json.h"
+#include "io/bytes/json.h"
 #include "pose/free_numbers.h"
 
 namespace {

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
-#include "io/position_file.h"
+#include "io/cameras/position_file.h"
 #include "scene/decompositions.h"
 
 namespace {

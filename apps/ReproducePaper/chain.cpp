@@ -9,8 +9,8 @@
 #include "base/hash.h"
 #include "base/parse_number.h"
 #include "evaluate/alignment.h"
-#include "io/colmap.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
 #include "steps.h"
 
 namespace axial {

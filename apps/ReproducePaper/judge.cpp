@@ -10,9 +10,9 @@
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/depth_places.h"
 #include "evaluate/statistics.h"
-#include "io/dmap.h"
-#include "io/image.h"
-#include "io/svg.h"
+#include "io/images/image.h"
+#include "io/openmvs/dmap.h"
+#include "picture/svg.h"
 #include "steps.h"
 
 namespace axial {

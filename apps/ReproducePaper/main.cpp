@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
 #include "options.h"
 #include "page.h"
 #include "results.h"

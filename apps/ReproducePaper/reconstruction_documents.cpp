@@ -4,7 +4,7 @@
 
 #include "experiments/tables.h"
 #include "experiments/verdicts.h"
-#include "io/svg.h"
+#include "picture/svg.h"
 #include "reconstruction_maps.h"
 #include "steps.h"
 

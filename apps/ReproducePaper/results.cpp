@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/hash.h"
 #include "base/parse_number.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
 
 namespace axial {
 namespace {

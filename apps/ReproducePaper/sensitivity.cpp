@@ -8,7 +8,7 @@
 
 #include "chained.h"
 #include "experiments/tables.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
 
 namespace axial {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "chain.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
 
 namespace axial {
 

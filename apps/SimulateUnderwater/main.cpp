@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "io/image.h"
+#include "io/images/image.h"
 #include "write_scene.h"
 
 using namespace axial;

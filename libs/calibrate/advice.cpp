@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "calibrate/board_pose.h"
 #include "calibrate/information.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
 #include "pose/free_numbers.h"
 
 namespace axial::calibrate {

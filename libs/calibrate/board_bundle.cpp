@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/board_bundle.h"
 
-#include "io/colmap_lens.h"
+#include "io/colmap/colmap_lens.h"
 
 namespace axial::calibrate {
 namespace {
@@ -41,7 +41,7 @@ pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::
 
 std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
                                  std::span<const Eigen::Vector3d> corners, const Pose& pose) {
-  const io::ColmapCamera& lens = bundle.lenses[0];
+  const lens::Lens in_air = io::lens_of(bundle.lenses[0]);
   const CameraModel now = bundle.bundle.cameras[0].now();
   const auto camera = make_camera<double>(now);
   std::vector<Corner> seen;
@@ -50,13 +50,12 @@ std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
         std::visit([&](const auto& c) { return c.project(pose.to_camera(corners[i])); }, camera);
     if (!image.visible) continue;
     const Eigen::Vector3d bearing = now.lens.bearing(image.pixel);
-    const Eigen::Vector2d pixel = io::image_direction(lens, bearing.x(), bearing.y());
-    const bool inside = pixel.x() >= 1 && pixel.y() >= 1 &&
-                        pixel.x() <= static_cast<double>(lens.width) - 2 &&
-                        pixel.y() <= static_cast<double>(lens.height) - 2;
+    const Eigen::Vector2d pixel = image_direction(in_air, bearing.x(), bearing.y());
+    const bool inside = pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= in_air.width - 2.0 &&
+                        pixel.y() <= in_air.height - 2.0;
     // A distortion model may also fold distant directions back into the image: they are not
     // visible.
-    if (inside && io::direction_at(lens, pixel)) seen.push_back({i, pixel});
+    if (inside && direction_at(in_air, pixel)) seen.push_back({i, pixel});
   }
   return seen;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibrate/board.h"
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "pose/colmap_bundle.h"
 
 namespace axial::calibrate {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/svg.h"
+#include "picture/svg.h"
 
 namespace axial::calibrate {
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "io/colmap_lens.h"
+#include "io/colmap/colmap_lens.h"
 
 namespace axial::calibrate {
 namespace {
@@ -41,7 +41,7 @@ class Photographer {
     const Eigen::Vector2d middle(camera_.lens.cx, camera_.lens.cy);
     refractive::AxialRayJacobian<double> spread;
     std::visit([&](const auto& c) { c.ray(middle, spread); }, make_camera<double>(camera_));
-    const auto lens = io::undistorted_lens(bundle_.lenses[0]);
+    const auto lens = io::lens_of(bundle_.lenses[0]).pinhole;
     // Converts a length in the photograph's pixels to pixels of the lens without distortion.
     const double across = width() * camera_.lens.fx / lens.fx * spread.direction.col(0).norm();
     const double down = height() * camera_.lens.fy / lens.fy * spread.direction.col(1).norm();
@@ -63,7 +63,7 @@ class Photographer {
       }
       const Eigen::Vector2d miss = miss_of(placed);
       if (step + 1 == kSteps || miss.norm() < 2) break;
-      const auto lens = io::undistorted_lens(bundle_.lenses[0]);
+      const auto lens = io::lens_of(bundle_.lenses[0]).pinhole;
       at += 0.5 * Eigen::Vector2d(miss.x() / lens.fx, miss.y() / lens.fy);
     }
     return placed.corners.size() == corners_.size();

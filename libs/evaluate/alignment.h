@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"

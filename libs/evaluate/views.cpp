@@ -7,21 +7,22 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/colmap_lens.h"
+#include "io/colmap/colmap_lens.h"
 
 namespace axial::evaluate {
 namespace {
 
 CameraModel dry_camera(const io::ColmapCamera& camera) {
-  const auto lens = io::pinhole_lens(camera);
+  const lens::Lens in_air = io::lens_of(camera);
+  const bool distorted = !pinhole_lens(in_air);
   CameraModel model;
   model.width = static_cast<int>(camera.width);
   model.height = static_cast<int>(camera.height);
-  model.distortion = io::lens_distortion(camera);
-  if (!lens && !model.distortion)
+  model.distortion = lens_distortion(in_air);
+  if (distorted && !model.distortion)
     fail("camera {}: its model {} needs undistortion, which is not done here", camera.id,
          camera.model);
-  model.lens = lens ? *lens : io::undistorted_lens(camera);
+  model.lens = in_air.pinhole;
   if (model.distortion && !(distorted_lens<double>(model).field > 0))
     fail("camera {}: the distortion of its {} lens mirrors the image", camera.id, camera.model);
   return model;

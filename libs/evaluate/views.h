@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "evaluate/surface.h"
-#include "io/colmap.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
 #include "scene/camera_model.h"
 #include "scene/pose.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "io/svg.h"
+#include "picture/svg.h"
 
 namespace axial::experiments {
 namespace {

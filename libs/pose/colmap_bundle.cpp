@@ -8,8 +8,8 @@
 #include <map>
 
 #include "base/error.h"
-#include "io/colmap_lens.h"
-#include "io/colmap_scene.h"
+#include "io/colmap/colmap_lens.h"
+#include "io/colmap/colmap_scene.h"
 #include "pose/tracks.h"
 
 namespace axial::pose {
@@ -30,12 +30,13 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
 // The lens of `camera` without distortion, with a focal length so short that its image holds
 // everything that `camera` images.
 refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
-  refractive::PinholeLens<double> lens = io::undistorted_lens(camera);
+  const lens::Lens in_air = io::lens_of(camera);
+  refractive::PinholeLens<double> lens = in_air.pinhole;
   const double right = static_cast<double>(camera.width) - 1;
   const double bottom = static_cast<double>(camera.height) - 1;
   double zoom = 1;
   const auto hold = [&](const Eigen::Vector2d& pixel) {
-    const auto imaged = io::direction_at(camera, pixel);
+    const auto imaged = direction_at(in_air, pixel);
     if (!imaged) return;
     const double u = lens.fx * imaged->direction.x(), v = lens.fy * imaged->direction.y();
     const double room_u = u > 0 ? right - lens.cx : lens.cx;
@@ -86,7 +87,8 @@ class Cameras {
 // false where the lens has no direction for the pixel.
 bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& pinhole,
            const io::ColmapPoint2D& point, Observation& observation) {
-  const auto imaged = io::direction_at(lens, {point.x - 0.5, point.y - 0.5});
+  const lens::Lens in_air = io::lens_of(lens);
+  const auto imaged = direction_at(in_air, {point.x - 0.5, point.y - 0.5});
   if (!imaged) return false;
   observation.pixel = {pinhole.fx * imaged->direction.x() + pinhole.cx,
                        pinhole.fy * imaged->direction.y() + pinhole.cy};
@@ -95,7 +97,7 @@ bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& 
   // If the focal length f changes, the pixel of the photograph stays the same and its direction d
   // changes: d(d)/d(log f) = -(d(pixel)/d(d))^-1 (pixel - principal point). The focal length of the
   // pinhole has the same factor, which adds d.
-  const refractive::PinholeLens<double> bare = io::undistorted_lens(lens);
+  const refractive::PinholeLens<double> bare = in_air.pinhole;
   const Eigen::Vector2d from_centre(point.x - 0.5 - bare.cx, point.y - 0.5 - bare.cy);
   const Eigen::Vector2d by_focal = imaged->direction - imaged->derivative.inverse() * from_centre;
   observation.pixel_by_focal = {pinhole.fx * by_focal.x(), pinhole.fy * by_focal.y()};

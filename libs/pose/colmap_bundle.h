@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "io/colmap.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
 #include "pose/bundle.h"
 
 namespace axial::pose {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "io/colmap.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
 
 namespace axial::pose {
 

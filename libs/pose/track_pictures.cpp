@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/colmap_lens.h"
-#include "io/image.h"
+#include "io/colmap/colmap_lens.h"
+#include "io/images/image.h"
 #include "pose/tracks.h"
 
 namespace axial::pose {
@@ -35,8 +35,9 @@ Cameras cameras_of(const Bundle& bundle) {
 std::optional<Eigen::Vector2d> in_photograph(const io::ColmapCamera& lens,
                                              const refractive::PinholeLens<double>& pinhole,
                                              const Eigen::Vector2d& pixel) {
-  const Eigen::Vector2d at = io::image_direction(lens, (pixel.x() - pinhole.cx) / pinhole.fx,
-                                                 (pixel.y() - pinhole.cy) / pinhole.fy);
+  const Eigen::Vector2d at =
+      image_direction(io::lens_of(lens), (pixel.x() - pinhole.cx) / pinhole.fx,
+                      (pixel.y() - pinhole.cy) / pinhole.fy);
   if (!at.allFinite()) return {};
   return at;
 }

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "pose/bundle.h"
 
 namespace axial::pose {

@@ -2,7 +2,7 @@
 // A bounded part of a model's tracks, for checks whose cost must not grow with the model.
 #pragma once
 
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "pose/bundle.h"
 
 namespace axial::pose {

@@ -20,11 +20,11 @@
 
 #include "base/error.h"
 #include "depth/matcher.h"
-#include "io/housing.h"
-#include "io/image.h"
-#include "io/lenses.h"
-#include "io/mvs.h"
-#include "io/ply.h"
+#include "io/cameras/housing.h"
+#include "io/cameras/lenses.h"
+#include "io/images/image.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
 #include "scene/resolution.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "calibrate/board_bundle.h"
-#include "io/colmap_lens.h"
+#include "io/colmap/colmap_lens.h"
 
 namespace axial::calibrate::testing {
 
@@ -39,7 +39,7 @@ inline const io::ColmapCamera kUsual{1, "PINHOLE", 2048, 1536, {1220, 1220, 1024
 inline const Board kUsualBoard{BoardKind::checkerboard, 14, 9, 0.025, 0, ""};
 
 inline CameraModel camera_of(const io::ColmapCamera& lens, const refractive::Port<double>& port) {
-  return {static_cast<int>(lens.width), static_cast<int>(lens.height), io::undistorted_lens(lens),
+  return {static_cast<int>(lens.width), static_cast<int>(lens.height), io::lens_of(lens).pinhole,
           port};
 }
 
@@ -65,7 +65,7 @@ inline std::vector<Corner> seen_corners(const io::ColmapCamera& lens,
     const auto image =
         std::visit([&](const auto& c) { return c.project(pose.to_camera(corner)); }, camera);
     const Eigen::Vector3d bearing = model.lens.bearing(image.pixel);
-    const Eigen::Vector2d pixel = io::image_direction(lens, bearing.x(), bearing.y());
+    const Eigen::Vector2d pixel = image_direction(io::lens_of(lens), bearing.x(), bearing.y());
     const Eigen::Vector2d share(pixel.x() / model.width, pixel.y() / model.height);
     if (!image.visible || !within.contains(share)) return {};
     seen.push_back({seen.size(), pixel});

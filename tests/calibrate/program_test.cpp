@@ -8,10 +8,10 @@
 
 #include "base/atomic_file.h"
 #include "calibrate/board_survey.h"
-#include "io/calibmar.h"
-#include "io/housing.h"
-#include "io/image.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
+#include "io/cameras/calibmar.h"
+#include "io/cameras/housing.h"
+#include "io/images/image.h"
 #include "support/photograph.h"
 #include "support/program_run.h"
 

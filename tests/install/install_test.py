@@ -67,6 +67,8 @@ class Installed(Case):
         prefix, build = self.folder / "usr", self.folder / "build"
         output_of("cmake", "--install", BUILD, "--prefix", prefix)
         self.check_programs(prefix)
+        headers = [path.relative_to(prefix) for path in prefix.rglob("*.h")]
+        self.assertFalse([path for path in headers if "private" in path.parts])
         output_of("cmake", "-S", os.path.join(SOURCE, "tests/install/sample"), "-B", build,
                   "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
         output_of("cmake", "--build", build)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/calibmar.h"
+#include "io/cameras/calibmar.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

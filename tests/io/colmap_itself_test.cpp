@@ -11,7 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/subprocess.h"
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 #include "support/empty_folder.h"
 
 namespace axial::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/colmap_scene.h"
+#include "io/colmap/colmap_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "io/colmap_lens.h"
-#include "io/image.h"
+#include "io/colmap/colmap_lens.h"
+#include "io/images/image.h"
 #include "support/empty_folder.h"
 
 namespace axial::io {
@@ -105,8 +105,8 @@ TEST_F(ColmapScene, UndistortsImagesThatAreNoPinholes) {
   double worst = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
-      const Eigen::Vector2d p =
-          image_direction(model_.cameras[1], (x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy);
+      const Eigen::Vector2d p = image_direction(lens_of(model_.cameras[1]), (x - lens.cx) / lens.fx,
+                                                (y - lens.cy) / lens.fy);
       const cv::Vec3d expected = color_at(p.x(), p.y());
       for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(expected[c] - image(y, x)[c]));
     }
@@ -246,7 +246,7 @@ TEST_F(ColmapScene, EachImageIsUndistortedByItsOwnCamera) {
     const ColmapCamera& camera = model_.cameras[2 + i * 5 % 6];
     cv::Mat3b expected;
     cv::remap(read_color_image(folder_ / "images" / model_.images[i].name), expected,
-              undistortion_map(camera, scene.images[i].camera.lens), cv::noArray(),
+              undistortion_map(lens_of(camera), scene.images[i].camera.lens), cv::noArray(),
               cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
     EXPECT_EQ(cv::norm(read_color_image(scene.images[i].path), expected, cv::NORM_INF), 0) << i;
   }
@@ -345,8 +345,8 @@ TEST_F(ColmapScene, MasksAreUndistortedWithTheirImages) {
   double worst = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
-      const Eigen::Vector2d p =
-          image_direction(model_.cameras[1], (x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy);
+      const Eigen::Vector2d p = image_direction(lens_of(model_.cameras[1]), (x - lens.cx) / lens.fx,
+                                                (y - lens.cy) / lens.fy);
       worst = std::max(worst, std::abs(straight(y, x) - 1000 - p.x()));
     }
   EXPECT_LE(worst, 0.5 + 1e-4) << "the nearest pixel's label, never a mixture";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/colmap.h"
+#include "io/colmap/colmap.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "io/colmap.h"
-#include "io/colmap_scene.h"
+#include "io/colmap/colmap.h"
+#include "io/colmap/colmap_scene.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/dmap.h"
+#include "io/openmvs/dmap.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/geo_offset.h"
+#include "io/cameras/geo_offset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/housing.h"
+#include "io/cameras/housing.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/json.h"
+#include "io/bytes/json.h"
 
 #include <gtest/gtest.h>
 

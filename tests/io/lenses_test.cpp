@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/lenses.h"
+#include "io/cameras/lenses.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/masks.h"
+#include "io/images/masks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "io/image.h"
+#include "io/images/image.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mvs_counts.h"
+#include "io/openmvs/mvs_counts.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "io/mvs.h"
+#include "io/openmvs/mvs.h"
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mvs.h"
+#include "io/openmvs/mvs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/atomic_file.h"
-#include "io/image.h"
+#include "io/images/image.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "base/atomic_file.h"
-#include "io/image.h"
+#include "io/images/image.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

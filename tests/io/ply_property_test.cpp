@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ply_property.h"
+#include "io/ply/ply_property.h"
 
 #include <gtest/gtest.h>
 

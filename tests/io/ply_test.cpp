@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ply.h"
+#include "io/ply/ply.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <bit>
 
 #include "base/atomic_file.h"
-#include "io/ply_property.h"
+#include "io/ply/ply_property.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/position_file.h"
+#include "io/cameras/position_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

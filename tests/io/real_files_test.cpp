@@ -6,9 +6,9 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "io/colmap.h"
-#include "io/image.h"
-#include "io/mvs.h"
+#include "io/colmap/colmap.h"
+#include "io/images/image.h"
+#include "io/openmvs/mvs.h"
 #include "io/wrong_input.h"
 
 namespace axial::io {

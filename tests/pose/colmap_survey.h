@@ -2,9 +2,9 @@
 // A survey as COLMAP files: a distorting lens, and a model of its photographs.
 #pragma once
 
-#include "io/colmap.h"
-#include "io/colmap_lens.h"
-#include "io/housing.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
+#include "io/colmap/colmap_lens.h"
 #include "pose/survey.h"
 
 namespace axial::pose::testing {
@@ -36,7 +36,7 @@ inline io::ColmapModel model_of(const Bundle& bundle) {
   const auto& lens = bundle.cameras[0].measured.lens;
   for (const Observation& observation : bundle.observations) {
     const Eigen::Vector3d bearing = lens.bearing(observation.pixel);
-    const Eigen::Vector2d pixel = io::image_direction(kLens, bearing.x(), bearing.y());
+    const Eigen::Vector2d pixel = image_direction(io::lens_of(kLens), bearing.x(), bearing.y());
     io::ColmapImage& image = model.images[observation.image];
     io::ColmapPoint3D& point = model.points[observation.point];
     point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});

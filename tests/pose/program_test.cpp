@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "io/calibmar.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
+#include "io/cameras/calibmar.h"
 #include "pose/adjust.h"
 #include "pose/colmap_survey.h"
 #include "pose/refine.h"

@@ -12,7 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/out_of_memory.h"
-#include "io/json.h"
+#include "io/bytes/json.h"
 #include "pose/survey.h"
 #include "support/empty_folder.h"
 #include "support/error_of.h"

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/mvs.h"
+#include "io/openmvs/mvs.h"
 #include "support/analytic_scene.h"
 
 namespace axial {

@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 
 #include "base/error.h"
-#include "io/colmap.h"
-#include "io/housing.h"
-#include "io/image.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
+#include "io/images/image.h"
 #include "simulate/presets.h"
 #include "simulate/solid_texture.h"
 #include "support/empty_folder.h"

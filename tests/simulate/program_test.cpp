@@ -8,10 +8,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "io/colmap.h"
-#include "io/housing.h"
-#include "io/image.h"
-#include "io/ply.h"
+#include "io/cameras/housing.h"
+#include "io/colmap/colmap.h"
+#include "io/images/image.h"
+#include "io/ply/ply.h"
 #include "support/program_run.h"
 
 namespace axial {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/bytes/json.h"
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace axial::io {
+namespace {
+
+using nlohmann::json;
+
+// Remembers the keys of every open object. The parser itself silently keeps the last of two values
+// with the same key.
+class DuplicateKeys {
+ public:
+  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) open_.emplace_back();
+    if (event == json::parse_event_t::object_end) open_.pop_back();
+    if (event == json::parse_event_t::key && !open_.back().insert(parsed).second)
+      fail("key {} occurs twice", parsed.dump());
+    return true;
+  }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+};
+
+}  // namespace
+
+json read_json(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kLargest = 256u << 20;
+  const std::string bytes = read_file(path, kLargest);
+  try {
+    return json::parse(bytes, DuplicateKeys());
+  } catch (const std::exception& error) {
+    fail("{}: malformed JSON: {}", path.string(), error.what());
+  }
+}
+
+void write_json(const std::filesystem::path& path, const json& value) {
+  // JSON cannot hold names in another encoding than UTF-8 exactly. Fail rather than change them.
+  try {
+    write_atomically(path, value.dump(2) + "\n");
+  } catch (const json::exception& error) {
+    fail("{}: cannot be written: {}", path.string(), error.what());
+  }
+}
+
+std::string to_text(const json& value) {
+  return value.dump();
+}
+
+std::string to_text(const nlohmann::ordered_json& value, int indent) {
+  return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+nlohmann::ordered_json json_from(std::string_view text) {
+  const auto parsed = nlohmann::ordered_json::parse(text, nullptr, false);
+  return parsed.is_discarded() ? nlohmann::ordered_json() : parsed;
+}
+
+}  // namespace axial::io

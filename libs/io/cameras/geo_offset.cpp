@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cameras/geo_offset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "io/bytes/json.h"
+#include "private/cameras/port_json.h"
+
+namespace axial::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kKey = "geo_offset";
+
+Eigen::Vector3d offset_from(const JsonPlace& place) {
+  const nlohmann::json& json = place.json;
+  if (!json.is_array() || json.size() != 3 ||
+      !std::ranges::all_of(json, [](const auto& number) { return number.is_number(); }))
+    fail("{} is {}, expected three numbers", place.where, to_text(json));
+  const Eigen::Vector3d offset(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+  if (!offset.allFinite()) fail("{} contains a number that is not finite", place.where);
+  return offset;
+}
+
+// The spacing of floats at the largest coordinate of the scene's points.
+double float_step(const Scene& scene) {
+  float largest = 0;
+  for (const SparsePoint& point : scene.points)
+    largest = std::max(largest, point.position.cwiseAbs().maxCoeff());
+  const float next = std::nextafter(largest, std::numeric_limits<float>::infinity());
+  return static_cast<double>(next) - static_cast<double>(largest);
+}
+
+// A stale file of another scene shows in a large distance of the cameras from its offset.
+void warn_if_far(const Scene& scene, const fs::path& file) {
+  constexpr double kFar = 1e5;
+  const double left = frame_of(scene).origin.norm();
+  if (left > kFar)
+    log_warning(
+        "{}: the scene's cameras are {:.0f} m from this origin: check that the file belongs to the "
+        "scene",
+        file.string(), left);
+}
+
+}  // namespace
+
+fs::path geo_offset_beside(const fs::path& scene_path) {
+  fs::path path = scene_path;
+  path.replace_extension();
+  path += ".geo.json";
+  return path;
+}
+
+std::optional<LocalFrame> read_geo_offset_beside(const fs::path& scene_path) {
+  const fs::path file = geo_offset_beside(scene_path);
+  std::error_code error;
+  if (!fs::exists(file, error)) return {};
+  const nlohmann::json json = read_json(file);
+  const JsonPlace root{json, file.string() + ": geo"};
+  root.require_object({"version", kKey});
+  if (root.at("version").json != 1)
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  return LocalFrame{offset_from(root.at(kKey))};
+}
+
+void write_geo_offset_beside(const fs::path& scene_path, const LocalFrame& frame) {
+  const fs::path file = geo_offset_beside(scene_path);
+  if (frame.is_world()) {
+    std::error_code error;
+    if (fs::remove(file, error)) log_info("{} removed: the scene has no offset", file.string());
+    return;
+  }
+  const Eigen::Vector3d& o = frame.origin;
+  write_json(file, {{"version", 1}, {kKey, {o.x(), o.y(), o.z()}}});
+}
+
+LocalFrame enter_local_frame(Scene& scene, const fs::path& scene_path) {
+  if (const auto frame = read_geo_offset_beside(scene_path)) {
+    warn_if_far(scene, geo_offset_beside(scene_path));
+    return *frame;
+  }
+  const LocalFrame frame = frame_of(scene);
+  if (frame.is_world()) return frame;
+  log_warning(
+      "{}: is far from the origin: the output's coordinates are relative to ({}, {}, {}); the "
+      "sparse points are float and have a resolution of only {:.2g} m (InterfaceCOLMAP keeps all "
+      "digits)",
+      scene_path.string(), frame.origin.x(), frame.origin.y(), frame.origin.z(), float_step(scene));
+  enter(frame, scene);
+  return frame;
+}
+
+LocalFrame enter_local_frame(ColmapModel& model) {
+  std::vector<Eigen::Vector3d> centres, points;
+  for (const ColmapImage& image : model.images) centres.push_back(image.pose.centre);
+  for (const ColmapPoint3D& point : model.points) points.push_back(point.position);
+  const LocalFrame frame = frame_of(centres, points);
+  enter(frame, model);
+  return frame;
+}
+
+void enter(const LocalFrame& frame, ColmapModel& model) {
+  leave({-frame.origin}, model);
+}
+
+void leave(const LocalFrame& frame, ColmapModel& model) {
+  if (frame.is_world()) return;
+  for (ColmapImage& image : model.images) image.pose.centre = frame.to_world(image.pose.centre);
+  for (ColmapPoint3D& point : model.points) point.position = frame.to_world(point.position);
+}
+
+Housing in_frame(const LocalFrame& frame, Housing housing) {
+  if (frame.is_world()) return housing;
+  for (auto& [name, port] : housing.ports)
+    if (auto* surface = std::get_if<WaterSurface>(&port))
+      surface->point = frame.to_local(surface->point);
+  return housing;
+}
+
+}  // namespace axial::io

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cameras/housing.h"
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "io/cameras/calibmar.h"
+#include "private/bytes/text_reader.h"
+#include "private/cameras/image_names.h"
+#include "private/cameras/port_json.h"
+#include "private/cameras/port_values.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kDry = "none";
+
+std::string port_name(const JsonPlace& place, const char* key, const Housing& housing) {
+  const std::string name = place.text(key);
+  if (name != kDry && !housing.ports.contains(name))
+    fail("{}.{} is '{}', a port that is not defined", place.where, key, name);
+  return name;
+}
+
+void read_ports(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  for (const auto& [name, unused] : place.json.items()) {
+    if (name == kDry || name.empty())
+      fail("{}: '{}' cannot be the name of a port ('none' means no port)", place.where, name);
+    const JsonPlace port = place.at(name);
+    housing.ports[name] = is_water_surface(port) ? HousingPort(water_surface_from_json(port))
+                                                 : to_housing_port(port_from_json(port));
+  }
+}
+
+void read_cameras(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    const auto id = parse_number<std::uint32_t>(key);
+    if (!id) fail("{}: key '{}' is not a COLMAP camera id", place.where, key);
+    if (housing.cameras.contains(*id)) fail("{}: camera {} occurs twice", place.where, *id);
+    housing.cameras[*id] = port_name(place, key.c_str(), housing);
+  }
+}
+
+void read_images(const JsonPlace& place, Housing& housing) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    if (key.empty()) fail("{}: an image name is empty", place.where);
+    housing.images[key] = port_name(place, key.c_str(), housing);
+  }
+}
+
+void attach(SceneImage& image, const std::string& name, const Housing& housing,
+            const std::string& file) {
+  image.camera.port.reset();
+  image.port_name.clear();
+  if (name == kDry || !image.calibrated) return;
+  image.camera.port = housing.port_at(name, image.pose, file + ": " + image.path);
+  image.port_name = name;
+}
+
+struct ToJson {
+  nlohmann::json operator()(const WaterSurface& surface) const {
+    return water_surface_to_json(surface);
+  }
+  nlohmann::json operator()(const refractive::Port<double>& port) const {
+    return port_to_json(port);
+  }
+};
+
+struct Check {
+  const std::string& where;
+
+  void operator()(const WaterSurface& surface) const { check_water_surface(surface, where); }
+  void operator()(const refractive::Port<double>& port) const { check_port(port, where); }
+};
+
+Housing calibmar_housing(const fs::path& path) {
+  const ColmapCamera camera = read_calibmar(path);
+  if (!camera.port && says_no_port(path)) return {};
+  if (!camera.port) fail("{}: key 'non_svp_model' is missing", path.string());
+  return housing_with(to_housing_port(*camera.port));
+}
+
+// Returns the port `name`; null for "none". Error that starts with `where` if it is not defined.
+const HousingPort* find_port(const Housing& housing, const std::string& name,
+                             const std::string& where) {
+  if (name == kDry) return nullptr;
+  const auto port = housing.ports.find(name);
+  if (port == housing.ports.end()) fail("{} '{}' is not defined", where, name);
+  return &port->second;
+}
+
+struct SeenFrom {
+  const Pose& pose;
+  const std::string where;
+
+  refractive::Port<double> operator()(const WaterSurface& surface) const {
+    return port_seen_from(pose, surface, where);
+  }
+  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
+};
+
+struct Carried {
+  const std::string& name;
+
+  refractive::Port<double> operator()(const WaterSurface&) const {
+    fail("port '{}' is a water surface, which is a different port for every pose", name);
+  }
+  refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
+};
+
+}  // namespace
+
+HousingPort to_housing_port(const refractive::Port<double>& port) {
+  return std::visit([](const auto& kind) -> HousingPort { return kind; }, port);
+}
+
+Housing housing_with(const HousingPort& port) {
+  return {{{"main", port}}, "main", {}, {}};
+}
+
+std::map<std::string, std::string>::const_iterator Housing::entry_of(
+    const std::string& image_name) const {
+  return io::entry_of(images, image_name);
+}
+
+const std::string& Housing::port_of(const std::string& image_name, std::uint32_t camera_id) const {
+  if (const auto entry = entry_of(image_name); entry != images.end()) return entry->second;
+  if (const auto camera = cameras.find(camera_id); camera != cameras.end()) return camera->second;
+  return default_port;
+}
+
+std::optional<refractive::Port<double>> Housing::port_at(const std::string& name, const Pose& pose,
+                                                         const std::string& image) const {
+  const std::string where = image + ": its port";
+  const HousingPort* const port = find_port(*this, name, where);
+  if (!port) return std::nullopt;
+  return std::visit(SeenFrom{pose, fmt::format("{} '{}'", where, name)}, *port);
+}
+
+std::optional<refractive::Port<double>> Housing::carried_port(const std::string& name) const {
+  const HousingPort* const port = find_port(*this, name, "port");
+  if (!port) return std::nullopt;
+  return std::visit(Carried{name}, *port);
+}
+
+void check_port(const HousingPort& port, const std::string& where) {
+  std::visit(Check{where}, port);
+}
+
+void refuse_water_surfaces(const Housing& housing, const fs::path& file) {
+  for (const auto& [name, port] : housing.ports)
+    if (std::holds_alternative<WaterSurface>(port))
+      fail("{}: housing.ports.{} is a water surface, expected ports that are fixed to the camera",
+           file.string(), name);
+}
+
+namespace {
+
+Housing parse_housing(const fs::path& path) {
+  if (is_calibmar(path)) return calibmar_housing(path);
+  const nlohmann::json json = read_json(path);
+  const JsonPlace root{json, path.string() + ": housing"};
+  root.require_object({"version", "ports", "default", "cameras", "images"});
+  if (root.at("version").json != 1)
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  Housing housing;
+  read_ports(root.at("ports"), housing);
+  housing.default_port = port_name(root, "default", housing);
+  if (root.has("cameras")) read_cameras(root.at("cameras"), housing);
+  if (root.has("images")) read_images(root.at("images"), housing);
+  return housing;
+}
+
+}  // namespace
+
+Housing read_housing(const fs::path& path, PortValues values) {
+  Housing housing = parse_housing(path);
+  if (values == PortValues::checked)
+    for (const auto& [name, port] : housing.ports)
+      warn_of_port_values(port, fmt::format("{}: housing.ports.{}", path.string(), name));
+  return housing;
+}
+
+void write_housing(const fs::path& path, const Housing& housing) {
+  const std::string where = path.string() + ": housing";
+  nlohmann::json json{{"version", 1}, {"default", housing.default_port}};
+  json["ports"] = nlohmann::json::object();
+  for (const auto& [name, port] : housing.ports) {
+    check_port(port, fmt::format("{}.ports.{}", where, name));
+    json["ports"][name] = std::visit(ToJson{}, port);
+  }
+  const auto checked = [&](const std::string& name) {
+    if (name != kDry && !housing.ports.contains(name))
+      fail("{}: port '{}' is not defined", where, name);
+    return name;
+  };
+  checked(housing.default_port);
+  for (const auto& [id, name] : housing.cameras)
+    json["cameras"][std::to_string(id)] = checked(name);
+  for (const auto& [image, name] : housing.images) json["images"][image] = checked(name);
+  write_json(path, json);
+}
+
+fs::path housing_beside(const fs::path& scene_path) {
+  fs::path path = scene_path;
+  path.replace_extension();
+  path += ".housing.json";
+  return path;
+}
+
+Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
+                   const std::string& file) {
+  std::vector<std::string> names;
+  for (const NamedCamera& image : images) names.push_back(image.name);
+  const auto entries = entries_of_all(housing.images, names, file + ": housing.images.");
+  Housing result = housing;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (entries[i] == housing.entry_of(names[i])) continue;
+    // The longest matching end of this name is the whole name of another image.
+    const auto camera = housing.cameras.find(images[i].camera);
+    result.images[names[i]] = entries[i] != housing.images.end() ? entries[i]->second
+                              : camera != housing.cameras.end()  ? camera->second
+                                                                 : housing.default_port;
+  }
+  return result;
+}
+
+void attach_ports(Scene& scene, const Housing& housing, const std::string& file) {
+  std::vector<std::string> names;
+  for (const SceneImage& image : scene.images)
+    names.push_back(fs::path(image.path).generic_string());
+  const auto entries = entries_of_all(housing.images, names, file + ": housing.images.");
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SceneImage& image = scene.images[i];
+    if (entries[i] != housing.images.end()) {
+      used.insert(entries[i]->first);
+      attach(image, entries[i]->second, housing, file);
+    } else if (housing.cameras.empty()) {
+      attach(image, housing.default_port, housing, file);
+    } else {
+      fail(
+          "{}: housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
+          "an entry for {} under housing.images (InterfaceCOLMAP --housing writes these entries)",
+          file, image.path);
+    }
+  }
+  for (const auto& [name, unused] : housing.images)
+    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file, name);
+  warn_of_ports_in_scene(scene, housing, file);
+}
+
+}  // namespace axial::io

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/cameras/lenses.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "private/cameras/image_names.h"
+#include "private/cameras/lens_json.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+using Distortion = refractive::LensDistortion<double>;
+
+const std::string kStraight = "none";
+
+std::string lens_name(const JsonPlace& place, const char* key, const Lenses& lenses) {
+  const std::string name = place.text(key);
+  if (name != kStraight && !lenses.lenses.contains(name))
+    fail("{}.{} is '{}', a lens that is not defined", place.where, key, name);
+  return name;
+}
+
+void read_definitions(const JsonPlace& place, Lenses& lenses) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  for (const auto& [name, unused] : place.json.items()) {
+    if (name == kStraight || name.empty())
+      fail("{}: '{}' cannot be the name of a lens ('none' means no distortion)", place.where, name);
+    lenses.lenses[name] = distortion_from_json(place.at(name));
+  }
+}
+
+void read_images(const JsonPlace& place, Lenses& lenses) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  for (const auto& [key, unused] : place.json.items()) {
+    if (key.empty()) fail("{}: an image name is empty", place.where);
+    lenses.images[key] = lens_name(place, key.c_str(), lenses);
+  }
+}
+
+const std::string& name_for(const Lenses& lenses, const std::string& image) {
+  const auto entry = entry_of(lenses.images, image);
+  return entry == lenses.images.end() ? lenses.default_lens : entry->second;
+}
+
+bool images_anything(const CameraModel& camera) {
+  return distorted_lens<double>(camera).field > 0;
+}
+
+// The end of an image's path that stays the same when the scene's folder is moved.
+std::string name_beside(const fs::path& scene_path, const std::string& image) {
+  const fs::path from = fs::absolute(scene_path).parent_path();
+  fs::path name;
+  for (const fs::path& part : fs::absolute(image).lexically_normal().lexically_relative(from))
+    if (part != "..") name /= part;
+  return name.generic_string();
+}
+
+// Returns the name of the lens. A new distortion gets a new name.
+std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
+  if (!distortion) return kStraight;
+  for (const auto& [name, known] : lenses.lenses)
+    if (known == *distortion) return name;
+  const std::string name = fmt::format("lens_{}", lenses.lenses.size() + 1);
+  lenses.lenses[name] = *distortion;
+  return name;
+}
+
+// Readers find an entry by the end of the whole path. Checks that they will find the right lens for
+// every image.
+void check_names(const Lenses& lenses, const Scene& scene, const fs::path& file) {
+  for (const SceneImage& image : scene.images) {
+    if (!image.calibrated) continue;
+    const std::string path = fs::path(image.path).generic_string();
+    const std::string& name = name_for(lenses, path);
+    const std::optional<Distortion> read =
+        name == kStraight ? std::nullopt : std::optional(lenses.lenses.at(name));
+    if (read != image.camera.distortion)
+      fail(
+          "{}: images: the end of the path of {} matches another image, with lens '{}': rename a "
+          "folder",
+          file.string(), path, name);
+  }
+}
+
+}  // namespace
+
+fs::path lenses_beside(const fs::path& scene_path) {
+  fs::path path = scene_path;
+  path.replace_extension();
+  path += ".lenses.json";
+  return path;
+}
+
+Lenses read_lenses(const fs::path& path) {
+  const nlohmann::json json = read_json(path);
+  const JsonPlace root{json, path.string() + ": lenses"};
+  root.require_object({"version", "lenses", "default", "images"});
+  if (root.at("version").json != 1)
+    fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
+  Lenses lenses;
+  read_definitions(root.at("lenses"), lenses);
+  lenses.default_lens = lens_name(root, "default", lenses);
+  if (root.has("images")) read_images(root.at("images"), lenses);
+  return lenses;
+}
+
+void write_lenses(const fs::path& path, const Lenses& lenses) {
+  nlohmann::json json{{"version", 1}, {"default", lenses.default_lens}};
+  json["lenses"] = nlohmann::json::object();
+  for (const auto& [name, lens] : lenses.lenses) json["lenses"][name] = distortion_to_json(lens);
+  for (const auto& [image, name] : lenses.images) json["images"][image] = name;
+  write_json(path, json);
+}
+
+Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
+  Lenses lenses;
+  std::vector<std::string> names, paths, values;
+  const auto add = [&](const SceneImage& image, const std::string& lens) {
+    names.push_back(name_beside(scene_path, image.path));
+    paths.push_back(fs::path(image.path).generic_string());
+    values.push_back(lens);
+  };
+  for (const SceneImage& image : scene.images)
+    if (image.calibrated) add(image, named(lenses, image.camera.distortion));
+  if (!values.empty()) lenses.default_lens = values.front();
+  // Images without a pose need no lens, but must not match the entries of other images.
+  for (const SceneImage& image : scene.images)
+    if (!image.calibrated) add(image, lenses.default_lens);
+  lenses.images = entries_for(names, paths, values, lenses.default_lens);
+  check_names(lenses, scene, lenses_beside(scene_path));
+  return lenses;
+}
+
+void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
+  std::vector<std::string> names;
+  for (const SceneImage& image : scene.images)
+    names.push_back(fs::path(image.path).generic_string());
+  const auto entries = entries_of_all(lenses.images, names, file.string() + ": lenses.images.");
+  std::set<std::string> used;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SceneImage& image = scene.images[i];
+    const bool has_entry = entries[i] != lenses.images.end();
+    if (has_entry) used.insert(entries[i]->first);
+    if (!image.calibrated) continue;
+    const std::string& name = has_entry ? entries[i]->second : lenses.default_lens;
+    image.camera.distortion.reset();
+    if (name == kStraight) continue;
+    image.camera.distortion = lenses.lenses.at(name);
+    if (!images_anything(image.camera))
+      fail("{}: lenses.{}: is not a valid lens for {}: it mirrors the image", file.string(), name,
+           image.path);
+  }
+  for (const auto& [name, unused] : lenses.images)
+    if (!used.contains(name)) log_warning("{}: no image matches images.{}", file.string(), name);
+}
+
+bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
+  const fs::path file = lenses_beside(scene_path);
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  attach_lenses(scene, read_lenses(file), file);
+  return std::ranges::any_of(
+      scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
+}
+
+void write_lenses_beside(const fs::path& scene_path, const Lenses& lenses, bool behind_ports) {
+  const fs::path file = lenses_beside(scene_path);
+  if (behind_ports || !lenses.lenses.empty()) return write_lenses(file, lenses);
+  std::error_code error;
+  fs::remove(file, error);
+}
+
+}  // namespace axial::io

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "private/cameras/port_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace axial::io {
+namespace {
+
+using nlohmann::json;
+
+void require_index(double n, const char* key, const std::string& where) {
+  // No material of a port is denser than 3 (diamond: 2.4).
+  if (!(n >= 1 && n <= 3)) fail("{}.{} is {}, expected an index from 1 to 3", where, key, n);
+}
+
+void require_length(double metres, const char* key, const std::string& where, double longest = 1) {
+  if (!(metres >= 0 && metres <= longest))
+    fail("{}.{} is {}, expected metres from 0 to {}", where, key, metres, longest);
+}
+
+void require_unit(const Eigen::Vector3d& normal, const std::string& where) {
+  if (!(std::abs(normal.norm() - 1) < 1e-6))
+    fail("{}.normal has length {}, expected 1", where, normal.norm());
+}
+
+Eigen::Vector3d vector(const JsonPlace& place) {
+  const json& v = place.json;
+  if (!v.is_array() || v.size() != 3 ||
+      !std::ranges::all_of(v, [](const json& number) { return number.is_number(); }))
+    fail("{} is {}, expected three numbers", place.where, to_text(v));
+  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+}
+
+Eigen::Vector3d unit_normal(const JsonPlace& place) {
+  return io::unit_normal(vector(place), place.where);
+}
+
+json to_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+// Fields that both kinds of port have.
+
+template <class Port>
+void read_glass(const JsonPlace& place, Port& port) {
+  port.thickness = place.number("thickness_m");
+  port.n_air = place.has("n_air") ? place.number("n_air") : 1.0;
+  port.n_glass = place.number("n_glass");
+  port.n_water = place.number("n_water");
+}
+
+template <class Port>
+void write_glass(const Port& port, json& object) {
+  object["thickness_m"] = port.thickness;
+  object["n_air"] = port.n_air;
+  object["n_glass"] = port.n_glass;
+  object["n_water"] = port.n_water;
+}
+
+template <class Port>
+void check_glass(const Port& port, const std::string& where) {
+  require_length(port.thickness, "thickness_m", where);
+  require_index(port.n_air, "n_air", where);
+  require_index(port.n_glass, "n_glass", where);
+  require_index(port.n_water, "n_water", where);
+  if (port.n_glass < port.n_air || port.n_water < port.n_air)
+    fail("{}.n_air is {}, more than n_glass {} or n_water {}", where, port.n_air, port.n_glass,
+         port.n_water);
+}
+
+refractive::FlatPort<double> flat_from_json(const JsonPlace& place) {
+  place.require_object(
+      {"type", "distance_m", "thickness_m", "normal", "n_air", "n_glass", "n_water"});
+  refractive::FlatPort<double> port;
+  port.distance = place.number("distance_m");
+  read_glass(place, port);
+  if (place.has("normal")) port.normal = unit_normal(place.at("normal"));
+  return port;
+}
+
+refractive::DomePort<double> dome_from_json(const JsonPlace& place) {
+  place.require_object(
+      {"type", "center_m", "inner_radius_m", "thickness_m", "n_air", "n_glass", "n_water"});
+  refractive::DomePort<double> port;
+  if (place.has("center_m")) port.centre = vector(place.at("center_m"));
+  port.inner_radius = place.number("inner_radius_m");
+  read_glass(place, port);
+  return port;
+}
+
+json as_json(const refractive::FlatPort<double>& port) {
+  json object{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
+  write_glass(port, object);
+  return object;
+}
+
+json as_json(const refractive::DomePort<double>& port) {
+  json object{
+      {"type", "dome"}, {"center_m", to_json(port.centre)}, {"inner_radius_m", port.inner_radius}};
+  write_glass(port, object);
+  return object;
+}
+
+void check(const refractive::FlatPort<double>& port, const std::string& where, double longest_gap) {
+  require_length(port.distance, "distance_m", where, longest_gap);
+  check_glass(port, where);
+  require_unit(port.normal, where);
+  if (!(port.normal.z() > 0))
+    fail("{}.normal points backwards: z is {}, but must be positive (from the camera to the water)",
+         where, port.normal.z());
+}
+
+void check(const refractive::DomePort<double>& port, const std::string& where,
+           double /*longest_gap*/) {
+  require_length(port.inner_radius, "inner_radius_m", where);
+  check_glass(port, where);
+  // Farther out, the light of some pixels may graze the glass.
+  const double away = port.centre.stableNorm();
+  if (!(away < 0.9 * port.inner_radius))
+    fail(
+        "{}.center_m is {} m from the camera centre, expected less than 0.9 times inner_radius_m, "
+        "which is {}",
+        where, away, port.inner_radius);
+}
+
+}  // namespace
+
+bool JsonPlace::has(const char* key) const {
+  return json.contains(key);
+}
+
+void JsonPlace::require_object(std::initializer_list<const char*> known) const {
+  if (!json.is_object()) fail("{} is not an object in braces", where);
+  for (const auto& [key, value] : json.items())
+    if (std::ranges::none_of(known, [&](const char* name) { return key == name; }))
+      fail("{}: unknown key '{}'", where, key);
+}
+
+JsonPlace JsonPlace::at(const std::string& key) const {
+  const auto found = json.find(key);
+  if (found == json.end()) fail("{}: key '{}' is missing", where, key);
+  return {*found, fmt::format("{}.{}", where, key)};
+}
+
+double JsonPlace::number(const char* key) const {
+  const JsonPlace value = at(key);
+  if (!value.json.is_number())
+    fail("{} is {}, expected a number", value.where, to_text(value.json));
+  return value.json.get<double>();
+}
+
+std::string JsonPlace::text(const char* key) const {
+  const JsonPlace value = at(key);
+  if (!value.json.is_string()) fail("{} is {}, expected a text", value.where, to_text(value.json));
+  return value.json.get<std::string>();
+}
+
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where) {
+  const double length = n.stableNorm();
+  if (!(length > 1e-6 && std::isfinite(length)))
+    fail("{} is [{},{},{}], which is not a direction", where, n.x(), n.y(), n.z());
+  if (std::abs(length - 1) > 1e-6) log_warning("{} has length {}: normalised", where, length);
+  // A normal that is of unit length up to rounding stays unchanged, so that reading and writing a
+  // file does not change it.
+  return std::abs(length - 1) > 1e-15 ? Eigen::Vector3d(n / length) : n;
+}
+
+refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap) {
+  if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
+  const std::string type = place.text("type");
+  if (type != "flat" && type != "dome")
+    fail("{}.type is '{}', expected 'flat', 'dome' or, in a housing, 'water-surface'", place.where,
+         type);
+  refractive::Port<double> port;
+  if (type == "flat")
+    port = flat_from_json(place);
+  else
+    port = dome_from_json(place);
+  std::visit([&](const auto& kind) { check(kind, place.where, longest_gap); }, port);
+  return port;
+}
+
+json port_to_json(const refractive::Port<double>& port) {
+  return std::visit([](const auto& kind) { return as_json(kind); }, port);
+}
+
+void check_port(const refractive::Port<double>& port, const std::string& where) {
+  std::visit([&](const auto& kind) { check(kind, where, kLongestGap); }, port);
+}
+
+bool is_water_surface(const JsonPlace& place) {
+  return place.has("type") && place.at("type").json == "water-surface";
+}
+
+WaterSurface water_surface_from_json(const JsonPlace& place) {
+  place.require_object({"type", "normal", "point_m", "n_air", "n_water"});
+  WaterSurface surface;
+  surface.normal = unit_normal(place.at("normal"));
+  surface.point = vector(place.at("point_m"));
+  if (place.has("n_air")) surface.n_air = place.number("n_air");
+  surface.n_water = place.number("n_water");
+  check_water_surface(surface, place.where);
+  return surface;
+}
+
+json water_surface_to_json(const WaterSurface& surface) {
+  return {{"type", "water-surface"},
+          {"normal", to_json(surface.normal)},
+          {"point_m", to_json(surface.point)},
+          {"n_air", surface.n_air},
+          {"n_water", surface.n_water}};
+}
+
+void check_water_surface(const WaterSurface& surface, const std::string& where) {
+  require_index(surface.n_air, "n_air", where);
+  require_index(surface.n_water, "n_water", where);
+  if (surface.n_water < surface.n_air)
+    fail("{}.n_air is {}, more than n_water {}", where, surface.n_air, surface.n_water);
+  require_unit(surface.normal, where);
+  if (const Eigen::Vector3d& p = surface.point; !p.allFinite())
+    fail("{}.point_m is [{},{},{}], which is not a point", where, p.x(), p.y(), p.z());
+}
+
+}  // namespace axial::io

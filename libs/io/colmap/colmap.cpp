@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/colmap/colmap.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "io/cameras/calibmar.h"
+#include "private/cameras/port_values.h"
+#include "private/colmap/colmap_folder.h"
+#include "private/colmap/colmap_parts.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+template <class T>
+std::vector<T> read_part(const fs::path& folder, const std::string& name, ModelForm form,
+                         std::vector<T> (*text)(const fs::path&),
+                         std::vector<T> (*binary)(const fs::path&)) {
+  return (form == ModelForm::text ? text : binary)(part_file(folder, name, form));
+}
+
+bool has_cameras(const fs::path& folder) {
+  return is_file(part_file(folder, "cameras", ModelForm::text)) ||
+         is_file(part_file(folder, "cameras", ModelForm::binary));
+}
+
+bool holds_any_model(const fs::path& folder) {
+  return holds_model(folder, ModelForm::text) || holds_model(folder, ModelForm::binary);
+}
+
+// Complete models that a user of `folder` may have meant instead of `taken`: models in the other
+// places, and models beside DIR/sparse/0 that COLMAP could not merge with it.
+std::vector<std::string> other_models(std::span<const fs::path> places, const fs::path& taken) {
+  std::vector<std::string> others;
+  for (const fs::path& place : places)
+    if (place != taken && holds_any_model(place)) others.push_back(place.string());
+  for (int i = 1; taken.filename() == "0"; ++i) {
+    const fs::path next = taken.parent_path() / std::to_string(i);
+    if (!holds_any_model(next)) break;
+    others.push_back(next.string());
+  }
+  return others;
+}
+
+template <class T>
+void require_unique_ids(const std::vector<T>& items, const char* what, const std::string& model) {
+  std::unordered_set<std::uint64_t> seen;
+  for (const T& item : items)
+    if (!seen.insert(item.id).second) fail("{}: {} {} occurs twice", model, what, item.id);
+}
+
+// An image is identified by its normalised path relative to the image folder.
+void require_unique_names(const ColmapModel& model, const std::string& where) {
+  std::unordered_map<std::string, std::uint32_t> seen;
+  for (const ColmapImage& image : model.images) {
+    const std::string path = fs::path(image.name).lexically_normal().generic_string();
+    const auto [other, added] = seen.emplace(path, image.id);
+    if (!added)
+      fail("{}: images {} and {} have the same name, {}", where, other->second, image.id,
+           image.name);
+  }
+}
+
+void check_references(const ColmapModel& model, const std::string& where) {
+  std::unordered_set<std::uint32_t> cameras;
+  for (const ColmapCamera& camera : model.cameras) cameras.insert(camera.id);
+  std::unordered_set<std::uint64_t> points;
+  for (const ColmapPoint3D& point : model.points) points.insert(point.id);
+  std::unordered_map<std::uint32_t, std::size_t> observations;
+  for (const ColmapImage& image : model.images) {
+    if (!cameras.contains(image.camera))
+      fail("{}: image {} ({}) refers to camera {}, which does not exist", where, image.id,
+           image.name, image.camera);
+    for (const ColmapPoint2D& point : image.points)
+      if (point.point3d != kNoPoint3D && !points.contains(point.point3d))
+        fail("{}: image {} ({}) refers to 3D point {}, which does not exist", where, image.id,
+             image.name, point.point3d);
+    observations[image.id] = image.points.size();
+  }
+  for (const ColmapPoint3D& point : model.points)
+    for (const ColmapTrackElement& element : point.track) {
+      const auto found = observations.find(element.image);
+      if (found == observations.end())
+        fail("{}: 3D point {} refers to image {}, which does not exist", where, point.id,
+             element.image);
+      if (element.point2d >= found->second)
+        fail("{}: 3D point {} refers to 2D point {} of image {}, which has {}", where, point.id,
+             element.point2d, element.image, found->second);
+    }
+}
+
+}  // namespace
+
+fs::path find_colmap_model(const fs::path& folder) {
+  const std::array<fs::path, 3> places{folder / "sparse", folder / "sparse" / "0", folder};
+  auto taken = std::ranges::find_if(places, holds_any_model);
+  // If no model is complete, the reader's message says which files are missing.
+  if (taken == places.end()) taken = std::ranges::find_if(places, has_cameras);
+  if (taken == places.end())
+    fail("{}: no COLMAP model: no cameras.txt or cameras.bin in {}, {} or {}", folder.string(),
+         places[0].string(), places[1].string(), places[2].string());
+  if (const auto others = other_models(places, *taken); !others.empty())
+    log_info("{}: this model is read; ignored: {}", taken->string(), fmt::join(others, ", "));
+  return *taken;
+}
+
+ColmapModel read_colmap_model(const fs::path& folder) {
+  const ModelForm form = model_form(folder);
+  ColmapModel model;
+  model.cameras = read_part(folder, "cameras", form, read_cameras_text, read_cameras_binary);
+  model.images = read_part(folder, "images", form, read_images_text, read_images_binary);
+  model.points = read_part(folder, "points3D", form, read_points_text, read_points_binary);
+  const std::string where = folder.string();
+  require_unique_ids(model.cameras, "camera", where);
+  require_unique_ids(model.images, "image", where);
+  require_unique_ids(model.points, "3D point", where);
+  require_unique_names(model, where);
+  check_references(model, where);
+  warn_of_rivals(folder, form, model);
+  warn_of_port_values(model.cameras, part_file(folder, "cameras", form).string());
+  return model;
+}
+
+std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
+  if (is_calibmar(path)) {
+    const std::vector<ColmapCamera> camera{read_calibmar(path)};
+    warn_of_port_values(camera, path.string());
+    return camera;
+  }
+  std::error_code error;
+  const bool is_folder = fs::is_directory(path, error);
+  const ModelForm form = is_folder                    ? cameras_form(path)
+                         : path.extension() == ".bin" ? ModelForm::binary
+                                                      : ModelForm::text;
+  const fs::path file = is_folder ? part_file(path, "cameras", form) : path;
+  const std::vector<ColmapCamera> cameras =
+      form == ModelForm::binary ? read_cameras_binary(file) : read_cameras_text(file);
+  require_unique_ids(cameras, "camera", path.string());
+  if (is_folder) warn_of_rival_cameras(path, form, cameras);
+  warn_of_port_values(cameras, file.string());
+  return cameras;
+}
+
+}  // namespace axial::io

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/colmap/colmap_export.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "scene/camera_model.h"
+
+namespace axial::io {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kHalf = 0.5;  // COLMAP's pixel centres
+
+std::vector<double> numbers_of(const refractive::FlatPort<double>& port) {
+  return {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
+          port.thickness,  port.n_air,      port.n_glass,    port.n_water};
+}
+
+std::vector<double> numbers_of(const refractive::DomePort<double>& port) {
+  return {port.centre.x(), port.centre.y(), port.centre.z(), port.inner_radius,
+          port.thickness,  port.n_air,      port.n_glass,    port.n_water};
+}
+
+// Cameras with equal keys become one COLMAP camera.
+std::vector<double> key_of(const CameraModel& camera) {
+  const auto& lens = camera.lens;
+  std::vector<double> key{static_cast<double>(camera.width),
+                          static_cast<double>(camera.height),
+                          lens.fx,
+                          lens.fy,
+                          lens.cx,
+                          lens.cy};
+  if (!camera.port) return key;
+  key.push_back(static_cast<double>(camera.port->index()));
+  const std::vector<double> port =
+      std::visit([](const auto& p) { return numbers_of(p); }, *camera.port);
+  key.insert(key.end(), port.begin(), port.end());
+  return key;
+}
+
+class Cameras {
+ public:
+  explicit Cameras(std::vector<ColmapCamera>& cameras) : cameras_(cameras) {}
+
+  std::uint32_t id_of(const SceneImage& image) {
+    const CameraModel& model = image.camera;
+    if (model.distortion)
+      fail("{}: its lens is distorted: undistort it on import to export the scene", image.path);
+    const auto next = static_cast<std::uint32_t>(cameras_.size() + 1);
+    const auto [entry, is_new] = ids_.emplace(key_of(model), next);
+    if (is_new)
+      cameras_.push_back(
+          {next,
+           "PINHOLE",
+           static_cast<std::uint64_t>(model.width),
+           static_cast<std::uint64_t>(model.height),
+           {model.lens.fx, model.lens.fy, model.lens.cx + kHalf, model.lens.cy + kHalf},
+           model.port});
+    return entry->second;
+  }
+
+ private:
+  std::vector<ColmapCamera>& cameras_;
+  std::map<std::vector<double>, std::uint32_t> ids_;
+};
+
+std::string name_below(const SceneImage& image, const fs::path& folder) {
+  const fs::path name = fs::path(image.path).lexically_normal().lexically_relative(folder);
+  if (name.empty() || *name.begin() == ".." || *name.begin() == ".")
+    fail("{}: is not in the image folder {}", image.path, folder.string());
+  return name.generic_string();
+}
+
+// The projection of a point into one image; `seen` is false where the camera does not see it.
+struct Sighting {
+  std::uint32_t image = 0;
+  Eigen::Vector2d pixel{0, 0};
+  bool seen = false;
+};
+
+std::vector<std::vector<Sighting>> sightings(const Scene& scene) {
+  std::vector<std::vector<Sighting>> result(scene.points.size());
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> of_image(scene.images.size());
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    std::uint32_t previous = kNoId;
+    for (const SparseView& view : scene.points[p].views) {
+      if (view.image == previous || !scene.images[view.image].calibrated) continue;
+      previous = view.image;
+      of_image[view.image].emplace_back(p, result[p].size());
+      result[p].push_back({view.image});
+    }
+  }
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    if (of_image[i].empty()) continue;
+    const SceneImage& image = scene.images[i];
+    std::visit(
+        [&](const auto& camera) {
+          for (const auto& [point, index] : of_image[i]) {
+            const Eigen::Vector3d X = scene.points[point].position.template cast<double>();
+            const auto projection = camera.project(image.pose.to_camera(X));
+            Sighting& sighting = result[point][index];
+            sighting.pixel = projection.pixel;
+            sighting.seen = projection.visible;
+          }
+        },
+        make_camera<double>(image.camera));
+  }
+  return result;
+}
+
+void add_points(const Scene& scene, const std::vector<std::size_t>& index_of, ColmapModel& model) {
+  const auto all = sightings(scene);
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    ColmapPoint3D point;
+    point.id = model.points.size() + 1;
+    point.position = scene.points[p].position.cast<double>();
+    if (!scene.point_colors.empty()) point.color = scene.point_colors[p];
+    for (const Sighting& sighting : all[p]) {
+      if (!sighting.seen) continue;
+      ColmapImage& image = model.images[index_of[sighting.image]];
+      point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
+      image.points.push_back({sighting.pixel.x() + kHalf, sighting.pixel.y() + kHalf, point.id});
+    }
+    if (!point.track.empty()) model.points.push_back(std::move(point));
+  }
+}
+
+}  // namespace
+
+ColmapModel export_colmap_model(const Scene& scene, const fs::path& image_folder) {
+  ColmapModel model;
+  Cameras cameras(model.cameras);
+  std::vector<std::size_t> index_of(scene.images.size(), 0);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage& image = scene.images[i];
+    if (!image.calibrated) continue;
+    index_of[i] = model.images.size();
+    ColmapImage exported;
+    exported.id = image.id + 1;
+    exported.camera = cameras.id_of(image);
+    exported.name = name_below(image, image_folder);
+    exported.pose = image.pose;
+    if (!names.insert(exported.name).second) fail("{}: two images have this path", image.path);
+    model.images.push_back(std::move(exported));
+  }
+  add_points(scene, index_of, model);
+  return model;
+}
+
+fs::path common_image_folder(const Scene& scene) {
+  fs::path common;
+  bool first = true;
+  for (const SceneImage& image : scene.images) {
+    if (!image.calibrated) continue;
+    const fs::path folder = fs::path(image.path).lexically_normal().parent_path();
+    if (first) common = folder;
+    first = false;
+    fs::path shared;
+    auto a = common.begin(), b = folder.begin();
+    for (; a != common.end() && b != folder.end() && *a == *b; ++a, ++b) shared /= *a;
+    common = shared;
+  }
+  return common;
+}
+
+}  // namespace axial::io

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "private/colmap/colmap_folder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "private/colmap/colmap_parts.h"
+#include "private/colmap/colmap_port.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kParts{"cameras", "images", "points3D"};
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+ModelForm other_than(ModelForm form) {
+  return form == ModelForm::text ? ModelForm::binary : ModelForm::text;
+}
+
+std::string missing_parts(const fs::path& folder, ModelForm form) {
+  std::vector<std::string> missing;
+  for (const char* part : kParts)
+    if (const fs::path file = part_file(folder, part, form); !is_file(file))
+      missing.push_back(file.filename().string());
+  return fmt::format("{}", fmt::join(missing, ", "));
+}
+
+bool same(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+template <class Numbers>
+bool same_numbers(const Numbers& a, const Numbers& b) {
+  return std::ranges::equal(a, b, [](double x, double y) { return same(x, y); });
+}
+
+bool same_ports(const ColmapCamera& a, const ColmapCamera& b) {
+  if (!a.port || !b.port) return a.port.has_value() == b.port.has_value();
+  return a.port->index() == b.port->index() &&
+         same_numbers(port_numbers(*a.port), port_numbers(*b.port));
+}
+
+bool same(const ColmapCamera& a, const ColmapCamera& b) {
+  return a.model == b.model && a.width == b.width && a.height == b.height &&
+         same_numbers(a.params, b.params) && same_ports(a, b);
+}
+
+bool same(const ColmapPoint2D& a, const ColmapPoint2D& b) {
+  return same(a.x, b.x) && same(a.y, b.y) && a.point3d == b.point3d;
+}
+
+bool same(const ColmapImage& a, const ColmapImage& b) {
+  return a.camera == b.camera && a.name == b.name &&
+         same_numbers(a.pose.rotation.reshaped(), b.pose.rotation.reshaped()) &&
+         same_numbers(a.pose.centre, b.pose.centre) &&
+         std::ranges::equal(a.points, b.points,
+                            [](const auto& p, const auto& q) { return same(p, q); });
+}
+
+bool same(const ColmapPoint3D& a, const ColmapPoint3D& b) {
+  const auto key = [](const ColmapTrackElement& e) { return std::pair(e.image, e.point2d); };
+  return same_numbers(a.position, b.position) && a.color == b.color && same(a.error, b.error) &&
+         std::ranges::is_permutation(a.track, b.track, {}, key, key);
+}
+
+template <class T>
+std::vector<const T*> by_id(const std::vector<T>& items) {
+  std::vector<const T*> sorted;
+  for (const T& item : items) sorted.push_back(&item);
+  std::ranges::sort(sorted, {}, [](const T* item) { return item->id; });
+  return sorted;
+}
+
+template <class T>
+bool same_part(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::ranges::equal(by_id(a), by_id(b),
+                            [](const T* x, const T* y) { return x->id == y->id && same(*x, *y); });
+}
+
+// True if `file` exists and differs from `part` of the model.
+template <class T>
+bool is_rival(const fs::path& file, ModelForm form, const std::vector<T>& part,
+              std::vector<T> (*text)(const fs::path&), std::vector<T> (*binary)(const fs::path&)) {
+  if (!is_file(file)) return false;
+  try {
+    return !same_part((form == ModelForm::text ? text : binary)(file), part);
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+// The files of one folder that differ from the model that is read.
+struct Rivals {
+  const fs::path& folder;
+  ModelForm read;
+  std::vector<std::string> taken = {}, passed_over = {};
+
+  template <class T>
+  void add(const char* name, const std::vector<T>& part, std::vector<T> (*text)(const fs::path&),
+           std::vector<T> (*binary)(const fs::path&)) {
+    const ModelForm other = other_than(read);
+    const fs::path file = part_file(folder, name, other);
+    if (!is_rival(file, other, part, text, binary)) return;
+    taken.push_back(part_file(folder, name, read).filename().string());
+    passed_over.push_back(file.filename().string());
+  }
+
+  void warn() const {
+    if (taken.empty()) return;
+    log_warning("{}: {} {} read, as in COLMAP; ignored: {}, which {} from {}", folder.string(),
+                fmt::join(taken, ", "), taken.size() == 1 ? "is" : "are",
+                fmt::join(passed_over, ", "), taken.size() == 1 ? "differs" : "differ",
+                taken.size() == 1 ? "it" : "them");
+  }
+};
+
+}  // namespace
+
+fs::path part_file(const fs::path& folder, const std::string& part, ModelForm form) {
+  return folder / (part + (form == ModelForm::text ? ".txt" : ".bin"));
+}
+
+bool holds_model(const fs::path& folder, ModelForm form) {
+  return std::ranges::all_of(
+      kParts, [&](const char* part) { return is_file(part_file(folder, part, form)); });
+}
+
+ModelForm model_form(const fs::path& folder) {
+  for (const ModelForm form : {ModelForm::binary, ModelForm::text})
+    if (holds_model(folder, form)) return form;
+  fail("{}: contains no complete COLMAP model: a text model lacks {}, a binary model lacks {}",
+       folder.string(), missing_parts(folder, ModelForm::text),
+       missing_parts(folder, ModelForm::binary));
+}
+
+ModelForm cameras_form(const fs::path& folder) {
+  for (const ModelForm form : {ModelForm::binary, ModelForm::text})
+    if (holds_model(folder, form)) return form;
+  for (const ModelForm form : {ModelForm::binary, ModelForm::text})
+    if (is_file(part_file(folder, "cameras", form))) return form;
+  fail("{}: has neither cameras.txt nor cameras.bin", folder.string());
+}
+
+void warn_of_rival_cameras(const fs::path& folder, ModelForm read,
+                           const std::vector<ColmapCamera>& cameras) {
+  Rivals rivals{folder, read};
+  rivals.add("cameras", cameras, read_cameras_text, read_cameras_binary);
+  rivals.warn();
+}
+
+void warn_of_rivals(const fs::path& folder, ModelForm read, const ColmapModel& model) {
+  Rivals rivals{folder, read};
+  rivals.add("cameras", model.cameras, read_cameras_text, read_cameras_binary);
+  rivals.add("images", model.images, read_images_text, read_images_binary);
+  rivals.add("points3D", model.points, read_points_text, read_points_binary);
+  rivals.warn();
+}
+
+}  // namespace axial::io

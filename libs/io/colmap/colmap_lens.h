@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lens of a COLMAP camera, for the functions of lens/lens.h.
+#pragma once
+
+#include <string>
+
+#include "io/colmap/colmap.h"
+#include "lens/lens.h"
+
+namespace axial::io {
+
+// Returns the lens. It refers to the parameters of `camera`, which must outlive it. Error for a
+// wrong number of parameters, and for a model that is not supported: EQUIRECTANGULAR, which is no
+// perspective camera, and METASHAPE_FISHEYE.
+lens::Lens lens_of(const ColmapCamera& camera);
+
+// lens::pinhole_inside of the camera's lens. Error that starts with `name` if there is none.
+refractive::PinholeLens<double> pinhole_inside(const ColmapCamera& camera, const std::string& name);
+
+}  // namespace axial::io

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/openmvs/dmap.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <tuple>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "private/openmvs/depth_along_ray.h"
+#include "private/openmvs/dmap_format.h"
+#include "private/openmvs/dmap_side_file.h"
+
+namespace axial::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Reads the beginning of a file, which is long enough for every header.
+std::string read_beginning(const fs::path& path) {
+  constexpr std::streamsize kLongestHeader = 1 << 18;  // names have at most 65535 bytes
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(kLongestHeader, '\0');
+  in.read(bytes.data(), kLongestHeader);
+  if (in.bad() || (in.fail() && !in.eof())) fail("{}: cannot be read", path.string());
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+void use_side_file(const DmapSideFile& side, const std::string& file, StoredDepthMap& stored) {
+  const CameraModel& in_file = stored.map.camera;
+  if (side.camera.width != in_file.width || side.camera.height != in_file.height)
+    fail("{}: is for {}x{} pixels, but the depth map has {}x{}", file, side.camera.width,
+         side.camera.height, in_file.width, in_file.height);
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-3; };
+  if (differ(side.camera.lens.fx, in_file.lens.fx) ||
+      differ(side.camera.lens.fy, in_file.lens.fy) ||
+      differ(side.camera.lens.cx, in_file.lens.cx) || differ(side.camera.lens.cy, in_file.lens.cy))
+    fail("{}: its lens is not the K of the depth map", file);
+  stored.map.camera = side.camera;
+  stored.made_from = side.made_from;
+}
+
+std::string fingerprint_of(const std::string& bytes) {
+  return Fingerprint().add(bytes).hex();
+}
+
+void check_map(const DepthMap& map, const std::string& file) {
+  const cv::Size size = map.depth.size();
+  if (map.depth.empty()) fail("{}: the depth map is empty", file);
+  if (size != cv::Size(map.camera.width, map.camera.height))
+    fail("{}: the depth map is {}x{}, but its camera is {}x{}", file, size.width, size.height,
+         map.camera.width, map.camera.height);
+  if ((!map.normal.empty() && map.normal.size() != size) ||
+      (!map.confidence.empty() && map.confidence.size() != size))
+    fail("{}: normals or confidences have another size than the depths", file);
+  if (map.ids.empty()) fail("{}: the depth map has no ids", file);
+}
+
+// The image's path relative to the folder of the .dmap, as OpenMVS stores it.
+std::string relative_image(const std::string& image, const fs::path& dmap) {
+  const fs::path relative =
+      fs::absolute(image).lexically_proximate(fs::absolute(dmap).parent_path());
+  const std::string name = relative.generic_string();
+  if (name.size() > std::numeric_limits<std::uint16_t>::max())
+    fail("{}: the image name has {} bytes, at most 65535 are possible", dmap.string(), name.size());
+  return name;
+}
+
+// The counterpart of relative_image.
+std::string resolved_image(const std::string& name, const fs::path& dmap) {
+  return (fs::absolute(dmap).parent_path() / name).lexically_normal().string();
+}
+
+bool is_whole(const std::string& bytes, const std::string& file) {
+  try {
+    ByteReader in(bytes, file);
+    parse_dmap(in);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
+  const std::string file = path.string();
+  const std::string bytes = read_file(path);
+  ByteReader in(bytes, file);
+  StoredDepthMap stored{parse_dmap(in), {}};
+  DepthMap& map = stored.map;
+  const auto side = use == DmapSide::used ? read_dmap_side_file(path) : std::nullopt;
+  if (side) {
+    if (side->content != fingerprint_of(bytes))
+      fail("{}: is not the depth map to which {} belongs", file, dmap_side_path(path).string());
+    use_side_file(*side, dmap_side_path(path).string(), stored);
+  }
+  map.image_path = resolved_image(map.image_path, path);
+  map.depth = lambda_of(map.depth, map.camera, file);
+  if (side) {
+    map.min_depth = side->min_depth;
+    map.max_depth = side->max_depth;
+  } else {
+    const DepthAlongRay ray = centre_ray(map.camera);
+    std::tie(map.min_depth, map.max_depth) =
+        enclosing(ray.lambda(static_cast<double>(map.min_depth)),
+                  ray.lambda(static_cast<double>(map.max_depth)), map.depth);
+  }
+  return stored;
+}
+
+DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
+  const std::string file = path.string();
+  const std::string bytes = read_beginning(path);
+  ByteReader in(bytes, file);
+  DmapHeader header = parse_dmap_header(in);
+  std::error_code error;
+  const std::uint64_t wanted = in.position() + header.bytes_of_pixels();
+  if (const std::uint64_t found = fs::file_size(path, error); error || found != wanted)
+    fail("{}: has {} bytes, but needs {} according to its header", file, found, wanted);
+  StoredDepthMap stored{std::move(header.map), {}};
+  if (use == DmapSide::used)
+    if (const auto side = read_dmap_side_file(path))
+      use_side_file(*side, dmap_side_path(path).string(), stored);
+  DepthMap& map = stored.map;
+  map.image_path = resolved_image(map.image_path, path);
+  const DepthAlongRay ray = centre_ray(map.camera);
+  map.min_depth = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
+  map.max_depth = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
+  return std::move(stored.map);
+}
+
+void write_dmap(const fs::path& path, const DepthMap& map, const std::string& made_from) {
+  const std::string file = path.string();
+  check_map(map, file);
+  const cv::Mat1f z_depth = z_depth_of(map.depth, map.camera, file);
+  const DepthAlongRay ray = centre_ray(map.camera);
+  const auto range = enclosing(ray.z(static_cast<double>(map.min_depth)),
+                               ray.z(static_cast<double>(map.max_depth)), z_depth);
+  const ByteWriter out = format_dmap(map, z_depth, range, relative_image(map.image_path, path));
+  const DmapSideFile side{map.camera, map.min_depth, map.max_depth, made_from,
+                          fingerprint_of(out.bytes())};
+  // In this order an interruption never leaves one of our maps beside the side file of another. A
+  // map that does not match its side file was therefore written by another program.
+  write_atomically(path, [&](const fs::path& temporary) {
+    write_atomically(temporary, out.bytes());
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    write_dmap_side_file(path, side);
+  });
+}
+
+DmapStatus dmap_status(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
+  if (!fs::is_regular_file(path, ignored) || !fs::exists(dmap_side_path(path), ignored))
+    return {DmapOrigin::foreign, {}};
+  try {
+    const std::string bytes = read_file(path);
+    const auto side = read_dmap_side_file(path);
+    if (side && side->content == fingerprint_of(bytes)) return {DmapOrigin::ours, side->made_from};
+    return {side && is_whole(bytes, path.string()) ? DmapOrigin::foreign : DmapOrigin::damaged, {}};
+  } catch (const Error&) {
+    return {DmapOrigin::damaged, {}};
+  }
+}
+
+std::optional<std::string> dmap_made_from(const fs::path& path) {
+  const DmapStatus status = dmap_status(path);
+  if (status.origin != DmapOrigin::ours) return {};
+  return status.made_from;
+}
+
+}  // namespace axial::io

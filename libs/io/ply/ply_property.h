@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Additional float properties of the vertices of a PLY file.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/ply/ply.h"
+
+namespace axial::io {
+
+// Reads the property `name`: one value for each vertex, in the order of the file. Empty if the
+// vertices have no such property or it is a list. Errors as for read_cloud_ply.
+std::vector<float> read_vertex_property(const std::filesystem::path& path, const std::string& name);
+
+struct VertexProperty {
+  std::string name;
+  std::span<const float> values;  // one for each vertex
+};
+
+// Writes a mesh as write_mesh_ply in ply.h does, with one more float property of the vertices.
+// Error if the number of values differs from the number of vertices.
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const VertexProperty& property, const PlyPlacement& placement = {});
+
+}  // namespace axial::io

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/ply/ply.h"
+#include "io/ply/ply_property.h"
+#include "private/bytes/byte_writer.h"
+
+namespace axial::io {
+namespace {
+
+constexpr const char* kStart = "ply\nformat binary_little_endian 1.0\n";
+constexpr const char* kPosition = "property float32 x\nproperty float32 y\nproperty float32 z\n";
+constexpr const char* kWorldPosition =
+    "property float64 x\nproperty float64 y\nproperty float64 z\n";
+constexpr const char* kColor = "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
+constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
+
+void require_length(std::size_t length, std::size_t points, const char* field,
+                    const std::string& file) {
+  if (length != points) fail("{}: the cloud has {} {} for {} points", file, length, field, points);
+}
+
+void check_views(const PointCloud& cloud, std::size_t before, const std::string& file) {
+  if (cloud.view_begin.empty()) fail("{}: the cloud has no view lists", file);
+  require_length(cloud.view_begin.size() - 1, cloud.size(), "view lists", file);
+  if (cloud.view_begin.back() > cloud.view_images.size())
+    fail("{}: the cloud's view lists end at {}, but there are {} views", file,
+         cloud.view_begin.back(), cloud.view_images.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.views_of(i).size() > 255)
+      fail("{}: point {} has {} views, but the format counts them in a byte (at most 255)", file,
+           before + i, cloud.views_of(i).size());
+}
+
+void write_vector(ByteWriter& out, const Eigen::Vector3f& v) {
+  out.write(std::span(v.data(), 3));
+}
+
+void write_position(ByteWriter& out, const Eigen::Vector3f& v, const PlyPlacement& placement) {
+  if (!placement.world) return write_vector(out, v);
+  const Eigen::Vector3d world = placement.frame.to_world(v.cast<double>());
+  out.write(std::span(world.data(), 3));
+}
+
+void write_views(ByteWriter& out, const PointCloud& cloud, std::size_t i, bool weights) {
+  const std::span<const std::uint32_t> views = cloud.views_of(i);
+  const auto size = static_cast<std::uint8_t>(views.size());
+  out.write(size);
+  out.write(views);
+  if (!weights) return;
+  out.write(size);
+  out.write(std::span(cloud.view_weights).subspan(cloud.view_begin[i], views.size()));
+}
+
+// The header has the same length for any number of points.
+std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placement,
+                         std::size_t points) {
+  constexpr std::size_t kMostDigits = 20;
+  const std::string count = std::to_string(points);
+  std::string header = fmt::format("{}comment AxialMVS{}\n{}element vertex {}\n{}", kStart,
+                                   std::string(kMostDigits - count.size(), ' '),
+                                   geo_comment(placement), count, position_properties(placement));
+  if (layout.colors) header += kColor;
+  if (layout.normals) header += kNormal;
+  if (layout.views) header += "property list uint8 uint32 view_indices\n";
+  if (layout.view_weights) header += "property list uint8 float32 view_weights\n";
+  if (layout.errors) header += "property float32 error\nproperty float32 confidence\n";
+  return header + "end_header\n";
+}
+
+}  // namespace
+
+const char* position_properties(const PlyPlacement& placement) {
+  return placement.world ? kWorldPosition : kPosition;
+}
+
+std::string geo_comment(const PlyPlacement& placement) {
+  if (placement.world || placement.frame.is_world()) return {};
+  const Eigen::Vector3d& o = placement.frame.origin;
+  return fmt::format("comment geo_offset {} {} {}\n", o.x(), o.y(), o.z());
+}
+
+void append_position(std::string& bytes, const Eigen::Vector3f& position,
+                     const PlyPlacement& placement) {
+  ByteWriter out;
+  write_position(out, position, placement);
+  bytes += out.bytes();
+}
+
+struct CloudWriter::File {
+  AtomicFile file;
+  CloudLayout layout;
+  PlyPlacement placement;
+  std::ofstream stream;
+  std::size_t points = 0;
+
+  std::string name() const { return file.path().string(); }
+
+  void check(const PointCloud& portion) const {
+    if (layout.colors) require_length(portion.colors.size(), portion.size(), "colors", name());
+    if (layout.normals) require_length(portion.normals.size(), portion.size(), "normals", name());
+    if (layout.views) check_views(portion, points, name());
+    if (layout.view_weights)
+      require_length(portion.view_weights.size(), portion.view_images.size(), "view weights",
+                     name());
+    if (layout.errors) require_length(portion.errors.size(), portion.size(), "errors", name());
+    if (layout.errors)
+      require_length(portion.confidences.size(), portion.size(), "confidences", name());
+  }
+
+  void write(const std::string& bytes) {
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    require_good();
+  }
+
+  void require_good() const {
+    if (!stream)
+      fail("{}: cannot be written: {}", name(), errno ? std::strerror(errno) : "write failed");
+  }
+};
+
+CloudWriter::CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
+                         const PlyPlacement& placement)
+    : file_(new File{AtomicFile(path), layout, placement, {}, 0}) {
+  errno = 0;
+  file_->stream.open(file_->file.temporary(), std::ios::binary);
+  file_->write(cloud_header(layout, placement, 0));
+}
+
+CloudWriter::~CloudWriter() = default;
+
+std::size_t CloudWriter::size() const {
+  return file_->points;
+}
+
+void CloudWriter::add(const PointCloud& portion) {
+  const CloudLayout& layout = file_->layout;
+  file_->check(portion);
+  ByteWriter out;
+  for (std::size_t i = 0; i < portion.size(); ++i) {
+    write_position(out, portion.positions[i], file_->placement);
+    if (layout.colors) out.write(std::span(portion.colors[i]));
+    if (layout.normals) write_vector(out, portion.normals[i]);
+    if (layout.views) write_views(out, portion, i, layout.view_weights);
+    if (!layout.errors) continue;
+    out.write(portion.errors[i]);
+    out.write(portion.confidences[i]);
+  }
+  file_->write(out.bytes());
+  file_->points += portion.size();
+}
+
+void CloudWriter::finish() {
+  file_->stream.seekp(0);
+  file_->write(cloud_header(file_->layout, file_->placement, file_->points));
+  file_->stream.close();
+  file_->require_good();
+  file_->file.commit();
+}
+
+void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud, bool with_views,
+                     const PlyPlacement& placement) {
+  const bool views = with_views && !cloud.view_begin.empty();
+  CloudWriter out(path,
+                  {!cloud.colors.empty(), !cloud.normals.empty(), views,
+                   views && !cloud.view_weights.empty(), !cloud.errors.empty()},
+                  placement);
+  out.add(cloud);
+  out.finish();
+}
+
+namespace {
+
+// `property` may be null: no additional property.
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const VertexProperty* property,
+                const PlyPlacement& placement) {
+  if (!mesh.colors.empty())
+    require_length(mesh.colors.size(), mesh.vertices.size(), "colors", path.string());
+  ByteWriter out;
+  out.text(fmt::format("{}{}element vertex {}\n{}", kStart, geo_comment(placement),
+                       mesh.vertices.size(), position_properties(placement)));
+  if (!mesh.colors.empty()) out.text(kColor);
+  if (property) out.text(fmt::format("property float32 {}\n", property->name));
+  out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\nend_header\n",
+                       mesh.faces.size()));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    write_position(out, mesh.vertices[i], placement);
+    if (!mesh.colors.empty()) out.write(std::span(mesh.colors[i]));
+    if (property) out.write(property->values[i]);
+  }
+  for (const auto& face : mesh.faces) {
+    out.write(std::uint8_t{3});
+    out.write(std::span(face));
+  }
+  write_atomically(path, out.bytes());
+}
+
+}  // namespace
+
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const PlyPlacement& placement) {
+  write_mesh(path, mesh, nullptr, placement);
+}
+
+void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
+                    const VertexProperty& property, const PlyPlacement& placement) {
+  require_length(property.values.size(), mesh.vertices.size(), property.name.c_str(),
+                 path.string());
+  write_mesh(path, mesh, &property, placement);
+}
+
+}  // namespace axial::io

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: a port in JSON (housing files, side files of depth maps).
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "io/bytes/json.h"
+#include "private/only_for_io.h"
+#include "refractive/port.h"
+#include "scene/water_surface.h"
+
+namespace axial::io {
+
+// A value in a JSON file, with its location for error messages: `where` is "file: key.key".
+struct JsonPlace {
+  const nlohmann::json& json;
+  std::string where;
+
+  // Error unless this is an object whose keys are all among `known`.
+  void require_object(std::initializer_list<const char*> known) const;
+  bool has(const char* key) const;
+  JsonPlace at(const std::string& key) const;  // Error if the key is missing
+  double number(const char* key) const;        // Error unless a finite number
+  std::string text(const char* key) const;
+};
+
+// The largest distance of a housing's flat port from the camera [m]. A larger value is probably in
+// a wrong unit.
+inline constexpr double kLongestGap = 1;
+
+// Reads a port. Error for an unknown key, values that are not possible, a flat port farther than
+// `longest_gap` [m] from the camera, or a type other than "flat" and "dome". A normal whose length
+// differs from 1 by more than 1e-6 is normalised with a warning.
+refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap = kLongestGap);
+nlohmann::json port_to_json(const refractive::Port<double>& port);
+
+// Functions for the type "water-surface".
+bool is_water_surface(const JsonPlace& place);
+WaterSurface water_surface_from_json(const JsonPlace& place);
+nlohmann::json water_surface_to_json(const WaterSurface& surface);
+
+// Returns `n` normalised; unchanged if its length is 1 up to rounding. Warns if the length differs
+// from 1 by more than 1e-6. Error that starts with `where` if `n` is almost zero or not finite.
+Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
+
+// Error that starts with `where` for values that are not possible: see read_housing (housing.h).
+void check_port(const refractive::Port<double>& port, const std::string& where);
+void check_water_surface(const WaterSurface& surface, const std::string& where);
+
+}  // namespace axial::io

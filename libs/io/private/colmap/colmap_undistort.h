@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: undistorts the images of a COLMAP model and their masks.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/progress.h"
+#include "io/colmap/colmap.h"
+#include "private/only_for_io.h"
+#include "refractive/pinhole_camera.h"
+
+namespace axial::io {
+
+// An image of a model that needs to be undistorted.
+struct DistortedImage {
+  std::string name;                           // in the model
+  std::filesystem::path source;               // the photograph
+  std::filesystem::path mask;                 // of the photograph; empty: none
+  const ColmapCamera* camera = {};            // of the photograph
+  refractive::PinholeLens<double> pinhole{};  // of the undistorted image, which has the same size
+  bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold the pixels
+};
+
+// Returns the name of the undistorted image, relative to its folder. Names that end in ".png" stay;
+// JPEG names stay if a JPEG can hold the pixels. ".png" is appended to all other names, so that
+// a.tif and a.bmp get different names.
+std::filesystem::path undistorted_name(const DistortedImage& image);
+
+// Error that starts with `model_folder` and names both images if two of `images` would be
+// undistorted to the same file. Upper and lower case count as equal, for file systems that ignore
+// case.
+void require_apart(std::span<const DistortedImage> images,
+                   const std::filesystem::path& model_folder);
+
+// Writes the undistorted images below `folder` under undistorted_name, each with its mask beside
+// it. The images of one camera should follow each other: an undistortion map stays in memory from
+// the first to the last image of its camera. If images cannot be read or written, throws the error
+// of the first such image in the given order.
+void undistort_images(std::span<const DistortedImage> images, const std::filesystem::path& folder,
+                      const ProgressSink& progress);
+
+}  // namespace axial::io

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: the records of the .mvs interchange format, without interpretation
+// (docs/formats.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "private/only_for_io.h"
+#include "scene/scene.h"
+
+namespace axial::io {
+
+inline constexpr std::uint32_t kMvsVersion = 7;  // the newest known; the one written
+
+struct MvsPose {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+struct MvsCamera {
+  std::uint32_t width = 0, height = 0;  // both 0: `k` is normalised
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  MvsPose on_platform;
+};
+
+struct MvsPlatform {
+  std::vector<MvsCamera> cameras;
+  std::vector<MvsPose> poses;
+};
+
+struct MvsImage {
+  std::string name, mask_name;
+  std::uint32_t platform = kNoId, camera = kNoId, pose = kNoId;
+  std::uint32_t id = kNoId;
+  float min_depth = 0, average_depth = 0, max_depth = 0;
+  std::vector<ViewScore> view_scores;
+};
+
+struct MvsBox {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+};
+
+// The contents of a file. Lines and the transform are skipped: AxialMVS does not use them, nor does
+// OpenMVS 2.3.
+struct MvsFile {
+  std::vector<MvsPlatform> platforms;
+  std::vector<MvsImage> images;
+  std::vector<SparsePoint> points;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<Rgb> colors;
+  MvsBox box;
+};
+
+// Parses the bytes of a file. Error that names `file` for a native project, an unknown version, or
+// too few or too many bytes.
+MvsFile parse_mvs(std::string_view bytes, const std::string& file);
+
+// The bytes of version 7.
+std::string format_mvs(const MvsFile& mvs);
+
+}  // namespace axial::io

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/io: the PLY header, and the values that follow it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "private/bytes/byte_reader.h"
+#include "private/only_for_io.h"
+
+namespace axial::io {
+
+enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+std::size_t ply_size(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::kFloat32;
+  bool is_list = false;
+  PlyType count_type = PlyType::kUint8;  // of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::kAscii;
+  std::vector<PlyElement> elements;
+  std::optional<Eigen::Vector3d> geo_offset;  // from "comment geo_offset X Y Z"
+  std::size_t body = 0;                       // offset of the data in bytes
+};
+
+// Parses the header. Error that names `file` if it is not well-formed.
+PlyHeader parse_ply_header(std::string_view bytes, const std::string& file);
+
+// Reads the values of the body, in any of the three formats, as double, which holds all PLY types
+// exactly.
+class PlyBody {
+ public:
+  PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header);
+
+  // Error if the bytes left cannot hold the declared rows of `element`. Call this before reading
+  // the rows; afterwards memory can be allocated for the count.
+  void require_rows(const PlyElement& element) const;
+
+  // Reads one value. Error if the bytes end or a value does not fit its type. Infinite and NaN
+  // values are returned.
+  double scalar(PlyType type, const std::string& name);
+
+  // Reads the length of a list; the caller reads its values next. Error if the bytes left cannot
+  // hold them.
+  std::size_t list_size(const PlyProperty& property);
+
+  // Error if data follow the last element.
+  void require_end() const;
+
+ private:
+  template <class T>
+  T binary(const std::string& name);
+  double ascii(PlyType type, const std::string& name);
+
+  ByteReader reader_;
+  PlyFormat format_;
+  std::string_view text_;  // the rest of an ascii body
+};
+
+}  // namespace axial::io

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A lens in air: projection of a direction and its inverse, the matcher's form of the lens, and the
+// pinhole that replaces it. Pixel centres are at integers.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "lens/models.h"
+#include "refractive/lens_distortion.h"
+#include "refractive/pinhole_camera.h"
+
+namespace axial::lens {
+
+struct Lens {
+  const Model* model = nullptr;
+  refractive::PinholeLens<double> pinhole{};  // the lens without its distortion
+  Parameters distortion;                      // must outlive the lens
+  int width = 0, height = 0;                  // of the image [px]
+};
+
+// Projects the in-air direction (u, v, 1) to a pixel. NaN where the model is not defined.
+Eigen::Vector2d image_direction(const Lens& lens, double u, double v);
+
+// The inverse of image_direction, with the derivative of image_direction at the result.
+struct ImagedDirection {
+  Eigen::Vector2d direction;   // (u, v)
+  Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) there
+};
+
+// Returns the in-air direction that the lens projects to `pixel`. Newton's method starts from the
+// direction of the undistorted lens. Nothing if no direction projects to the pixel, if the method
+// does not converge, or if the lens folds back between the axis and the direction.
+std::optional<ImagedDirection> direction_at(const Lens& lens, const Eigen::Vector2d& pixel);
+
+// Returns the lens if it is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a perspective lens model whose
+// distortion parameters are all exactly zero.
+std::optional<refractive::PinholeLens<double>> pinhole_lens(const Lens& lens);
+
+// Returns the distortion of the lens relative to its `pinhole`, in the form that the matcher uses.
+// The perspective and fisheye polynomials and FOV are exact. The division models and EUCM are
+// fitted, with an error of at most 1e-4 px up to the image corners. Nothing for pinholes, for
+// RAD_TAN_THIN_PRISM_FISHEYE, and for lenses that cannot be fitted so well.
+std::optional<refractive::LensDistortion<double>> lens_distortion(const Lens& lens);
+
+// Returns a pinhole that replaces the lens without a black border in the undistorted image. It has
+// the lens's image size, principal point and ratio of focal lengths. Its focal length is the
+// shortest, between half and four times that of the lens, for which every pixel lies inside the
+// image of the lens. Nothing if there is none.
+std::optional<refractive::PinholeLens<double>> pinhole_inside(const Lens& lens);
+
+// Returns, for every pixel of the pinhole, its position in the image of the lens: the map for
+// cv::remap.
+cv::Mat2f undistortion_map(const Lens& lens, const refractive::PinholeLens<double>& pinhole);
+
+}  // namespace axial::lens

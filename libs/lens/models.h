@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The formulas of COLMAP's lens models, and the same lenses in the matcher's form.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string_view>
+
+#include "refractive/lens_distortion.h"
+
+namespace axial::lens {
+
+// The distortion parameters of a camera in the order of COLMAP's documentation: without focal
+// lengths and principal point.
+using Parameters = std::span<const double>;
+
+struct Model {
+  std::string_view name;  // "PINHOLE", "OPENCV", ...
+  // The point that the in-air direction (u, v, 1) has in the image, before focal lengths and
+  // principal point are applied.
+  Eigen::Vector2d (*distort)(Parameters, const Eigen::Vector2d& direction);
+  bool flat;  // a pinhole if all distortion parameters are zero
+  // The lens in the matcher's form. Null: the matcher does not have this model.
+  refractive::LensDistortion<double> (*bent)(Parameters){};
+  bool radial = false;  // the matcher's fisheye can be fitted to the model
+};
+
+// The models of COLMAP's documentation, up to EUCM. Null for other names and for EQUIRECTANGULAR,
+// which is no perspective camera.
+const Model* find_model(std::string_view name);
+
+}  // namespace axial::lens

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compares lens models with OpenCV's projection where OpenCV has the model, otherwise with the
+// defining equation.
+#include "lens/lens.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "io/colmap/colmap_lens.h"
+#include "lens/lens_fit.h"
+#include "refractive/distorted_lens.h"
+
+namespace axial::lens {
+namespace {
+
+using Eigen::Vector2d;
+using io::ColmapCamera;
+using io::lens_of;
+
+constexpr double kFx = 700, kFy = 650, kCx = 330.5, kCy = 236.5;  // pixel centres at 0.5
+
+ColmapCamera two_focal_camera(const std::string& model, std::vector<double> distortion) {
+  ColmapCamera camera{1, model, 640, 480, {kFx, kFy, kCx, kCy}};
+  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
+  return camera;
+}
+
+ColmapCamera one_focal_camera(const std::string& model, std::vector<double> distortion) {
+  ColmapCamera camera{1, model, 640, 480, {kFx, kCx, kCy}};
+  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
+  return camera;
+}
+
+cv::Matx33d opencv_k() {
+  return {kFx, 0, kCx - 0.5, 0, kFy, kCy - 0.5, 0, 0, 1};
+}
+
+double within(double limit) {
+  return limit * (static_cast<double>(*rc::gen::inRange(-1000000, 1000001)) / 1e6);
+}
+
+// The distorted point before focal lengths and principal point are applied.
+Vector2d distorted(const ColmapCamera& camera, double u, double v) {
+  const Vector2d pixel = image_direction(lens_of(camera), u, v);
+  const bool one = camera.params.size() == 4 || camera.params.size() == 3;
+  return {(pixel.x() - (kCx - 0.5)) / kFx, (pixel.y() - (kCy - 0.5)) / (one ? kFx : kFy)};
+}
+
+// Both sides evaluate the same polynomial in double, so 1e-9 px allows for rounding.
+constexpr double kRounding = 1e-9;
+
+RC_GTEST_PROP(Lens, FullOpencvAgreesWithOpencv, ()) {
+  const double u = within(1), v = within(1);
+  std::vector<double> k;
+  for (int i = 0; i < 8; ++i) k.push_back(within(i == 2 || i == 3 ? 0.01 : 0.1));
+  // Rounding is large near a zero of the denominator, where the lens images nothing.
+  const double r2 = u * u + v * v;
+  RC_PRE(1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) > 0.1);
+  std::vector<cv::Point2d> expected;
+  cv::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, cv::Vec3d(), cv::Vec3d(), opencv_k(), k,
+                    expected);
+  const Vector2d pixel = image_direction(lens_of(two_focal_camera("FULL_OPENCV", k)), u, v);
+  RC_ASSERT(std::abs(pixel.x() - expected[0].x) < kRounding);
+  RC_ASSERT(std::abs(pixel.y() - expected[0].y) < kRounding);
+  k.resize(4);
+  cv::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, cv::Vec3d(), cv::Vec3d(), opencv_k(), k,
+                    expected);
+  const Vector2d shorter = image_direction(lens_of(two_focal_camera("OPENCV", k)), u, v);
+  RC_ASSERT(std::abs(shorter.x() - expected[0].x) < kRounding);
+  RC_ASSERT(std::abs(shorter.y() - expected[0].y) < kRounding);
+}
+
+RC_GTEST_PROP(Lens, FisheyesAgreeWithOpencv, ()) {
+  const double u = within(2), v = within(2);
+  std::vector<double> k{within(0.1), within(0.1), within(0.1), within(0.1)};
+  std::vector<cv::Point2d> expected;
+  cv::fisheye::projectPoints(std::vector<cv::Point3d>{{u, v, 1}}, expected, cv::Vec3d(),
+                             cv::Vec3d(), opencv_k(), k);
+  const Vector2d reference(expected[0].x, expected[0].y);
+  const auto agrees = [&](const ColmapCamera& camera) {
+    return (image_direction(lens_of(camera), u, v) - reference).norm() < kRounding;
+  };
+  RC_ASSERT(agrees(two_focal_camera("OPENCV_FISHEYE", k)));
+  RC_ASSERT(agrees(two_focal_camera("THIN_PRISM_FISHEYE", {k[0], k[1], 0, 0, k[2], k[3], 0, 0})));
+  RC_ASSERT(agrees(two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE",
+                                    {k[0], k[1], k[2], k[3], 0, 0, 0, 0, 0, 0, 0, 0})));
+}
+
+RC_GTEST_PROP(Lens, DefiningEquationsHold, ()) {
+  const double u = within(1), v = within(1), r = std::hypot(u, v);
+  const double k = within(0.1);
+  RC_PRE(r > 1e-6);
+  const Vector2d division = distorted(one_focal_camera("SIMPLE_DIVISION", {k}), u, v);
+  RC_ASSERT(std::abs(division.norm() / (1 + k * division.squaredNorm()) - r) < 1e-12);
+  const double omega = 0.9 + k;
+  const Vector2d fov = distorted(two_focal_camera("FOV", {omega}), u, v);
+  RC_ASSERT(std::abs(std::tan(fov.norm() * omega) / (2 * std::tan(omega / 2)) - r) < 1e-12);
+  const double alpha = 0.5 + k;
+  const Vector2d eucm = distorted(two_focal_camera("EUCM", {alpha, 1.0}), u, v);
+  // beta = 1 is the unified model: a sphere whose projection centre is xi behind its centre, with
+  // xi = alpha/(1-alpha).
+  const double xi = alpha / (1 - alpha), length = std::sqrt(r * r + 1);
+  RC_ASSERT(std::abs(eucm.x() - (1 + xi) * (u / length) / (1 / length + xi)) < 1e-12);
+  const double theta = std::atan(r);
+  RC_ASSERT(std::abs(distorted(one_focal_camera("SIMPLE_FISHEYE", {}), u, v).norm() - theta) <
+            1e-12);
+}
+
+TEST(Lens, PinholesAreTakenAsTheyAre) {
+  const auto lens = pinhole_lens(lens_of(two_focal_camera("PINHOLE", {})));
+  ASSERT_TRUE(lens);
+  EXPECT_EQ(lens->fx, kFx);
+  EXPECT_EQ(lens->fy, kFy);
+  EXPECT_EQ(lens->cx, kCx - 0.5);
+  EXPECT_EQ(lens->cy, kCy - 0.5);
+  const auto simple = pinhole_lens(lens_of(one_focal_camera("SIMPLE_RADIAL", {0.0})));
+  ASSERT_TRUE(simple);
+  EXPECT_EQ(simple->fy, kFx);
+  EXPECT_FALSE(pinhole_lens(lens_of(one_focal_camera("SIMPLE_RADIAL", {1e-9}))));
+  EXPECT_FALSE(pinhole_lens(lens_of(two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0}))));
+}
+
+RC_GTEST_PROP(Lens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
+  const ColmapCamera camera{
+      1,
+      "OPENCV",
+      160,
+      120,
+      {175, 160, 82, 59, within(0.3), within(0.05), within(0.002), within(0.002)}};
+  const auto lens = pinhole_inside(lens_of(camera)).value();
+  double nearest = 1e9;
+  const cv::Mat2f map = undistortion_map(lens_of(camera), lens);
+  for (int y = 0; y < map.rows; ++y)
+    for (int x = 0; x < map.cols; ++x) {
+      const cv::Vec2f p = map(y, x);
+      // pinhole_inside checks 64 positions on each side; between them the border may bulge a
+      // little.
+      RC_ASSERT(p[0] > -0.1f && p[1] > -0.1f && p[0] < 159.1f && p[1] < 119.1f);
+      nearest = std::min<double>({nearest, p[0], p[1], 159 - p[0], 119 - p[1]});
+    }
+  // The pinhole is zoomed out as far as possible: some pixel touches the border of the photograph.
+  RC_ASSERT(nearest < 0.1);
+}
+
+RC_GTEST_PROP(Lens, DirectionsAreFoundAgain, ()) {
+  const std::vector<ColmapCamera> cameras{
+      two_focal_camera("PINHOLE", {}),
+      one_focal_camera("SIMPLE_RADIAL", {-0.1}),
+      one_focal_camera("RADIAL", {-0.1, 0.02}),
+      two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -1e-3}),
+      two_focal_camera("FULL_OPENCV", {-0.1, 0.02, 1e-3, -1e-3, 0.01, 0.02, 0.01, 0}),
+      two_focal_camera("OPENCV_FISHEYE", {0.02, -0.01, 0.002, 0}),
+      one_focal_camera("SIMPLE_RADIAL_FISHEYE", {0.02}),
+      two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-3, 1e-3, 0, 0, 1e-3, 1e-3})};
+  const double u = within(0.6), v = within(0.6);
+  for (const ColmapCamera& camera : cameras) {
+    const auto found = direction_at(lens_of(camera), image_direction(lens_of(camera), u, v));
+    RC_ASSERT(found.has_value());
+    RC_ASSERT((found->direction - Vector2d(u, v)).norm() < 1e-9);
+    const double h = 1e-5;
+    const Vector2d slope =
+        (image_direction(lens_of(camera), u + h, v) - image_direction(lens_of(camera), u - h, v)) /
+        (2 * h);
+    RC_ASSERT((found->derivative.col(0) - slope).norm() < 1e-4 * slope.norm());
+  }
+}
+
+// Differences between the matcher's lens and the model: the image of (u, v) [px], and the direction
+// found from that image.
+struct Misses {
+  double pixel = 0, direction = 0;
+};
+
+Misses misses_of_the_matcher(const ColmapCamera& camera, double u, double v) {
+  const auto distortion = lens_distortion(lens_of(camera));
+  RC_ASSERT(distortion.has_value());
+  const refractive::DistortedLens<double> lens(lens_of(camera).pinhole, *distortion, 640, 480, 400);
+  const auto seen = lens.project({u, v});
+  RC_ASSERT(seen.projection.visible);
+  const Vector2d pixel = seen.projection.pixel;
+  return {(pixel - image_direction(lens_of(camera), u, v)).norm(),
+          (lens.tangents(pixel).point - Vector2d(u, v)).norm()};
+}
+
+// The matcher's formula and the models share no code.
+RC_GTEST_PROP(Lens, TheMatchersLensesImageTheSame, ()) {
+  const std::vector<ColmapCamera> cameras{
+      one_focal_camera("SIMPLE_RADIAL", {-0.1}),
+      one_focal_camera("RADIAL", {-0.1, 0.02}),
+      two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -2e-3}),
+      two_focal_camera("FULL_OPENCV", {-0.1, 0.02, 1e-3, -2e-3, 0.01, 0.02, 0.03, 0.004}),
+      two_focal_camera("OPENCV_FISHEYE", {0.02, -0.01, 0.002, 0.001}),
+      one_focal_camera("SIMPLE_RADIAL_FISHEYE", {0.02}),
+      one_focal_camera("RADIAL_FISHEYE", {0.02, -0.01}),
+      one_focal_camera("SIMPLE_FISHEYE", {}),
+      two_focal_camera("FISHEYE", {}),
+      two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-3, 2e-3, 0.003, 1e-3, 4e-3, 5e-3}),
+      two_focal_camera("FOV", {0.9})};
+  const double u = within(0.7), v = within(0.7);
+  for (const ColmapCamera& camera : cameras) {
+    const Misses misses = misses_of_the_matcher(camera, u, v);
+    RC_ASSERT(misses.pixel < kRounding);
+    RC_ASSERT(misses.direction < kRounding);
+  }
+}
+
+// The fit is accurate to 1e-4 px along both focal lengths, which is 1.5e-7 of a focal length. A
+// pixel at the edge of these lenses covers up to three times the angle of a central one.
+RC_GTEST_PROP(Lens, TheMatcherFollowsLensesThatAreNoPolynomials, ()) {
+  const std::vector<ColmapCamera> cameras{
+      one_focal_camera("SIMPLE_DIVISION", {-0.2}), two_focal_camera("DIVISION", {-1}),
+      two_focal_camera("DIVISION", {0.1}), two_focal_camera("EUCM", {0.6, 1.1}),
+      two_focal_camera("EUCM", {0.5, 1})};
+  const double u = within(0.4), v = within(0.3);
+  for (const ColmapCamera& camera : cameras) {
+    const Misses misses = misses_of_the_matcher(camera, u, v);
+    RC_ASSERT(misses.pixel < 1.5e-4);
+    RC_ASSERT(misses.direction < 5e-7);
+  }
+}
+
+TEST(Lens, TheMatcherHasNoLensForOtherModels) {
+  for (const ColmapCamera& camera :
+       {two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE", std::vector<double>(12, 0.001)),
+        two_focal_camera("PINHOLE", {}), two_focal_camera("OPENCV", {0, 0, 0, 0}),
+        two_focal_camera("FOV", {0}),
+        // This lens images nothing beyond half a focal length, where the image corners are.
+        two_focal_camera("DIVISION", {4})})
+    EXPECT_FALSE(lens_distortion(lens_of(camera))) << camera.model;
+}
+
+TEST(Lens, AFitThatMissesIsNoLens) {
+  const double widest = 1, tolerance = 1e-4;
+  const auto smooth = [](double theta) { return std::sin(theta); };
+  const auto with_a_kink = [](double theta) { return std::min(theta, 0.5 + 0.3 * (theta - 0.5)); };
+  EXPECT_TRUE(fitted_fisheye(smooth, widest, tolerance));
+  EXPECT_FALSE(fitted_fisheye(with_a_kink, widest, tolerance));
+}
+
+// At the edge of a fisheye's field, directions are far out on the plane z = 1.
+TEST(Lens, DirectionsAtAFisheyesEdgeAreFound) {
+  const ColmapCamera camera = two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0});
+  for (const double degrees : {60.0, 80.0, 88.0}) {
+    const double u = std::tan(degrees * M_PI / 180);
+    const auto found = direction_at(lens_of(camera), image_direction(lens_of(camera), u, 0));
+    ASSERT_TRUE(found) << degrees;
+    EXPECT_NEAR(found->direction.x() / u, 1, 1e-6) << degrees;
+  }
+}
+
+TEST(Lens, NoDirectionIsFoundBeyondTheFold) {
+  // This lens images nothing between 0.6 and the radius where the polynomial rises again.
+  const ColmapCamera camera = one_focal_camera("RADIAL", {-0.5, 0.1});
+  const Vector2d centre = image_direction(lens_of(camera), 0, 0);
+  EXPECT_TRUE(direction_at(lens_of(camera), centre + Vector2d(0.5 * kFx, 0)));
+  EXPECT_FALSE(direction_at(lens_of(camera), centre + Vector2d(0.65 * kFx, 0)));
+  EXPECT_TRUE(direction_at(lens_of(camera), centre));
+}
+
+TEST(Lens, LensesThatFoldBackAreNotFollowedPastTheFold) {
+  // The lens folds back at r = 0.816, and the image corners of this focal length are beyond that
+  // radius.
+  ColmapCamera camera{7, "SIMPLE_RADIAL", 640, 480, {300, 320, 240, -0.5}};
+  const auto lens = pinhole_inside(lens_of(camera)).value();
+  EXPECT_LT(std::hypot(319.5 / lens.fx, 239.5 / lens.fy), 0.8165);
+}
+
+}  // namespace
+}  // namespace axial::lens
