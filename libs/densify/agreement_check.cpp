@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "agreement_check.h"
+#include "densify/agreement_check.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "depth/agreement.h"
 #include "io/json.h"
 
-namespace densify {
+namespace axial::densify {
 namespace {
 
 constexpr std::size_t kImages = 16;
@@ -24,7 +24,7 @@ using axial::depth::Agreement;
 using axial::depth::AgreementLimits;
 using axial::depth::Disagreement;
 using axial::depth::MapAgreement;
-using Maps = axial::SharedCache<axial::DepthMap>;
+using Maps = SharedCache<DepthMap>;
 
 // Evenly spaced references.
 std::vector<std::size_t> images_to_compare(const Project& project) {
@@ -37,8 +37,8 @@ std::vector<std::size_t> images_to_compare(const Project& project) {
 MapAgreement compare_image(const Project& project, std::size_t image,
                            const std::vector<bool>& has_map, Maps& maps) {
   std::vector<Maps::Pointer> held{maps.get(image)};
-  std::vector<const axial::DepthMap*> neighbours;
-  for (const axial::ViewScore& source : project.sources[image]) {
+  std::vector<const DepthMap*> neighbours;
+  for (const ViewScore& source : project.sources[image]) {
     if (!has_map[source.image] || held.size() == kMapsCompared) continue;
     held.push_back(maps.get(source.image));
     neighbours.push_back(held.back().get());
@@ -46,20 +46,20 @@ MapAgreement compare_image(const Project& project, std::size_t image,
   std::vector<Eigen::Vector3f> points;
   for (const std::uint32_t point : project.preparations[image].init_points)
     points.push_back(project.scene.points[point].position);
-  return axial::depth::compare_map(*held.front(), neighbours, points);
+  return depth::compare_map(*held.front(), neighbours, points);
 }
 
 Agreement measure(const Project& project, const MemoryPlan& plan,
-                  const std::function<axial::DepthMap(std::size_t)>& read_map) {
+                  const std::function<DepthMap(std::size_t)>& read_map) {
   std::vector<bool> has_map(project.scene.images.size(), false);
   for (const std::size_t image : project.references) has_map[image] = true;
   const std::vector<std::size_t> images = images_to_compare(project);
   std::vector<MapAgreement> found(images.size());
   Maps maps(read_map, plan.cached_maps);
-  axial::for_each_in_flight(images.size(), plan.in_flight, [&](std::size_t i) {
+  for_each_in_flight(images.size(), plan.in_flight, [&](std::size_t i) {
     found[i] = compare_image(project, images[i], has_map, maps);
   });
-  return axial::depth::summarise(found);
+  return depth::summarise(found);
 }
 
 std::string likely_causes(const Project& project) {
@@ -78,17 +78,17 @@ void say(const Project& project, const Agreement& found) {
   const std::string pixels = fmt::format("{:.0f} % of {} pixels agree with a neighbour's map",
                                          100 * found.consistent, found.asked);
   const Disagreement wrong = judge(found, limits);
-  if (!wrong.cameras()) axial::log_info("Agreement: {}; {}", points, pixels);
+  if (!wrong.cameras()) log_info("Agreement: {}; {}", points, pixels);
   const std::string scores = fmt::format(
       "patches at {} sparse points match with a median score of {:.2f} (usual: over {})",
       found.scored, found.score, limits.score);
   if (!wrong.cameras() && wrong.score)
-    axial::log_warning(
+    log_warning(
         "The photographs do not seem to show the scene: {}. Check that the photographs belong to "
         "the poses",
         scores);
   if (!wrong.cameras()) return;
-  axial::log_warning(
+  log_warning(
       "Cameras and photographs do not seem to belong together: {} (usual: below {} and {}); {} "
       "(usual: over {:.0f} %){}. Likely causes: {}{}",
       points, limits.pixels, limits.systematic, pixels, 100 * limits.consistent,
@@ -99,35 +99,34 @@ void say(const Project& project, const Agreement& found) {
 void write_report(const std::filesystem::path& file, const Agreement& found) {
   const AgreementLimits limits;
   const Disagreement wrong = judge(found, limits);
-  axial::io::write_json(file, {{"agreement",
-                                {{"points", found.points},
-                                 {"median_share", found.share},
-                                 {"median_px", found.pixels},
-                                 {"cells", found.cells},
-                                 {"systematic_px", found.systematic},
-                                 {"systematic_sigmas", found.significance},
-                                 {"pixels", found.asked},
-                                 {"consistent_share", found.consistent},
-                                 {"scored_points", found.scored},
-                                 {"median_score", found.score},
-                                 {"limits",
-                                  {{"median_px", limits.pixels},
-                                   {"systematic_px", limits.systematic},
-                                   {"systematic_sigmas", limits.significance},
-                                   {"consistent_share", limits.consistent},
-                                   {"median_score", limits.score}}},
-                                 {"warning", wrong.any()}}}});
+  io::write_json(file, {{"agreement",
+                         {{"points", found.points},
+                          {"median_share", found.share},
+                          {"median_px", found.pixels},
+                          {"cells", found.cells},
+                          {"systematic_px", found.systematic},
+                          {"systematic_sigmas", found.significance},
+                          {"pixels", found.asked},
+                          {"consistent_share", found.consistent},
+                          {"scored_points", found.scored},
+                          {"median_score", found.score},
+                          {"limits",
+                           {{"median_px", limits.pixels},
+                            {"systematic_px", limits.systematic},
+                            {"systematic_sigmas", limits.significance},
+                            {"consistent_share", limits.consistent},
+                            {"median_score", limits.score}}},
+                          {"warning", wrong.any()}}}});
 }
 
 }  // namespace
 
-void check_agreement(const Project& project, const Options& options, const MemoryPlan& plan,
-                     bool photometric,
-                     const std::function<axial::DepthMap(std::size_t image)>& read_map) {
+void check_agreement(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                     bool photometric, const std::function<DepthMap(std::size_t image)>& read_map) {
   Agreement found = measure(project, plan, read_map);
   if (!photometric) found.scored = 0;
   say(project, found);
-  if (!options.report.empty()) write_report(options.report, found);
+  if (!settings.report.empty()) write_report(settings.report, found);
 }
 
-}  // namespace densify
+}  // namespace axial::densify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "depth_stage.h"
+#include "densify/depth_stage.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <memory>
 #include <mutex>
 
-#include "agreement_check.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/shared_cache.h"
+#include "densify/agreement_check.h"
 #include "depth/border.h"
 #include "depth/filters.h"
 #include "depth/patch_match.h"
@@ -20,14 +20,11 @@
 #include "io/dmap.h"
 #include "io/dmap_pictures.h"
 
-namespace densify {
+namespace axial::densify {
 namespace fs = std::filesystem;
 using axial::DepthMap;
 
 namespace {
-
-// From this -v on, pictures of the maps of every stage are written, too.
-constexpr int kVerbosityOfStages = 5;
 
 // One round over all images. The files of a stage that is not the last have the stage's name in
 // their names, and are removed when the next stage is complete.
@@ -40,45 +37,45 @@ struct Stage {
 
 // Maps of the previous stage, always read from their files and never handed over in memory, because
 // a resumed run must see the same bytes.
-using MapCache = axial::SharedCache<DepthMap>;
+using MapCache = SharedCache<DepthMap>;
 
 // The data for matching one image. They must live while it runs.
 struct Task {
   std::vector<std::shared_ptr<const WorkImage>> pixels;  // of the reference, then of the sources
-  std::vector<axial::depth::MatchImage> views;           // in the order of `pixels`
-  std::vector<const axial::depth::MatchImage*> sources;
+  std::vector<depth::MatchImage> views;                  // in the order of `pixels`
+  std::vector<const depth::MatchImage*> sources;
   std::vector<Eigen::Vector3f> points;
-  axial::depth::MatchInput input;
+  depth::MatchInput input;
 };
 
 class DepthMapRun {
  public:
-  DepthMapRun(const Project& project, const Options& options, const MemoryPlan& plan,
+  DepthMapRun(const Project& project, const Settings& settings, const MemoryPlan& plan,
               const ExistingMaps& existing, ImageStore& images)
-      : project_(project), options_(options), plan_(plan), existing_(existing), images_(images) {
+      : project_(project), settings_(settings), plan_(plan), existing_(existing), images_(images) {
     add_stages();
   }
 
   void run() {
     const std::size_t first = first_incomplete_stage();
     if (first == stages_.size())
-      axial::log_info("All {} depth maps exist already", project_.references.size());
+      log_info("All {} depth maps exist already", project_.references.size());
     if (first > 0) compare(first - 1);
     for (std::size_t s = first; s < stages_.size(); ++s) {
       // Matching often frees and allocates large blocks but holds few of them; later stages hold
       // many.
-      if (!stages_[s].matches) axial::map_large_blocks();
+      if (!stages_[s].matches) map_large_blocks();
       run_stage(s);
       if (s == 0) compare(s);
       if (s > 0) remove_stage(s - 1);
-      if (s + 1 < stages_.size() && options_.parsed.common.verbosity >= kVerbosityOfStages) draw(s);
+      if (s + 1 < stages_.size() && settings_.pictures == Pictures::maps_of_every_stage) draw(s);
     }
-    if (options_.parsed.common.verbosity >= kVerbosityOfPictures) draw(stages_.size() - 1);
+    if (settings_.pictures != Pictures::none) draw(stages_.size() - 1);
   }
 
  private:
   fs::path path(std::size_t stage, std::size_t image) const {
-    fs::path file = depth_map_path(project_, options_, image);
+    fs::path file = depth_map_path(project_, settings_, image);
     if (stage + 1 < stages_.size()) file.replace_extension("." + stages_[stage].name + ".dmap");
     return file;
   }
@@ -90,9 +87,9 @@ class DepthMapRun {
   // Whether the file existed before this run: a stage asks before it writes.
   bool finished(std::size_t stage, std::size_t image) const {
     if (stage + 1 == stages_.size())
-      return existing_[image].origin == axial::io::DmapOrigin::ours &&
+      return existing_[image].origin == io::DmapOrigin::ours &&
              existing_[image].made_from == made_from(stage);
-    return axial::io::dmap_made_from(path(stage, image)) == made_from(stage);
+    return io::dmap_made_from(path(stage, image)) == made_from(stage);
   }
 
   std::size_t first_incomplete_stage() const {
@@ -117,40 +114,39 @@ class DepthMapRun {
           return map;
         },
         depths ? plan_.cached_depths : plan_.cached_maps);
-    const axial::ProgressSink progress = axial::console_progress(stages_[stage].title);
+    const ProgressSink progress = console_progress(stages_[stage].title);
     std::mutex mutex;
     std::size_t done = 0;
     std::size_t reused = 0;
     const std::vector<std::size_t>& references = project_.references;
-    axial::for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
+    for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
       const std::size_t image = references[i];
       const bool there = finished(stage, image);
-      if (!there)
-        axial::io::write_dmap(path(stage, image), stages_[stage].make(image), made_from(stage));
+      if (!there) io::write_dmap(path(stage, image), stages_[stage].make(image), made_from(stage));
       const std::lock_guard lock(mutex);
       if (there) ++reused;
       progress(++done, references.size());
     });
-    if (reused > 0) axial::log_info("{}: {} maps existed already", stages_[stage].title, reused);
+    if (reused > 0) log_info("{}: {} maps existed already", stages_[stage].title, reused);
     previous_.reset();
-    axial::return_freed_memory();
+    return_freed_memory();
   }
 
   DepthMap read_map(std::size_t stage, std::size_t image) const {
-    return axial::io::read_dmap(path(stage, image)).map;
+    return io::read_dmap(path(stage, image)).map;
   }
 
   // Called early, because later stages may take hours.
   void compare(std::size_t stage) const {
-    check_agreement(project_, options_, plan_, stage == 0,
+    check_agreement(project_, settings_, plan_, stage == 0,
                     [this, stage](std::size_t image) { return read_map(stage, image); });
   }
 
   void draw(std::size_t stage) const {
     const std::vector<std::size_t>& references = project_.references;
-    axial::for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
+    for_each_in_flight(references.size(), plan_.in_flight, [&](std::size_t i) {
       const fs::path file = path(stage, references[i]);
-      axial::io::write_dmap_pictures(file, axial::io::read_dmap(file).map);
+      io::write_dmap_pictures(file, io::read_dmap(file).map);
     });
   }
 
@@ -164,9 +160,9 @@ class DepthMapRun {
   }
 
   // The images of `list` that have depth maps of their own.
-  std::vector<std::size_t> with_maps(const std::vector<axial::ViewScore>& list) const {
+  std::vector<std::size_t> with_maps(const std::vector<ViewScore>& list) const {
     std::vector<std::size_t> images;
-    for (const axial::ViewScore& neighbour : list)
+    for (const ViewScore& neighbour : list)
       if (!project_.sources[neighbour.image].empty()) images.push_back(neighbour.image);
     return images;
   }
@@ -180,14 +176,14 @@ class DepthMapRun {
   std::unique_ptr<Task> task(std::size_t image) const {
     auto result = std::make_unique<Task>();
     add_view(*result, image);
-    for (const axial::ViewScore& source : project_.sources[image]) add_view(*result, source.image);
+    for (const ViewScore& source : project_.sources[image]) add_view(*result, source.image);
     for (std::size_t i = 1; i < result->views.size(); ++i)
       result->sources.push_back(&result->views[i]);
     for (const std::uint32_t point : project_.preparations[image].init_points)
       result->points.push_back(project_.scene.points[point].position);
     const cv::Mat1b& mask = result->pixels[0]->mask;
     result->input = {&result->views[0], result->sources, result->points,
-                     mask.empty() ? nullptr : &mask, options_.projection};
+                     mask.empty() ? nullptr : &mask, settings_.projection};
     return result;
   }
 
@@ -198,35 +194,33 @@ class DepthMapRun {
 
   DepthMap estimate(std::size_t image) const {
     const std::unique_ptr<Task> work = task(image);
-    const DepthMap map = axial::depth::estimate_depth_map(work->input, options_.matching);
-    return named(options_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
+    const DepthMap map = depth::estimate_depth_map(work->input, settings_.matching);
+    return named(settings_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
   }
 
   DepthMap refine(std::size_t image, int pass) const {
     const std::unique_ptr<Task> work = task(image);
-    const bool last = pass + 1 == options_.geometric_iterations;
+    const bool last = pass + 1 == settings_.geometric_iterations;
     std::vector<std::shared_ptr<const DepthMap>> held;
     std::vector<const DepthMap*> maps;
-    for (const axial::ViewScore& source : project_.sources[image]) {
+    for (const ViewScore& source : project_.sources[image]) {
       const bool has_map = !project_.sources[source.image].empty();
       held.push_back(has_map ? previous_->get(source.image) : nullptr);
       maps.push_back(held.back().get());
     }
-    const DepthMap map = axial::depth::refine_depth_map(work->input, read_map(stage_ - 1, image),
-                                                        maps, pass, last, options_.matching);
+    const DepthMap map = depth::refine_depth_map(work->input, read_map(stage_ - 1, image), maps,
+                                                 pass, last, settings_.matching);
     return named(last ? clean(map, *work, image) : map, image);
   }
 
   DepthMap clean(DepthMap map, const Task& task, std::size_t image) const {
-    map = axial::depth::remove_unconfirmed(map, task.views[0].grey,
-                                           axial::depth::border_pixels(task.input, map));
-    if (options_.postprocess & kSpeckles)
-      map = axial::depth::remove_speckles(map, options_.speckles);
-    if (options_.postprocess & kGaps) {
+    map = depth::remove_unconfirmed(map, task.views[0].grey, depth::border_pixels(task.input, map));
+    if (settings_.postprocess & kSpeckles) map = depth::remove_speckles(map, settings_.speckles);
+    if (settings_.postprocess & kGaps) {
       cv::Mat1b ignored;
       if (const cv::Mat1b mask = images_.mask(image); !mask.empty())
         cv::compare(mask, 0, ignored, cv::CMP_EQ);
-      map = axial::depth::fill_gaps(map, options_.gaps, ignored);
+      map = depth::fill_gaps(map, settings_.gaps, ignored);
     }
     return map;
   }
@@ -234,25 +228,25 @@ class DepthMapRun {
   DepthMap adjust(std::size_t image) const {
     std::vector<DepthMap> neighbours;
     for (const std::size_t neighbour : with_maps(project_.neighbours[image]))
-      if (neighbours.size() < axial::depth::AdjustOptions().max_neighbours)
+      if (neighbours.size() < depth::AdjustOptions().max_neighbours)
         neighbours.push_back(*previous_->get(neighbour));
-    return named(axial::depth::adjust_with_neighbours(*previous_->get(image), neighbours), image);
+    return named(depth::adjust_with_neighbours(*previous_->get(image), neighbours), image);
   }
 
   void add_stages() {
     stages_.push_back({"photometric", "Estimated depth maps",
                        [this](std::size_t image) { return estimate(image); }});
-    for (int pass = 0; pass < options_.geometric_iterations; ++pass)
+    for (int pass = 0; pass < settings_.geometric_iterations; ++pass)
       stages_.push_back({fmt::format("geometric{}", pass + 1),
                          fmt::format("Geometric-consistency pass {}", pass + 1),
                          [this, pass](std::size_t image) { return refine(image, pass); }});
-    if (options_.postprocess & kAdjust)
+    if (settings_.postprocess & kAdjust)
       stages_.push_back({"adjusted", "Adjusted depth maps",
                          [this](std::size_t image) { return adjust(image); }, false});
   }
 
   const Project& project_;
-  const Options& options_;
+  const Settings& settings_;
   const MemoryPlan& plan_;
   const ExistingMaps& existing_;
   ImageStore& images_;
@@ -263,14 +257,13 @@ class DepthMapRun {
 
 }  // namespace
 
-fs::path depth_map_path(const Project& project, const Options& options, std::size_t image) {
-  return options.parsed.common.working_folder /
-         fmt::format("depth{:04}.dmap", project.views[image].id);
+fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
+  return settings.working_folder / fmt::format("depth{:04}.dmap", project.views[image].id);
 }
 
-void make_depth_maps(const Project& project, const Options& options, const MemoryPlan& plan,
+void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, ImageStore& images) {
-  DepthMapRun(project, options, plan, existing, images).run();
+  DepthMapRun(project, settings, plan, existing, images).run();
 }
 
-}  // namespace densify
+}  // namespace axial::densify

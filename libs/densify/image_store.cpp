@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "image_store.h"
+#include "densify/image_store.h"
 
 #include <mutex>
 #include <opencv2/imgproc.hpp>
@@ -9,16 +9,16 @@
 #include "base/progress.h"
 #include "io/image.h"
 
-namespace densify {
+namespace axial::densify {
 namespace {
 
 cv::Mat1b load_mask(const View& view, int ignored_label, LabelCheck* check) {
-  const cv::Mat1w labels = axial::io::read_label_image(view.mask);
+  const cv::Mat1w labels = io::read_label_image(view.mask);
   if (check) check->add(labels);
-  axial::io::check_mask_shape(view.mask, labels.size(), view.file.size);
+  io::check_mask_shape(view.mask, labels.size(), view.file.size);
   const cv::Size size(view.camera.width, view.camera.height);
   cv::Mat1b mask;
-  cv::compare(axial::resized_labels(labels, size), ignored_label, mask, cv::CMP_NE);
+  cv::compare(resized_labels(labels, size), ignored_label, mask, cv::CMP_NE);
   return mask;
 }
 
@@ -33,18 +33,17 @@ void leave_out_transparent(const cv::Mat1b& opaque, cv::Size size, cv::Mat1b& ma
     cv::bitwise_and(mask, resized, mask);
 }
 
-WorkImage load(const Project& project, const Options& options, std::size_t image,
+WorkImage load(const Project& project, const Settings& settings, std::size_t image,
                LabelCheck& check) {
   const View& view = project.views[image];
   WorkImage result;
   const cv::Size size(view.camera.width, view.camera.height);
-  axial::io::Photograph photograph = axial::io::read_photograph(project.scene.images[image].path);
-  result.color =
-      axial::resized_image(axial::io::in_8_bits(photograph.pixels, project.bit_depth), size);
+  io::Photograph photograph = io::read_photograph(project.scene.images[image].path);
+  result.color = resized_image(io::in_8_bits(photograph.pixels, project.bit_depth), size);
   photograph.pixels.release();
   cv::cvtColor(result.color, result.grey, cv::COLOR_BGR2GRAY);
-  if (!needs_colors(options)) result.color.release();
-  result.mask = working_mask(view, photograph.opaque, options.ignore_mask_label, &check);
+  if (!needs_colors(settings)) result.color.release();
+  result.mask = working_mask(view, photograph.opaque, settings.ignore_mask_label, &check);
   return result;
 }
 
@@ -58,10 +57,11 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
   return mask;
 }
 
-ImageStore::ImageStore(const Project& project, const Options& options, std::size_t capacity)
+ImageStore::ImageStore(const Project& project, const Settings& settings, std::size_t capacity)
     : project_(project),
-      labels_(options.ignore_mask_label),
-      cache_([&](std::size_t image) { return load(project, options, image, labels_); }, capacity) {}
+      labels_(settings.ignore_mask_label),
+      cache_([&](std::size_t image) { return load(project, settings, image, labels_); }, capacity) {
+}
 
 cv::Mat1b ImageStore::mask(std::size_t image) {
   return project_.views[image].masked() ? get(image)->mask : cv::Mat1b();
@@ -69,11 +69,11 @@ cv::Mat1b ImageStore::mask(std::size_t image) {
 
 void ImageStore::check_all(std::size_t at_once) {
   const std::size_t count = project_.views.size();
-  const axial::ProgressSink progress = axial::console_progress("Read images");
+  const ProgressSink progress = console_progress("Read images");
   std::mutex reporting;
-  axial::FirstError error;
+  FirstError error;
   std::size_t done = 0;
-  axial::for_each_in_flight(count, at_once, [&](std::size_t i) {
+  for_each_in_flight(count, at_once, [&](std::size_t i) {
     const std::size_t image = count - 1 - i;
     if (project_.scene.images[image].calibrated) error.run(image, [&] { get(image); });
     const std::lock_guard lock(reporting);
@@ -83,4 +83,4 @@ void ImageStore::check_all(std::size_t at_once) {
   labels_.warn_if_absent(project_);
 }
 
-}  // namespace densify
+}  // namespace axial::densify

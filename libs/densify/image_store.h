@@ -6,14 +6,14 @@
 #include <opencv2/core.hpp>
 
 #include "base/shared_cache.h"
-#include "masks.h"
-#include "project.h"
+#include "densify/masks.h"
+#include "densify/project.h"
 
-namespace densify {
+namespace axial::densify {
 
 struct WorkImage {
   cv::Mat1b grey;
-  cv::Mat3b color;  // B G R; empty if the options need no colours
+  cv::Mat3b color;  // B G R; empty if the settings need no colours
   cv::Mat1b mask;   // empty, or non-zero where pixels are matched: from labels and alpha
 };
 
@@ -27,7 +27,7 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 // same image read it only once.
 class ImageStore {
  public:
-  ImageStore(const Project& project, const Options& options, std::size_t capacity);
+  ImageStore(const Project& project, const Settings& settings, std::size_t capacity);
 
   // Error for files that cannot be decoded, and for masks whose shape differs from their image's.
   std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
@@ -43,7 +43,7 @@ class ImageStore {
  private:
   const Project& project_;
   LabelCheck labels_;
-  axial::SharedCache<WorkImage> cache_;
+  SharedCache<WorkImage> cache_;
 };
 
-}  // namespace densify
+}  // namespace axial::densify

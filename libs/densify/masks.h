@@ -7,14 +7,14 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 
-#include "project.h"
+#include "densify/project.h"
 
-namespace densify {
+namespace axial::densify {
 
 // Sets View::mask of all calibrated images, if masks are used. Warns, in the order of the scene, of
-// images without a mask and of images with two candidate files. Error if --mask-path has no mask
-// for an image.
-void choose_masks(Project& project, const Options& options);
+// images without a mask and of images with two candidate files. Error if the mask folder has no
+// mask for an image.
+void choose_masks(Project& project, const Settings& settings);
 
 // Collects labels of masks to tell whether any mask has the label to ignore. Thread-safe.
 class LabelCheck {
@@ -34,4 +34,4 @@ class LabelCheck {
   std::bitset<65536> others_;
 };
 
-}  // namespace densify
+}  // namespace axial::densify

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "memory_plan.h"
+#include "densify/memory_plan.h"
 
 #include <algorithm>
 
-#include "agreement_check.h"
 #include "base/error.h"
 #include "base/huge_pages.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cloud_exports.h"
+#include "densify/agreement_check.h"
+#include "densify/cloud_exports.h"
+#include "densify/pinhole_export.h"
 #include "depth/filters.h"
 #include "depth/plane_map.h"
 #include "io/mvs_counts.h"
 #include "io/point_source.h"
-#include "pinhole_export.h"
 
-namespace densify {
+namespace axial::densify {
 namespace {
 
 constexpr std::size_t kMostCached = 48;
@@ -25,9 +25,8 @@ constexpr std::uint64_t kMegabyte = 1000 * 1000;
 // The program with its libraries, stacks, small blocks, and the portions of fusion.
 constexpr std::uint64_t kOnTop = 96 * kMegabyte;
 
-std::uint64_t cap_of(const Options& options) {
-  return options.max_memory > 0 ? options.max_memory * kMegabyte
-                                : axial::available_memory() / 10 * 7;
+std::uint64_t cap_of(const Settings& settings) {
+  return settings.max_memory > 0 ? settings.max_memory * kMegabyte : available_memory() / 10 * 7;
 }
 
 // The memory that a project holds for each image besides the scene: view, chosen neighbours,
@@ -38,11 +37,11 @@ std::uint64_t kept_of_images(std::uint64_t images) {
 }
 
 // The memory for the text of the housing and of the lenses while it is read.
-std::uint64_t side_files(const Options& options) {
+std::uint64_t side_files(const Settings& settings) {
   constexpr std::uint64_t kPerByte = 12;
   std::uint64_t bytes = 0;
   for (const std::filesystem::path& file :
-       {housing_file(options), axial::io::lenses_beside(options.input)}) {
+       {housing_file(settings), io::lenses_beside(settings.input)}) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes += size;
@@ -51,18 +50,18 @@ std::uint64_t side_files(const Options& options) {
 }
 
 // The memory of a scene before its views are scored.
-std::uint64_t kept_of(const axial::io::MvsCounts& counts, const Options& options) {
-  return counts.scene_bytes() + side_files(options) + kept_of_images(counts.images);
+std::uint64_t kept_of(const io::MvsCounts& counts, const Settings& settings) {
+  return counts.scene_bytes() + side_files(settings) + kept_of_images(counts.images);
 }
 
 // `bytes`: the peak while the scene is read and its views are scored.
-void require_memory_for_scene(std::uint64_t bytes, const Options& options) {
-  const std::uint64_t cap = cap_of(options), least = bytes + kOnTop;
+void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
+  const std::uint64_t cap = cap_of(settings), least = bytes + kOnTop;
   if (bytes > kOnTop && cap < least)
-    axial::fail(
+    fail(
         "--max-memory {}: {} MB are too little, this scene needs at least {} MB for reading and "
         "for scoring its views",
-        options.max_memory, cap / kMegabyte, least / kMegabyte + 1);
+        settings.max_memory, cap / kMegabyte, least / kMegabyte + 1);
 }
 
 // Memory [bytes] of the large data, for the largest image.
@@ -87,7 +86,7 @@ struct Counts {
   std::size_t matched = 0, adjusted = 0, fused = 0;
 };
 
-Counts count(const Project& project, const Options& options) {
+Counts count(const Project& project, const Settings& settings) {
   Counts counts;
   counts.images = project.scene.images.size();
   counts.references = project.references.size();
@@ -96,17 +95,17 @@ Counts count(const Project& project, const Options& options) {
     counts.fused = std::max(counts.fused, 1 + project.neighbours[image].size());
   }
   counts.fused = std::min(counts.fused, counts.references);
-  if (options.postprocess & kAdjust)
-    counts.adjusted = std::min(counts.fused, 1 + axial::depth::AdjustOptions().max_neighbours);
+  if (settings.postprocess & kAdjust)
+    counts.adjusted = std::min(counts.fused, 1 + depth::AdjustOptions().max_neighbours);
   return counts;
 }
 
-Sizes measure(const Project& project, const Options& options, const Counts& counts) {
+Sizes measure(const Project& project, const Settings& settings, const Counts& counts) {
   std::uint64_t pixels = 0, decode = 0;
   bool masks = false;
   Sizes sizes{};
   for (const View& view : project.views) {
-    if (!options.pinhole_export.empty())
+    if (!settings.pinhole_export.empty())
       sizes.exported = std::max(sizes.exported, bytes_to_resample(view));
     const auto area = [](std::int64_t width, std::int64_t height) {
       return static_cast<std::uint64_t>(width * height);
@@ -117,9 +116,9 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
     masks |= view.masked();
   }
   const std::uint64_t sources = counts.matched - 1;
-  const std::uint64_t colors = needs_colors(options) ? 3 : 0;
-  sizes.scene = axial::allocated_memory();
-  sizes.write_scene = axial::io::count_scene(project.scene).writing_bytes();
+  const std::uint64_t colors = needs_colors(settings) ? 3 : 0;
+  sizes.scene = allocated_memory();
+  sizes.write_scene = io::count_scene(project.scene).writing_bytes();
   sizes.decode = decode + 4 * pixels;
   sizes.image = (1 + (masks ? 1 : 0) + colors) * pixels;
   sizes.map = 20 * pixels;
@@ -127,9 +126,9 @@ Sizes measure(const Project& project, const Options& options, const Counts& coun
   sizes.read_map = 44 * pixels;
   // Planes of this level and the previous one, priors, the result and its filtered copies. For each
   // source: its pixels twice as words of 2 x 2 neighbours, and its depths.
-  constexpr std::uint64_t kPlane = sizeof(axial::depth::PlanePixel);
+  constexpr std::uint64_t kPlane = sizeof(depth::PlanePixel);
   sizes.match = (kPlane + kPlane / 4 + 8 + 60) * pixels +
-                sources * (12 * pixels + 2 * axial::HugePageAllocator<int>::kPage);
+                sources * (12 * pixels + 2 * HugePageAllocator<int>::kPage);
   // Rays and the result; for each neighbour its surface on the pixels of the map.
   if (counts.adjusted > 0) sizes.adjust = (24 + 20 + (counts.adjusted - 1) * 12) * pixels;
   sizes.fused = (20 + colors) * pixels;
@@ -171,7 +170,7 @@ std::size_t enlarged(std::size_t entries, std::uint64_t each, std::uint64_t spar
 
 MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t room) {
   MemoryPlan plan;
-  const std::size_t threads = axial::thread_count();
+  const std::size_t threads = thread_count();
   plan.in_flight = most(std::min(threads, counts.references), room,
                         [&](std::size_t k) { return least_for(sizes, counts, k); });
   const std::size_t images = counts.matched * plan.in_flight;
@@ -198,53 +197,53 @@ MemoryPlan share_out(const Sizes& sizes, const Counts& counts, std::uint64_t roo
 
 }  // namespace
 
-void require_memory_to_read(const Options& options) {
-  auto counts = axial::io::count_mvs(options.input);
+void require_memory_to_read(const Settings& settings) {
+  auto counts = io::count_mvs(settings.input);
   if (!counts) return;
   std::uint64_t reading = counts->reading_bytes();
-  if (!options.point_cloud.empty())
-    if (const auto cloud = axial::io::count_point_cloud(options.point_cloud, *counts)) {
+  if (!settings.point_cloud.empty())
+    if (const auto cloud = io::count_point_cloud(settings.point_cloud, *counts)) {
       reading = std::max(reading, cloud->reading_bytes);
-      if (!only_exports(options)) counts = cloud->scene;
+      if (!only_exports(settings)) counts = cloud->scene;
     }
-  const axial::ScoringMemory scoring =
-      axial::scoring_memory({counts->images, counts->points, counts->observations, 0});
-  const std::uint64_t kept = kept_of(*counts, options);
+  const ScoringMemory scoring =
+      scoring_memory({counts->images, counts->points, counts->observations, 0});
+  const std::uint64_t kept = kept_of(*counts, settings);
   require_memory_for_scene(
       std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()}),
-      options);
+      settings);
 }
 
-void require_memory_to_score(const axial::Scene& scene, const Options& options) {
-  axial::ScoringSize size = axial::scoring_size(scene, options.selection);
-  const axial::io::MvsCounts counts = axial::io::count_scene(scene);
+void require_memory_to_score(const Scene& scene, const Settings& settings) {
+  ScoringSize size = scoring_size(scene, settings.selection);
+  const io::MvsCounts counts = io::count_scene(scene);
   const auto needed = [&] {
-    const axial::ScoringMemory scoring = axial::scoring_memory(size);
-    axial::io::MvsCounts written = counts;
+    const ScoringMemory scoring = scoring_memory(size);
+    io::MvsCounts written = counts;
     written.set_view_scores(size.neighbours);
-    return kept_of(counts, options) + scoring.kept +
+    return kept_of(counts, settings) + scoring.kept +
            std::max(scoring.work, written.writing_bytes());
   };
-  if (needed() + kOnTop > cap_of(options))
-    size.neighbours = axial::count_neighbours(scene, options.selection);
-  require_memory_for_scene(needed(), options);
+  if (needed() + kOnTop > cap_of(settings))
+    size.neighbours = count_neighbours(scene, settings.selection);
+  require_memory_for_scene(needed(), settings);
 }
 
-MemoryPlan plan_memory(const Project& project, const Options& options) {
-  const Counts counts = count(project, options);
-  const Sizes sizes = measure(project, options, counts);
-  const std::uint64_t cap = cap_of(options);
+MemoryPlan plan_memory(const Project& project, const Settings& settings) {
+  const Counts counts = count(project, settings);
+  const Sizes sizes = measure(project, settings, counts);
+  const std::uint64_t cap = cap_of(settings);
   const std::uint64_t fixed = sizes.scene + kOnTop;
   const std::uint64_t least = fixed + least_for(sizes, counts, 1);
   if (cap < least)
-    axial::fail("--max-memory {}: {} MB are too little, this scene needs {} MB", options.max_memory,
-                cap / kMegabyte, least / kMegabyte + 1);
+    fail("--max-memory {}: {} MB are too little, this scene needs {} MB", settings.max_memory,
+         cap / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(sizes, counts, cap - fixed);
-  axial::log_details(
+  log_details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",
       cap / kMegabyte, least / kMegabyte + 1, plan.in_flight, plan.cached_images,
       plan.cached_depths, plan.cached_maps, plan.fused_maps);
   return plan;
 }
 
-}  // namespace densify
+}  // namespace axial::densify

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shares out the memory that --max-memory allows. The plan affects how much is done at a time and
+// Shares out the memory that max_memory allows. The plan affects how much is done at a time and
 // how much is cached, but never the result.
 #pragma once
 
 #include <cstddef>
 
-#include "project.h"
+#include "densify/project.h"
 
-namespace densify {
+namespace axial::densify {
 
 // Error that names --max-memory, its value and the least necessary value if the scene of
-// options.input is too large to be read and its views scored. The estimate uses the scene's counts,
-// before the scene is read. Small scenes that need less than the program itself pass here;
+// settings.input is too large to be read and its views scored. The estimate uses the scene's
+// counts, before the scene is read. Small scenes that need less than the program itself pass here;
 // plan_memory then reports the whole need.
-void require_memory_to_read(const Options& options);
+void require_memory_to_read(const Settings& settings);
 
 // The same for a scene that was read, including its lists of neighbours before they are made.
-void require_memory_to_score(const axial::Scene& scene, const Options& options);
+void require_memory_to_score(const Scene& scene, const Settings& settings);
 
 struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
@@ -34,6 +34,6 @@ struct MemoryPlan {
 // order, where more entries hardly help, and the memory of a run must not grow with the number of
 // images. Error that names --max-memory, its value and the necessary value if not even one image at
 // a time fits, or if the scene does not fit while it is written (when no images are cached).
-MemoryPlan plan_memory(const Project& project, const Options& options);
+MemoryPlan plan_memory(const Project& project, const Settings& settings);
 
-}  // namespace densify
+}  // namespace axial::densify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pinhole_export.h"
+#include "densify/pinhole_export.h"
 
 #include <algorithm>
 #include <mutex>
@@ -12,9 +12,10 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "cloud/pinhole_resampling.h"
-#include "cloud_exports.h"
-#include "depth_stage.h"
-#include "image_store.h"
+#include "densify/cloud_exports.h"
+#include "densify/depth_stage.h"
+#include "densify/image_store.h"
+#include "densify/pinhole_folder.h"
 #include "io/colmap_export.h"
 #include "io/dmap.h"
 #include "io/geo_offset.h"
@@ -24,28 +25,27 @@
 #include "io/mvs.h"
 #include "io/ply.h"
 #include "io/written_files.h"
-#include "pinhole_folder.h"
 #include "scene/resolution.h"
 
-namespace densify {
+namespace axial::densify {
 namespace fs = std::filesystem;
 
 namespace {
 
 struct Exported {
-  axial::cloud::PinholeView view;  // at the resolution of the photograph
-  double exact = 0;                // share of pixels with the label kExact
+  cloud::PinholeView view;  // at the resolution of the photograph
+  double exact = 0;         // share of pixels with the label kExact
 };
 
 class Export {
  public:
-  Export(Project& project, const Options& options, const MemoryPlan& plan,
+  Export(Project& project, const Settings& settings, const MemoryPlan& plan,
          const ExistingMaps& existing)
       : project_(project),
-        options_(options),
+        settings_(settings),
         plan_(plan),
         existing_(existing),
-        photographs_(axial::io::common_image_folder(project.scene)),
+        photographs_(io::common_image_folder(project.scene)),
         exported_(project.scene.images.size()),
         is_exported_(project.scene.images.size(), false) {
     for (const std::size_t image : project.references) is_exported_[image] = true;
@@ -53,13 +53,13 @@ class Export {
   }
 
   void run(const fs::path& ply) {
-    axial::write_folder(options_.pinhole_export, [&](const fs::path& folder) {
+    write_folder(settings_.pinhole_export, [&](const fs::path& folder) {
       folder_ = fs::absolute(folder);
       export_images();
       export_cloud(ply);
       export_scene();
       export_marker();
-      remove_earlier_export(options_.pinhole_export, folder_);
+      remove_earlier_export(settings_.pinhole_export, folder_);
     });
     report();
   }
@@ -84,74 +84,72 @@ class Export {
     return folder_ / "images" / exported_name(project_.scene.images[image], photographs_);
   }
 
-  axial::DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
+  DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
     cv::Mat1b mask;
-    if (!options_.make_maps)
-      mask = working_mask(project_.views[image], opaque, options_.ignore_mask_label);
-    return read_final_map(project_, options_, existing_, image, mask);
+    if (!settings_.make_maps)
+      mask = working_mask(project_.views[image], opaque, settings_.ignore_mask_label);
+    return read_final_map(project_, settings_, existing_, image, mask);
   }
 
-  // The resolution at which OpenMVS, with this run's options, would work on the pinhole image.
-  cv::Size map_size(const axial::CameraModel& pinhole, std::size_t image) const {
-    if (options_.make_maps)
-      return axial::working_size(pinhole.width, pinhole.height, options_.resolution);
+  // The resolution at which OpenMVS, with this run's settings, would work on the pinhole image.
+  cv::Size map_size(const CameraModel& pinhole, std::size_t image) const {
+    if (settings_.make_maps)
+      return working_size(pinhole.width, pinhole.height, settings_.resolution);
     const View& view = project_.views[image];
     const double scale = static_cast<double>(view.camera.width) / view.file.size.width;
     return {std::max(1, cvRound(scale * pinhole.width)),
             std::max(1, cvRound(scale * pinhole.height))};
   }
 
-  void export_map(std::size_t image, axial::DepthMap map, const axial::cloud::PinholeView& view,
+  void export_map(std::size_t image, DepthMap map, const cloud::PinholeView& view,
                   const cv::Mat1f& surface) const {
-    map = axial::cloud::resampled(map, view, surface);
+    map = cloud::resampled(map, view, surface);
     map.image_path = image_file(image).string();
-    axial::io::write_dmap(folder_ / depth_map_path(project_, options_, image).filename(), map,
-                          made_from());
+    io::write_dmap(folder_ / depth_map_path(project_, settings_, image).filename(), map,
+                   made_from());
   }
 
   std::string made_from() const { return project_.fingerprint + " as a pinhole's"; }
 
-  void write_image(std::size_t image, const axial::cloud::PinholeImage& pinhole) {
+  void write_image(std::size_t image, const cloud::PinholeImage& pinhole) {
     constexpr int kQuality = 98;  // the image is compressed a second time: little loss
     const fs::path file = image_file(image);
-    if (axial::is_jpeg_name(file))
-      axial::io::write_jpeg(file, pinhole.color, kQuality);
+    if (is_jpeg_name(file))
+      io::write_jpeg(file, pinhole.color, kQuality);
     else
-      axial::io::write_png(file, pinhole.color);
-    axial::io::write_png(axial::io::mask_beside(file), pinhole.label);
-    const int exact = cv::countNonZero(pinhole.label == axial::cloud::kExact);
+      io::write_png(file, pinhole.color);
+    io::write_png(io::mask_beside(file), pinhole.label);
+    const int exact = cv::countNonZero(pinhole.label == cloud::kExact);
     exported_[image].exact = exact / static_cast<double>(pinhole.label.total());
   }
 
   void export_image(std::size_t image) {
-    const axial::SceneImage& from = project_.scene.images[image];
-    axial::io::Photograph photograph = axial::io::read_photograph(from.path);
-    const cv::Mat3b color = axial::io::in_8_bits(photograph.pixels, project_.bit_depth);
+    const SceneImage& from = project_.scene.images[image];
+    io::Photograph photograph = io::read_photograph(from.path);
+    const cv::Mat3b color = io::in_8_bits(photograph.pixels, project_.bit_depth);
     photograph.pixels.release();
-    const axial::CameraModel camera = from.camera.resized(color.cols, color.rows);
-    const axial::cloud::PinholeView view = axial::cloud::pinhole_for(camera, near_, far_);
+    const CameraModel camera = from.camera.resized(color.cols, color.rows);
+    const cloud::PinholeView view = cloud::pinhole_for(camera, near_, far_);
     exported_[image].view = view;
-    axial::DepthMap map = load_map(image, photograph.opaque);
-    const cv::Mat1f surface = axial::cloud::render_surface(map, view);
+    DepthMap map = load_map(image, photograph.opaque);
+    const cv::Mat1f surface = cloud::render_surface(map, view);
     const cv::Size size = map_size(view.camera, image);
-    const axial::cloud::PinholeView small = view.resized(size.width, size.height);
-    const cv::Mat1f coarse = axial::cloud::render_surface(map, small);
+    const cloud::PinholeView small = view.resized(size.width, size.height);
+    const cv::Mat1f coarse = cloud::render_surface(map, small);
     export_map(image, std::move(map), small, coarse);
-    const cv::Mat1f guess =
-        axial::cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
-    write_image(image,
-                axial::cloud::resampled(color, photograph.opaque, camera, view, surface, guess));
+    const cv::Mat1f guess = cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
+    write_image(image, cloud::resampled(color, photograph.opaque, camera, view, surface, guess));
   }
 
   void export_images() {
     for (const std::size_t image : project_.references)
-      axial::make_folder(image_file(image).parent_path());
+      make_folder(image_file(image).parent_path());
     const std::size_t count = project_.references.size();
-    const axial::ProgressSink progress = axial::console_progress("Exported pinhole images");
+    const ProgressSink progress = console_progress("Exported pinhole images");
     std::mutex reporting;
-    axial::FirstError error;
+    FirstError error;
     std::size_t done = 0;
-    axial::for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
+    for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
       error.run(i, [&] { export_image(project_.references[i]); });
       const std::lock_guard lock(reporting);
       progress(++done, count);
@@ -162,47 +160,46 @@ class Export {
   // Writes float positions in the scene's frame, in which its poses are.
   void export_cloud(const fs::path& ply) const {
     const fs::path file = folder_ / "scene.ply";
-    if (options_.double_precision)
-      axial::io::write_cloud_ply(file, axial::io::read_cloud_ply(ply, project_.frame), true,
-                                 {project_.frame, false});
+    if (settings_.double_precision)
+      io::write_cloud_ply(file, io::read_cloud_ply(ply, project_.frame), true,
+                          {project_.frame, false});
     else
       fs::copy_file(ply, file);
   }
 
-  axial::SceneImage exported_scene_image(std::size_t image) const {
-    axial::SceneImage result = project_.scene.images[image];
+  SceneImage exported_scene_image(std::size_t image) const {
+    SceneImage result = project_.scene.images[image];
     result.calibrated = is_exported_[image];
     result.neighbours.clear();
     result.mask_path.clear();
     result.port_name.clear();
     if (!result.calibrated) return result;
-    const axial::cloud::PinholeView& view = exported_[image].view;
+    const cloud::PinholeView& view = exported_[image].view;
     result.path = image_file(image).string();
-    result.mask_path = axial::io::mask_beside(result.path).string();
+    result.mask_path = io::mask_beside(result.path).string();
     result.camera = view.camera;
     result.pose = view.pose(result.pose);
     const auto nearer = static_cast<float>(view.centre.z());
     result.min_depth -= nearer, result.average_depth -= nearer, result.max_depth -= nearer;
-    for (const axial::ViewScore& neighbour : project_.scene.images[image].neighbours)
+    for (const ViewScore& neighbour : project_.scene.images[image].neighbours)
       if (is_exported_[neighbour.image]) result.neighbours.push_back(neighbour);
     return result;
   }
 
   void export_scene() {
-    axial::Scene& scene = project_.scene;
-    axial::Scene exported;
+    Scene& scene = project_.scene;
+    Scene exported;
     for (std::size_t i = 0; i < scene.images.size(); ++i)
       exported.images.push_back(exported_scene_image(i));
     exported.region = scene.region;
     exported.points = std::move(scene.points);
     exported.point_normals = std::move(scene.point_normals);
     exported.point_colors = std::move(scene.point_colors);
-    for (axial::SparsePoint& point : exported.points)
-      std::erase_if(point.views,
-                    [&](const axial::SparseView& view) { return !is_exported_[view.image]; });
+    for (SparsePoint& point : exported.points)
+      std::erase_if(point.views, [&](const SparseView& view) { return !is_exported_[view.image]; });
     keep_points(exported, [&](std::size_t i) { return !exported.points[i].views.empty(); });
-    axial::io::write_mvs(folder_ / "scene.mvs", exported, folder_);
-    axial::io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame);
+    io::write_mvs(folder_ / "scene.mvs", exported, folder_);
+    io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame);
   }
 
   void export_marker() const {
@@ -216,11 +213,11 @@ class Export {
            {"centre_in_camera_m", {as.view.centre.x(), as.view.centre.y(), as.view.centre.z()}},
            {"exact_share", as.exact}});
     }
-    axial::io::write_json(folder_ / kPinholeMarker, {{"version", 1},
-                                                     {"made_from", made_from()},
-                                                     {"scene", options_.input.string()},
-                                                     {"images", images},
-                                                     {"files", axial::io::list_files(folder_)}});
+    io::write_json(folder_ / kPinholeMarker, {{"version", 1},
+                                              {"made_from", made_from()},
+                                              {"scene", settings_.input.string()},
+                                              {"images", images},
+                                              {"files", io::list_files(folder_)}});
   }
 
   void report() const {
@@ -232,18 +229,18 @@ class Export {
     }
     const std::size_t count = project_.references.size();
     if (cut > 0)
-      axial::log_warning(
+      log_warning(
           "--pinhole-export: {} of {} images have a wider field of view than a pinhole can show: "
           "their edges are cut off",
           cut, count);
-    axial::log_info(
+    log_info(
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",
-        options_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
+        settings_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
   }
 
   Project& project_;
-  const Options& options_;
+  const Settings& settings_;
   const MemoryPlan& plan_;
   const ExistingMaps& existing_;
   fs::path photographs_, folder_;
@@ -266,9 +263,9 @@ std::uint64_t bytes_to_resample(const View& view) {
   return images + kMaps * area({view.camera.width, view.camera.height});
 }
 
-void export_pinholes(Project& project, const Options& options, const MemoryPlan& plan,
+void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, const fs::path& ply) {
-  if (!options.pinhole_export.empty()) Export(project, options, plan, existing).run(ply);
+  if (!settings.pinhole_export.empty()) Export(project, settings, plan, existing).run(ply);
 }
 
-}  // namespace densify
+}  // namespace axial::densify

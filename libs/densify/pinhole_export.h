@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --pinhole-export: the finished reconstruction in a form for OpenMVS's later programs, with every
-// photograph and depth map resampled to a pinhole camera.
+// The finished reconstruction in a form for OpenMVS's later programs, with every photograph and depth
+// map resampled to a pinhole camera.
 #pragma once
 
-#include "existing_maps.h"
-#include "memory_plan.h"
-#include "project.h"
+#include "densify/existing_maps.h"
+#include "densify/memory_plan.h"
+#include "densify/project.h"
 
-namespace densify {
+namespace axial::densify {
 
 // An upper bound of the memory for resampling an image [bytes].
 std::uint64_t bytes_to_resample(const View& view);
@@ -18,8 +18,9 @@ std::uint64_t bytes_to_resample(const View& view);
 //   scene.mvs                           images with their indices; without a map: uncalibrated
 //   scene.ply                           the cloud `ply`, as float in the scene's frame
 //   pinhole_export.json                 facts about the resampling, and the list of written files
-// Moves the sparse points out of the project's scene. Does nothing without the option.
-void export_pinholes(Project& project, const Options& options, const MemoryPlan& plan,
+// Moves the sparse points out of the project's scene. Does nothing without
+// Settings::pinhole_export.
+void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, const std::filesystem::path& ply);
 
-}  // namespace densify
+}  // namespace axial::densify
