@@ -49,6 +49,15 @@ WorkImage load(const Project& project, const Settings& settings, std::size_t ima
 
 }  // namespace
 
+std::uint64_t bytes_needed(const WorkImageSize& size) {
+  return (1 + (size.mask ? 1 : 0) + (size.color ? 3 : 0)) * size.pixels;
+}
+
+std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels) {
+  // Colours and grey levels at the working resolution.
+  return decode + (3 + 1) * pixels;
+}
+
 cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
                        LabelCheck* check) {
   cv::Mat1b mask;

@@ -2,6 +2,7 @@
 // The pixels of the images at their working resolution, read when they are needed.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -16,6 +17,19 @@ struct WorkImage {
   cv::Mat3b color;  // B G R; empty if the settings need no colours
   cv::Mat1b mask;   // empty, or non-zero where pixels are matched: from labels and alpha
 };
+
+// The sizes on which the memory of a WorkImage depends.
+struct WorkImageSize {
+  std::uint64_t pixels = 0;
+  bool mask = false, color = false;
+};
+
+// The memory [bytes] of a WorkImage.
+std::uint64_t bytes_needed(const WorkImageSize& size);
+
+// An upper bound of the memory [bytes] while ImageStore reads an image, without the WorkImage.
+// `decode`: of the photograph (io/image.h). `pixels`: of the WorkImage.
+std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels);
 
 // The WorkImage::mask of an image, at the size of `view.camera`. `opaque`: non-zero where pixels
 // are opaque (empty: no alpha). `check` collects the labels; it may be null. Error for a mask whose

@@ -4,19 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "densify/project.h"
+#include "densify/stage_bytes.h"
 
 namespace axial::densify {
-
-// Error that names --max-memory, its value and the least necessary value if the scene of
-// settings.input is too large to be read and its views scored. The estimate uses the scene's
-// counts, before the scene is read. Small scenes that need less than the program itself pass here;
-// plan_memory then reports the whole need.
-void require_memory_to_read(const Settings& settings);
-
-// The same for a scene that was read, including its lists of neighbours before they are made.
-void require_memory_to_score(const Scene& scene, const Settings& settings);
 
 struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
@@ -26,7 +19,7 @@ struct MemoryPlan {
   std::size_t cached_maps = 0;    // whole maps of the previous stage
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
-  std::size_t exports = 1;        // images resampled at the same time by --pinhole-export
+  std::size_t exports = 1;        // images resampled at the same time by the pinhole export
 };
 
 // The plan for a project as load_project returns it. It fits the project's largest image and
@@ -35,5 +28,14 @@ struct MemoryPlan {
 // images. Error that names --max-memory, its value and the necessary value if not even one image at
 // a time fits, or if the scene does not fit while it is written (when no images are cached).
 MemoryPlan plan_memory(const Project& project, const Settings& settings);
+
+// The memory [bytes] besides the scene of a run that works on `in_flight` images at a time and
+// caches nothing more than these need.
+std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists, std::size_t in_flight);
+
+// The plan for `room` bytes besides the scene, and for at most `threads` images at a time.
+// Precondition: `room` is at least least_bytes() of one image.
+MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uint64_t room,
+                     std::size_t threads);
 
 }  // namespace axial::densify

@@ -251,7 +251,7 @@ class Export {
 
 }  // namespace
 
-std::uint64_t bytes_to_resample(const View& view) {
+std::uint64_t bytes_needed_to_resample(const View& view) {
   const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
   const std::uint64_t photograph = area(view.file.size);
   // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
@@ -259,8 +259,9 @@ std::uint64_t bytes_to_resample(const View& view) {
   const std::uint64_t images =
       std::max<std::uint64_t>(view.file.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
   // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
-  constexpr std::uint64_t kMaps = 20 + 2 * (20 + 44 + 8 + 8);
-  return images + kMaps * area({view.camera.width, view.camera.height});
+  const std::uint64_t pixels = area({view.camera.width, view.camera.height});
+  const std::uint64_t pinhole = bytes_of_map(pixels) + io::dmap_bytes_needed(pixels) + 16 * pixels;
+  return images + bytes_of_map(pixels) + 2 * pinhole;
 }
 
 void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The finished reconstruction in a form for OpenMVS's later programs, with every photograph and depth
-// map resampled to a pinhole camera.
+// The finished reconstruction in a form for OpenMVS's later programs, with every photograph and
+// depth map resampled to a pinhole camera.
 #pragma once
 
 #include "densify/existing_maps.h"
@@ -10,7 +10,7 @@
 namespace axial::densify {
 
 // An upper bound of the memory for resampling an image [bytes].
-std::uint64_t bytes_to_resample(const View& view);
+std::uint64_t bytes_needed_to_resample(const View& view);
 
 // Writes the export folder atomically, in place of an earlier export:
 //   images/NAME, images/NAME.mask.png   for every image with a depth map; labels of PinholeImage
