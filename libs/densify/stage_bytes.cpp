@@ -17,7 +17,6 @@ namespace axial::densify {
 
 ListLengths longest_lists(const Project& project, const Settings& settings) {
   ListLengths lists;
-  lists.images = project.scene.images.size();
   lists.references = project.references.size();
   for (const std::size_t image : project.references) {
     lists.matched = std::max(lists.matched, 1 + project.sources[image].size());

@@ -12,7 +12,7 @@ namespace axial::densify {
 
 // The lengths of the longest lists, each including the image itself.
 struct ListLengths {
-  std::size_t images = 0, references = 0;
+  std::size_t references = 0;
   std::size_t matched = 0;   // with its source views
   std::size_t adjusted = 0;  // with the neighbours of the adjust filter; 0: no such filter
   std::size_t fused = 0;     // with its neighbours that have maps

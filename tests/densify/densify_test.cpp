@@ -81,7 +81,7 @@ class Densify : public testing::Test {
     return settings_.working_folder / ("depth000" + std::to_string(image) + ".dmap");
   }
 
-  const test::TexturedScene floor_;
+  const test::TexturedScene floor_{.cell = 0.04};  // three pixels
   const fs::path folder_ = test::empty_folder();
   std::size_t points_ = 0;
   Settings settings_;
@@ -105,7 +105,8 @@ TEST_F(Densify, MakesACloudOnTheSurfaceAndReportsIt) {
   for (const Eigen::Vector3f& point : cloud.positions) {
     const Eigen::Vector3d place = point.cast<double>();
     const double depth = floor_.depth(Eigen::Vector3d::Zero(), place.normalized());
-    near += std::abs(place.norm() - depth) < 0.02 ? 1 : 0;  // three pixels of disparity: 0.04 m
+    // Half a pixel of disparity: 4 m^2 / (150 px * 0.25 m) / 2.
+    near += std::abs(place.norm() - depth) < 0.053 ? 1 : 0;
   }
   EXPECT_GT(near, cloud.size() * 9 / 10);
   EXPECT_EQ(io::read_mvs(settings_.output, settings_.working_folder).images.size(), 4u);
@@ -130,7 +131,7 @@ TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   use_folder("other");
   settings_.max_threads = 1;
-  settings_.max_memory = 400;
+  settings_.max_memory = 200;
   densify(settings_);
   EXPECT_EQ(read_file(folder_ / "other" / "dense.ply"), cloud);
 }
