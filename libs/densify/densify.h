@@ -35,8 +35,9 @@ struct Report {
 //   input and settings are used again (map_stages.h). The result has the same bytes, for any number
 //   of threads and any max_memory.
 // * Inputs are never changed. Output files appear when they are complete.
-// * Memory stays below max_memory and does not grow with the number of images, except for the
-//   scene, and for a cloud whose colours or normals are estimated from the whole cloud (value 1).
+// * Memory stays below max_memory and does not grow with the number of images, except for the scene
+//   and one bit per pixel in fusion. A cloud whose colours or normals are estimated from the whole
+//   cloud (value 1) is kept in additional memory.
 // * Progress, results and warnings are logged (base/log.h). `observer` is called once, before views
 //   are selected; it is not called for a point export.
 // * All threads of the process then share one heap (share_one_heap() in base/memory.h), and large
