@@ -18,8 +18,9 @@
 #include "base/log.h"
 #include "base/parse_number.h"
 
-namespace densify {
 namespace {
+
+using axial::densify::Settings;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -61,9 +62,9 @@ Setting point_inside_region(double& weight) {
           [&weight](double value) { weight = value < 0.5 ? 1.0 : kOutside; }};
 }
 
-std::vector<Setting> settings(Options& options) {
-  axial::ViewSelectionOptions& views = options.selection;
-  axial::depth::PatchMatchOptions& matching = options.matching;
+std::vector<Setting> entries(Settings& settings) {
+  axial::ViewSelectionOptions& views = settings.selection;
+  axial::depth::PatchMatchOptions& matching = settings.matching;
   return {setting("Min Views", views.min_views, 1, 1000),
           setting("Max Views", views.max_views, 1, 1000),
           setting("Min Views Trust Point", views.min_trusted_views, 1, 1000),
@@ -74,13 +75,13 @@ std::vector<Setting> settings(Options& options) {
           setting("Min Angle", views.min_angle, 0, 180, kDegree),
           setting("Optim Angle", views.optimal_angle, 0.1, 180, kDegree),
           setting("Max Angle", views.max_angle, 0, 180, kDegree),
-          setting("Depth Diff Threshold", options.fusion.depth_threshold, 1e-6, 1),
-          setting("Normal Diff Threshold", options.fusion.normal_threshold, 0, 180, kDegree),
+          setting("Depth Diff Threshold", settings.fusion.depth_threshold, 1e-6, 1),
+          setting("Normal Diff Threshold", settings.fusion.normal_threshold, 0, 180, kDegree),
           min_texture(matching.min_texture),
           setting("NCC Threshold Keep", matching.keep_cost, 0, 2, 1, true),
           setting("Estimation Geometric Weight", matching.geometric_weight, 0, 100, 1, true),
-          setting("Speckle Size", options.speckles.min_pixels, 0, 1e9, 1, true),
-          setting("Interpolate Gap Size", options.gaps.max_gap, 0, 1e6, 1, true)};
+          setting("Speckle Size", settings.speckles.min_pixels, 0, 1e9, 1, true),
+          setting("Interpolate Gap Size", settings.gaps.max_gap, 0, 1e6, 1, true)};
 }
 
 std::string shown(double value) {
@@ -133,8 +134,8 @@ bool is_decoration(std::string_view line) {
 
 class ConfigFile {
  public:
-  ConfigFile(std::string name, Options& options)
-      : name_(std::move(name)), options_(options), settings_(settings(options)) {}
+  ConfigFile(std::string name, Settings& settings)
+      : name_(std::move(name)), settings_(settings), entries_(entries(settings)) {}
 
   void read(std::string_view text) {
     text = axial::without_byte_order_mark(text);
@@ -169,7 +170,7 @@ class ConfigFile {
   void set(const std::string& title, std::string_view text) {
     if (titles_of_options().contains(title)) return list(of_options_, title);
     if (titles_without_effect().contains(title)) return list(without_effect_, title);
-    for (const Setting& setting : settings_) {
+    for (const Setting& setting : entries_) {
       if (title != setting.title) continue;
       const std::optional<double> value = axial::parse_finite<double>(text);
       if (!value)
@@ -199,31 +200,29 @@ class ConfigFile {
   }
 
   void note_what_maps_depend_on() {
-    Options defaults;
-    const std::vector<Setting> before = settings(defaults);
-    for (std::size_t i = 0; i < settings_.size(); ++i)
-      if (settings_[i].of_maps && settings_[i].get() != before[i].get())
-        options_.map_settings += fmt::format("{} {}\n", settings_[i].title, settings_[i].get());
+    Settings defaults;
+    const std::vector<Setting> before = entries(defaults);
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (entries_[i].of_maps && entries_[i].get() != before[i].get())
+        settings_.map_settings += fmt::format("{} {}\n", entries_[i].title, entries_[i].get());
   }
 
   std::string name_;
-  Options& options_;
-  std::vector<Setting> settings_;
+  Settings& settings_;
+  std::vector<Setting> entries_;
   std::size_t number_ = 0;
   std::string unknown_, without_effect_, of_options_;
 };
 
 }  // namespace
 
-void apply_dense_config(const std::filesystem::path& file, Options& options) {
+void apply_dense_config(const std::filesystem::path& file, Settings& settings) {
   std::error_code error;
   if (std::filesystem::exists(file, error))
-    return ConfigFile(file.string(), options).read(axial::read_file(file, 1 << 20));
+    return ConfigFile(file.string(), settings).read(axial::read_file(file, 1 << 20));
   std::string text;
-  for (const Setting& setting : settings(options))
+  for (const Setting& setting : entries(settings))
     text += fmt::format("{} = {}\n", setting.title, shown(setting.get()));
   axial::write_atomically(file, text);
   axial::log_info("{}: did not exist, written with the values in use", file.string());
 }
-
-}  // namespace densify

@@ -8,13 +8,12 @@
 #include "base/log.h"
 #include "base/unused_input.h"
 #include "base/version.h"
-#include "cloud_exports.h"
 #include "dense_config.h"
 #include "io/images/bit_depth.h"
 #include "without_effect.h"
 
-namespace densify {
 using axial::fail;
+using axial::densify::Settings;
 
 namespace {
 
@@ -47,19 +46,19 @@ std::vector<NotBuilt> not_built_hidden() {
           {"export-depth-maps-name", "", {""}}};
 }
 
-void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
+void declare_io(axial::OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
       .add("output-file,o", &raw.output, "scene and cloud to write (<input>_dense.mvs)")
-      .add_with_default("resolution-level", &options.resolution.level,
+      .add_with_default("resolution-level", &settings.resolution.level,
                         "how many times the images are halved before matching")
-      .add_with_default("max-resolution", &options.resolution.max,
+      .add_with_default("max-resolution", &settings.resolution.max,
                         "largest length of the longest side [px]")
-      .add_with_default("min-resolution", &options.resolution.min,
+      .add_with_default("min-resolution", &settings.resolution.min,
                         "the longest side is not halved below this [px]")
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images")
-      .add_with_default("ignore-mask-label", &options.ignore_mask_label,
+      .add_with_default("ignore-mask-label", &settings.ignore_mask_label,
                         "mask value to leave out; below 0: no masks (default with --mask-path: 0)")
       .add_with_default("output-precision", &raw.precision,
                         "precision of the cloud's positions: float, relative to the scene's offset "
@@ -69,52 +68,53 @@ void declare_io(axial::OptionList& list, Raw& raw, Options& options) {
            "cameras for OpenMVS's later programs")
       .add("report-file", &raw.report,
            "write the agreement of depth maps, sparse points and cameras to this file (.json)")
-      .add_with_default("remove-dmaps", &options.remove_dmaps, "remove the depth maps after fusion")
-      .add_with_default("overwrite-dmaps", &options.overwrite_dmaps,
+      .add_with_default("remove-dmaps", &settings.remove_dmaps,
+                        "remove the depth maps after fusion")
+      .add_with_default("overwrite-dmaps", &settings.overwrite_dmaps,
                         "overwrite depth maps of other programs in the working folder")
       .add_with_default(
-          "max-memory", &options.max_memory,
+          "max-memory", &settings.max_memory,
           "largest memory to use [MB] (0: 70 % of the free memory); --estimate-colors 1 and "
           "--estimate-normals 1 keep the whole cloud in additional memory");
 }
 
-void declare_matching(axial::OptionList& list, Options& options) {
-  list.add_with_default("sub-resolution-levels", &options.matching.sub_resolution_levels,
+void declare_matching(axial::OptionList& list, Settings& settings) {
+  list.add_with_default("sub-resolution-levels", &settings.matching.sub_resolution_levels,
                         "number of coarser levels that are matched first")
       .add_with_default(
-          "number-views", &options.number_views,
+          "number-views", &settings.number_views,
           "source views per image (0: all suitable views, at most 12; 1: the best view)")
-      .add_with_default("iters", &options.matching.iterations, "sweeps per resolution level")
-      .add_with_default("geometric-iters", &options.geometric_iterations,
+      .add_with_default("iters", &settings.matching.iterations, "sweeps per resolution level")
+      .add_with_default("geometric-iters", &settings.geometric_iterations,
                         "sweeps with geometric consistency")
-      .add_with_default("postprocess-dmaps", &options.postprocess,
+      .add_with_default("postprocess-dmaps", &settings.postprocess,
                         "sum of the depth map filters: 1 speckles, 2 gaps, 4 adjustment to the "
                         "neighbours' maps (OpenMVS's default is 7)");
 }
 
-void declare_fusion(axial::OptionList& list, Raw& raw, Options& options) {
+void declare_fusion(axial::OptionList& list, Raw& raw, Settings& settings) {
   list.add_with_default(
           "fusion-mode", &raw.fusion_mode,
           "0 depth maps and fusion, 1 depth maps only, -1 fusion of the existing depth maps in the "
           "working folder, also of other programs, without writing depth maps")
-      .add_with_default("number-views-fuse", &options.fusion.min_views,
+      .add_with_default("number-views-fuse", &settings.fusion.min_views,
                         "views that must agree on a point (below 2: merge without agreement); by "
                         "default 3, and 2 where no other depth map disagrees")
-      .add_with_default("estimate-colors", &options.estimate_colors,
+      .add_with_default("estimate-colors", &settings.estimate_colors,
                         "0 no, 1 from the nearest view, 2 from all views of a point")
-      .add_with_default("estimate-normals", &options.estimate_normals,
+      .add_with_default("estimate-normals", &settings.estimate_normals,
                         "0 no, 1 from the cloud, 2 from the depth maps")
-      .add_with_default("estimate-uncertainty", &options.fusion.errors,
+      .add_with_default("estimate-uncertainty", &settings.fusion.errors,
                         "also write each point's expected error [m] and confidence")
       .add_with_default("estimate-roi", &raw.estimate_roi,
                         "region of interest from cameras and points: 0 off, 1 on, 2 adaptive")
-      .add_with_default("roi-border", &options.roi_border,
+      .add_with_default("roi-border", &settings.roi_border,
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
-      .add_with_default("crop-to-roi", &options.crop_to_roi,
+      .add_with_default("crop-to-roi", &settings.crop_to_roi,
                         "crop the cloud to the region of interest");
 }
 
-void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
+void declare_points(axial::OptionList& list, Raw& raw, Settings& settings) {
   list.add("pointcloud-file,p", &raw.point_cloud,
            "PLY cloud with views that replaces the scene's sparse points")
       .add("view-neighbors-file", &raw.neighbour_lists,
@@ -123,13 +123,13 @@ void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
       .add("output-view-neighbors-file", &raw.neighbour_lists_output,
            "write a file of neighbours and quit")
       .add_with_default(
-          "filter-point-cloud", &options.filter_point_cloud,
+          "filter-point-cloud", &settings.filter_point_cloud,
           "below 0: write the points of the scene, or of -p, whose visibility is above this value "
           "to <output>_filtered.ply and .mvs, and quit; above 0: no effect")
-      .add_with_default("export-number-views", &options.export_number_views,
+      .add_with_default("export-number-views", &settings.export_number_views,
                         "N: write the points that N or more images see to <output>_<N>views.ply "
                         "and quit; -N: also write .mvs")
-      .add_with_default("estimate-scale", &options.estimate_scale,
+      .add_with_default("estimate-scale", &settings.estimate_scale,
                         "above 0: write the points and their sizes, this number of pixels in their "
                         "views, to <output>_scale.ply and quit")
       .add_with_default("tower-mode", &raw.tower_mode, "accepted and without effect")
@@ -137,8 +137,8 @@ void declare_points(axial::OptionList& list, Raw& raw, Options& options) {
            "OpenMVS's Densify.ini: settings that have no option; written if it does not exist");
 }
 
-void declare_camera(axial::OptionList& list, Raw& raw, Options& options) {
-  list.add_switch("refractive", &options.refractive,
+void declare_camera(axial::OptionList& list, Raw& raw, Settings& settings) {
+  list.add_switch("refractive", &settings.refractive,
                   "cameras are behind ports: require a housing file")
       .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
       .add_with_default("camera-model", &raw.camera_model,
@@ -183,49 +183,121 @@ void check_range(const std::string& name, T value, T low, T high) {
     fail("--{} {}: must be from {} to {}", name, value, low, high);
 }
 
-void check_values(const Options& options, const Raw& raw) {
-  check_range("resolution-level", options.resolution.level, 0u, 16u);
-  check_range("max-resolution", options.resolution.max, 16, 1 << 16);
-  check_range("min-resolution", options.resolution.min, 1, 1 << 16);
-  check_range("sub-resolution-levels", options.matching.sub_resolution_levels, 0, 8);
-  check_range("number-views", options.number_views, 0u, 32u);
-  check_range("iters", options.matching.iterations, 1, 60);
-  check_range("geometric-iters", options.geometric_iterations, 0, 20);
-  check_range("postprocess-dmaps", options.postprocess, 0u, 7u);
-  check_range("number-views-fuse", options.fusion.min_views, std::size_t{0}, std::size_t{255});
+void check_values(const Settings& settings, const Raw& raw) {
+  check_range("resolution-level", settings.resolution.level, 0u, 16u);
+  check_range("max-resolution", settings.resolution.max, 16, 1 << 16);
+  check_range("min-resolution", settings.resolution.min, 1, 1 << 16);
+  check_range("sub-resolution-levels", settings.matching.sub_resolution_levels, 0, 8);
+  check_range("number-views", settings.number_views, 0u, 32u);
+  check_range("iters", settings.matching.iterations, 1, 60);
+  check_range("geometric-iters", settings.geometric_iterations, 0, 20);
+  check_range("postprocess-dmaps", settings.postprocess, 0u, 7u);
+  check_range("number-views-fuse", settings.fusion.min_views, std::size_t{0}, std::size_t{255});
   if (raw.fusion_mode == -2)
     fail("--fusion-mode -2: disparity maps are not built; -1 fuses existing depth maps");
   check_range("fusion-mode", raw.fusion_mode, -1, 1);
-  check_range("estimate-colors", options.estimate_colors, 0u, 2u);
-  check_range("estimate-normals", options.estimate_normals, 0u, 2u);
+  check_range("estimate-colors", settings.estimate_colors, 0u, 2u);
+  check_range("estimate-normals", settings.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
-  check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  axial::io::check_bit_depth(options.bit_depth);
-  check_range("roi-border", options.roi_border, -1e6, 1e6);
-  check_range("export-number-views", options.export_number_views, -255, 255);
-  check_range("estimate-scale", options.estimate_scale, 0.0, 1e6);
-  check_range("filter-point-cloud", options.filter_point_cloud, -(1 << 30), 1 << 30);
+  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  axial::io::check_bit_depth(settings.bit_depth);
+  check_range("roi-border", settings.roi_border, -1e6, 1e6);
+  check_range("export-number-views", settings.export_number_views, -255, 255);
+  check_range("estimate-scale", settings.estimate_scale, 0.0, 1e6);
+  check_range("filter-point-cloud", settings.filter_point_cloud, -(1 << 30), 1 << 30);
   check_range("tower-mode", raw.tower_mode, -4, 4);
 }
 
 // Warns of valid options that have no effect.
-void warn_of_no_effect(const Options& options, const Raw& raw) {
+void warn_of_no_effect(const Settings& settings, const Raw& raw) {
   if (raw.tower_mode != 0)
     axial::log_warning(
         "--tower-mode {}: not built: as with 0, no points are added around a line of cameras",
         raw.tower_mode);
-  if (options.filter_point_cloud > 0)
+  if (settings.filter_point_cloud > 0)
     axial::log_warning(
         "--filter-point-cloud {}: has no effect, as in OpenMVS: only values below 0 filter, and "
         "they filter only an existing cloud (-p)",
-        options.filter_point_cloud);
+        settings.filter_point_cloud);
 }
 
-}  // namespace
+// The values of the options that are names.
+void take_choices(const Raw& raw, Settings& settings) {
+  using axial::densify::CameraChoice;
+  settings.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
+                                         {{"auto", CameraChoice::automatic},
+                                          {"pinhole", CameraChoice::pinhole},
+                                          {"flatport", CameraChoice::flat_port}});
+  settings.double_precision =
+      one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
+  settings.projection =
+      one_of<axial::ProjectionMethod>("projection", raw.projection,
+                                      {{"exact", axial::ProjectionMethod::exact},
+                                       {"line-search", axial::ProjectionMethod::line_search}});
+  settings.matching.warp = one_of<axial::depth::Warp>(
+      "warp", raw.warp,
+      {{"affine", axial::depth::Warp::affine}, {"homography", axial::depth::Warp::homography}});
+  if (settings.refractive && settings.camera == CameraChoice::pinhole)
+    fail("--refractive contradicts --camera-model pinhole");
+}
 
-Options parse_command_line(int argc, const char* const* argv) {
-  Options options;
-  Raw raw;
+void take_paths(const axial::CommonOptions& common, const Raw& raw, Settings& settings) {
+  const auto path = [&](const std::string& given) {
+    return axial::in_working_folder(common, given);
+  };
+  settings.working_folder = common.working_folder;
+  settings.input = path(raw.input);
+  settings.output = path(raw.output);
+  if (settings.output.empty())
+    settings.output =
+        settings.input.parent_path() / (settings.input.stem().string() + "_dense.mvs");
+  settings.output.replace_extension(".mvs");
+  settings.housing = path(raw.housing);
+  settings.point_cloud = path(raw.point_cloud);
+  settings.neighbour_lists = path(raw.neighbour_lists);
+  settings.neighbour_lists_output = path(raw.neighbour_lists_output);
+  settings.report = path(raw.report);
+  settings.mask_folder = path(raw.mask_path);
+  settings.pinhole_export = path(raw.pinhole_export);
+}
+
+// From -v 3 on, pictures of the depth maps are written beside them, as by OpenMVS. From -v 5 on,
+// pictures of the maps of every stage, too.
+axial::densify::Pictures pictures_of(int verbosity) {
+  using axial::densify::Pictures;
+  if (verbosity < 3) return Pictures::none;
+  return verbosity < 5 ? Pictures::final_maps : Pictures::maps_of_every_stage;
+}
+
+void check_pinhole_export(const Settings& settings) {
+  if (!settings.pinhole_export.empty() &&
+      (!settings.fuse || only_exports(settings) || !settings.neighbour_lists_output.empty()))
+    fail("--pinhole-export {}: needs a cloud, which this run does not make",
+         settings.pinhole_export.string());
+}
+
+// Fills the settings from the values of the options.
+void convert(const Raw& raw, Options& options) {
+  Settings& settings = options.settings;
+  const axial::CommonOptions& common = options.parsed.common;
+  if (const auto file = axial::in_working_folder(common, raw.dense_config); !file.empty()) {
+    apply_dense_config(file, settings);
+    settings.other_inputs.push_back(file);
+  }
+  take_paths(common, raw, settings);
+  if (!settings.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
+    settings.ignore_mask_label = 0;
+  take_choices(raw, settings);
+  settings.make_maps = raw.fusion_mode >= 0;
+  settings.fuse = raw.fusion_mode <= 0;
+  check_pinhole_export(settings);
+  settings.region = static_cast<axial::RegionMode>(raw.estimate_roi);
+  settings.fusion.two_if_undisputed = !axial::given(options.parsed, "number-views-fuse");
+  settings.pictures = pictures_of(common.verbosity);
+  settings.max_threads = common.max_threads;
+}
+
+axial::ProgramOptions described_program() {
   axial::ProgramOptions program{
       "DensifyPointCloud",
       "computes a dense point cloud from calibrated images, in air and under water",
@@ -233,66 +305,34 @@ Options parse_command_line(int argc, const char* const* argv) {
       ", and pictures of the depth maps in the same folder; 5 and above: also pictures of the "
       "depth maps of every stage"};
   program.version = axial::version_line(program.name);
-  declare_io(program.visible, raw, options);
-  axial::io::declare_bit_depth(program.visible, options.bit_depth);
-  declare_camera(program.visible, raw, options);
-  declare_matching(program.visible, options);
-  declare_fusion(program.visible, raw, options);
-  declare_points(program.visible, raw, options);
-  axial::UnusedInput::declare(program.visible, options.allow_missing);
+  return program;
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  Settings& settings = options.settings;
+  Raw raw;
+  axial::ProgramOptions program = described_program();
+  declare_io(program.visible, raw, settings);
+  axial::io::declare_bit_depth(program.visible, settings.bit_depth);
+  declare_camera(program.visible, raw, settings);
+  declare_matching(program.visible, settings);
+  declare_fusion(program.visible, raw, settings);
+  declare_points(program.visible, raw, settings);
+  axial::UnusedInput::declare(program.visible, settings.allow_missing);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);
   options.parsed = axial::parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
 
-  const axial::CommonOptions& common = options.parsed.common;
   refuse_not_built(visible);
   refuse_not_built(hidden);
-  check_values(options, raw);
-  warn_of_no_effect(options, raw);
-  options.dense_config = axial::in_working_folder(common, raw.dense_config);
-  if (!options.dense_config.empty()) apply_dense_config(options.dense_config, options);
-  options.input = axial::in_working_folder(common, raw.input);
-  options.output = axial::in_working_folder(common, raw.output);
-  if (options.output.empty())
-    options.output = options.input.parent_path() / (options.input.stem().string() + "_dense.mvs");
-  options.output.replace_extension(".mvs");
-  options.housing = axial::in_working_folder(common, raw.housing);
-  options.point_cloud = axial::in_working_folder(common, raw.point_cloud);
-  options.neighbour_lists = axial::in_working_folder(common, raw.neighbour_lists);
-  options.neighbour_lists_output = axial::in_working_folder(common, raw.neighbour_lists_output);
-  options.report = axial::in_working_folder(common, raw.report);
-  options.mask_folder = axial::in_working_folder(common, raw.mask_path);
-  if (!options.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
-    options.ignore_mask_label = 0;
-  options.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
-                                        {{"auto", CameraChoice::automatic},
-                                         {"pinhole", CameraChoice::pinhole},
-                                         {"flatport", CameraChoice::flat_port}});
-  options.double_precision =
-      one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
-  options.projection =
-      one_of<axial::ProjectionMethod>("projection", raw.projection,
-                                      {{"exact", axial::ProjectionMethod::exact},
-                                       {"line-search", axial::ProjectionMethod::line_search}});
-  options.matching.warp = one_of<axial::depth::Warp>(
-      "warp", raw.warp,
-      {{"affine", axial::depth::Warp::affine}, {"homography", axial::depth::Warp::homography}});
-  if (options.refractive && options.camera == CameraChoice::pinhole)
-    fail("--refractive contradicts --camera-model pinhole");
-  options.make_maps = raw.fusion_mode >= 0;
-  options.fuse = raw.fusion_mode <= 0;
-  options.pinhole_export = axial::in_working_folder(common, raw.pinhole_export);
-  if (!options.pinhole_export.empty() &&
-      (!options.fuse || only_exports(options) || !options.neighbour_lists_output.empty()))
-    fail("--pinhole-export {}: needs a cloud, which this run does not make",
-         options.pinhole_export.string());
-  options.region = static_cast<axial::RegionMode>(raw.estimate_roi);
-  options.fusion.normals = options.estimate_normals == 2;
-  options.fusion.two_if_undisputed = !axial::given(options.parsed, "number-views-fuse");
+  check_values(settings, raw);
+  warn_of_no_effect(settings, raw);
+  convert(raw, options);
   warn_of_options_without_effect(options);
   return options;
 }
-
-}  // namespace densify

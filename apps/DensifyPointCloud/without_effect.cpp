@@ -6,11 +6,10 @@
 #include <string>
 
 #include "base/log.h"
-#include "cloud_exports.h"
 
-namespace densify {
 namespace {
 
+using axial::densify::Settings;
 using Names = std::initializer_list<const char*>;
 
 constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
@@ -38,13 +37,13 @@ void warn_of(const Options& options, Names names, const std::string& cause) {
 }
 
 // If several exports are asked for, the first one is made.
-std::string export_that_is_made(const Options& options) {
-  if (options.filter_point_cloud < 0) return "filter-point-cloud";
-  return options.export_number_views != 0 ? "export-number-views" : "estimate-scale";
+std::string export_that_is_made(const Settings& settings) {
+  if (settings.filter_point_cloud < 0) return "filter-point-cloud";
+  return settings.export_number_views != 0 ? "export-number-views" : "estimate-scale";
 }
 
 void warn_of_rival_exports(const Options& options) {
-  const std::string made = export_that_is_made(options);
+  const std::string made = export_that_is_made(options.settings);
   const std::string with = "with --" + made + ", which writes existing points";
   if (made == "filter-point-cloud")
     warn_of(options, {"export-number-views", "estimate-scale"}, with);
@@ -56,28 +55,27 @@ void warn_of_rival_exports(const Options& options) {
 }  // namespace
 
 void warn_of_options_without_effect(const Options& options) {
-  if (options.camera == CameraChoice::pinhole)
+  const Settings& settings = options.settings;
+  if (settings.camera == axial::densify::CameraChoice::pinhole)
     warn_of(options, {"housing"}, "with --camera-model pinhole");
-  if (only_exports(options)) return warn_of_rival_exports(options);
-  if (!options.neighbour_lists_output.empty()) {
+  if (only_exports(settings)) return warn_of_rival_exports(options);
+  if (!settings.neighbour_lists_output.empty()) {
     for (const Names& names : {kMatching, kFusion})
       warn_of(options, names, "with --output-view-neighbors-file, which matches no images");
     return;
   }
-  if (!options.make_maps)
+  if (!settings.make_maps)
     for (const Names& names : {kMatching, kMapSize})
       warn_of(options, names, "with --fusion-mode -1, which uses depth maps unchanged");
-  if (!options.fuse) warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
+  if (!settings.fuse)
+    warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
 }
 
-void warn_of_options_without_effect(const Project& project, const Options& options) {
-  if (!project.housing) warn_of(options, {"projection"}, "in air: no image is behind a port");
-  if (!project.scene.region)
+void warn_of_options_without_effect(const Options& options,
+                                    const axial::densify::SceneFacts& facts) {
+  if (facts.own_region)
+    warn_of(options, {"estimate-roi"}, "on a scene that already has a region of interest");
+  if (!facts.behind_ports) warn_of(options, {"projection"}, "in air: no image is behind a port");
+  if (!facts.region)
     warn_of(options, {"roi-border"}, "without a region of interest (see --estimate-roi)");
 }
-
-void warn_of_region_of_scene(const Options& options) {
-  warn_of(options, {"estimate-roi"}, "on a scene that already has a region of interest");
-}
-
-}  // namespace densify

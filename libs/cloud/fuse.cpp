@@ -175,4 +175,10 @@ PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
   return cloud;
 }
 
+std::uint64_t bytes_needed(const FusionSize& size) {
+  // One bit per pixel of each view tells whether the pixel is used.
+  const std::uint64_t used = size.views * size.pixels / 8;
+  return used + size.maps * ((20 + (size.colors ? 3 : 0)) * size.pixels);
+}
+
 }  // namespace axial::cloud

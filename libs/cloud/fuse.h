@@ -50,9 +50,9 @@ struct FuseOptions {
   bool normals = true;                                        // fill PointCloud::normals
   bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
-  // Limits of memory; the cloud does not depend on them. max_maps: maps in memory at the same time
-  // (20 bytes per pixel, 23 with colours), but never fewer than a view and its neighbours.
-  // max_loads: calls of the providers at the same time.
+  // Limits of memory (see bytes_needed); the cloud does not depend on them. max_maps: maps in
+  // memory at the same time, but never fewer than a view and its neighbours. max_loads: calls of
+  // the providers at the same time.
   std::size_t max_maps = std::numeric_limits<std::size_t>::max();
   std::size_t max_loads = 1;
 };
@@ -94,6 +94,18 @@ void fuse(const Scene& scene, std::span<const FusionView> views, const FusionPro
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options = {},
                 const ProgressSink& progress = {});
+
+// The sizes on which the memory of fusion depends.
+struct FusionSize {
+  std::uint64_t pixels = 0;  // of the largest map
+  std::uint64_t views = 0;
+  std::uint64_t maps = 0;  // in memory at the same time (FuseOptions::max_maps)
+  bool colors = false;
+};
+
+// An upper bound of the memory [bytes] that fuse() holds, without the portions of the cloud and
+// what the providers need while they load.
+std::uint64_t bytes_needed(const FusionSize& size);
 
 // Estimates a map's normals from the back-projected points in the 3x3 neighbourhood of each pixel.
 // Only neighbours count whose depth differs by less than 3 % from the pixel's; at least 3 are

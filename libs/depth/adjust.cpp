@@ -286,4 +286,9 @@ DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const Depth
   return result;
 }
 
+std::uint64_t bytes_needed(const AdjustSize& size) {
+  // Rays and the result; for each neighbour its surface on the pixels of the reference.
+  return size.pixels * (sizeof(Ray) + size.neighbours * sizeof(Splat)) + bytes_of_map(size.pixels);
+}
+
 }  // namespace axial::depth

@@ -5,6 +5,7 @@
 // confidences.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "scene/depth_map.h"
@@ -63,5 +64,15 @@ struct AdjustOptions {
 // size from its depths, and for a `reference` whose depths are a part of a larger cv::Mat.
 DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const DepthMap> neighbours,
                                 const AdjustOptions& options = {});
+
+// The sizes on which the memory of adjust_with_neighbours() depends.
+struct AdjustSize {
+  std::uint64_t pixels = 0;      // of the reference
+  std::uint64_t neighbours = 0;  // that are used
+};
+
+// An upper bound of the memory [bytes] of adjust_with_neighbours(), with its result, without its
+// arguments.
+std::uint64_t bytes_needed(const AdjustSize& size);
 
 }  // namespace axial::depth

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "depth/lane_matcher.h"
 #include "depth/matcher.h"
+#include "depth/plane_map.h"
 #include "depth/ray_caster.h"
 #include "depth/sparse_init.h"
 #include "depth/sweep.h"
@@ -288,6 +290,16 @@ DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
   run_sweeps(input, level, source_maps, options, sweep, 1, planes);
   const DepthRange range{current.min_depth, current.max_depth};
   return to_depth_map(input, planes, range, options.keep_cost);
+}
+
+std::uint64_t bytes_needed(const MatchSize& size) {
+  // Planes of this level and the previous one, priors, the result and its filtered copies.
+  constexpr std::uint64_t kPlane = sizeof(PlanePixel);
+  const std::uint64_t reference =
+      (kPlane + kPlane / 4 + 8) * size.pixels + 3 * bytes_of_map(size.pixels);
+  // Its pixels twice as words of 2 x 2 neighbours, and its depths.
+  const std::uint64_t source = (2 * 4 + 4) * size.pixels + 2 * HugePageAllocator<int>::kPage;
+  return reference + size.sources * source;
 }
 
 }  // namespace axial::depth

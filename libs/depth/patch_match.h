@@ -52,4 +52,14 @@ DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
                           std::span<const DepthMap* const> source_maps, int pass, bool last,
                           const PatchMatchOptions& options);
 
+// The sizes on which the memory of matching depends.
+struct MatchSize {
+  std::uint64_t pixels = 0;  // of the reference, and at most of each source
+  std::uint64_t sources = 0;
+};
+
+// An upper bound of the memory [bytes] of estimate_depth_map() and refine_depth_map(), with their
+// result and two copies of it in which filters work, without their input.
+std::uint64_t bytes_needed(const MatchSize& size);
+
 }  // namespace axial::depth

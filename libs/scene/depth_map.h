@@ -30,4 +30,13 @@ struct DepthMap {
   int height() const { return depth.rows; }
 };
 
+// The memory of a map of `pixels` pixels [bytes]: of its depths alone, and with normals and
+// confidences.
+constexpr std::uint64_t bytes_of_depths(std::uint64_t pixels) {
+  return 4 * pixels;
+}
+constexpr std::uint64_t bytes_of_map(std::uint64_t pixels) {
+  return (4 + 12 + 4) * pixels;
+}
+
 }  // namespace axial

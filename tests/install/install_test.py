@@ -85,6 +85,12 @@ class Installed(Case):
                           b"property float x\nproperty float y\nproperty float z\nend_header\n" +
                           struct.pack("<6f", 1, 2, 3, 4, 5, 6))
         self.assertEqual(output_of(build / "count_points", cloud), "2\n")
+        # One call of the library. That it finds the fault of this scene shows that it is linked.
+        missing = self.folder / "missing.mvs"
+        run = subprocess.run([build / "densify_scene", missing, self.folder], text=True,
+                             capture_output=True, timeout=60)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn(str(missing), run.stderr)
 
 
 class DebianPackage(Case):

@@ -19,10 +19,7 @@ namespace {
 
 std::size_t decodes_that_fit(std::span<const ImageHeader> headers) {
   std::uint64_t largest = 1;
-  for (const ImageHeader& header : headers)
-    largest = std::max(largest, std::uint64_t{header.decode_bytes} *
-                                    static_cast<std::uint64_t>(header.size.width) *
-                                    static_cast<std::uint64_t>(header.size.height));
+  for (const ImageHeader& header : headers) largest = std::max(largest, bytes_needed(header));
   return std::clamp<std::uint64_t>(available_memory() / 4 / largest, 1, thread_count());
 }
 

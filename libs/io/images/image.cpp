@@ -219,6 +219,11 @@ cv::Size read_image_size(const fs::path& path) {
   return read_image_header(path).size;
 }
 
+std::uint64_t bytes_needed(const ImageHeader& header) {
+  return std::uint64_t{header.decode_bytes} * static_cast<std::uint64_t>(header.size.width) *
+         static_cast<std::uint64_t>(header.size.height);
+}
+
 int bits_used(const cv::Mat& pixels) {
   if (pixels.depth() == CV_8U) return 8;
   double largest = 0;

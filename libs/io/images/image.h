@@ -5,6 +5,7 @@
 // libraries print no messages of their own.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
 
@@ -31,6 +32,9 @@ Photograph read_photograph(const std::filesystem::path& path);
 // if the format has one; otherwise the whole image is decoded.
 ImageHeader read_image_header(const std::filesystem::path& path);
 cv::Size read_image_size(const std::filesystem::path& path);
+
+// The memory [bytes] of read_photograph() for a file of this header, with its result.
+std::uint64_t bytes_needed(const ImageHeader& header);
 
 // The number of bits, 8 to 16, that the largest value in `pixels` needs. Cameras of 10, 12 or 14
 // bits store their values in 16 bits.

@@ -2,6 +2,7 @@
 // OpenMVS depth maps (.dmap), with a side file that describes their camera.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -42,6 +43,12 @@ DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = Dma
 // without ids, or a depth that is not in front of the camera.
 void write_dmap(const std::filesystem::path& path, const DepthMap& map,
                 const std::string& made_from);
+
+// An upper bound of the memory [bytes] of read_dmap() and write_dmap() for a map of `pixels`
+// pixels, without the map itself: the bytes of the file, and converted depths.
+constexpr std::uint64_t dmap_bytes_needed(std::uint64_t pixels) {
+  return 44 * pixels;
+}
 
 enum class DmapOrigin {
   none,     // no such file

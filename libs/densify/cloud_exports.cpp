@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/cloud_exports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/same_file.h"
+#include "cloud/visibility.h"
+#include "densify/fusion_stage.h"
+#include "densify/outputs.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path beside_output(const Settings& settings, const std::string& suffix) {
+  fs::path path = settings.output;
+  path.replace_extension();
+  return path += suffix;
+}
+
+std::size_t distinct_views(const SparsePoint& point) {
+  std::size_t count = 0;
+  std::uint32_t previous = kNoId;
+  for (const SparseView& view : point.views) {
+    count += view.image != previous ? 1 : 0;
+    previous = view.image;
+  }
+  return count;
+}
+
+// The output path with `suffix`. Error if it is a file that was read.
+fs::path checked_output(const Settings& settings, const std::string& suffix) {
+  const fs::path path = beside_output(settings, suffix);
+  require_not_an_input(path, scene_files(settings), "--output-file");
+  return path;
+}
+
+WrittenCloud told(const fs::path& ply, const Scene& scene) {
+  log_info("{}: {} points", ply.string(), scene.points.size());
+  return {ply, scene.points.size()};
+}
+
+WrittenCloud write(const Project& project, const Settings& settings, const std::string& suffix,
+                   bool with_scene) {
+  const fs::path ply = checked_output(settings, suffix + ".ply");
+  Settings of_scene = settings;
+  of_scene.output = with_scene ? checked_output(settings, suffix + ".mvs") : fs::path();
+  io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, settings));
+  if (with_scene) {
+    write_cameras_beside_output(project, of_scene);
+    io::write_mvs(of_scene.output, project.scene, settings.working_folder);
+  }
+  return told(ply, project.scene);
+}
+
+WrittenCloud export_filtered(Project& project, const Settings& settings) {
+  const std::vector<long> visibility = cloud::visibility_of_points(project.scene);
+  keep_points(project.scene,
+              [&](std::size_t point) { return visibility[point] > settings.filter_point_cloud; });
+  return write(project, settings, "_filtered", true);
+}
+
+WrittenCloud export_number_of_views(Project& project, const Settings& settings) {
+  const auto least = static_cast<std::size_t>(std::abs(settings.export_number_views));
+  keep_points(project.scene, [&](std::size_t point) {
+    return distinct_views(project.scene.points[point]) >= least;
+  });
+  return write(project, settings, fmt::format("_{}views", least), settings.export_number_views < 0);
+}
+
+// Writes positions, colours and normals if the scene has them, confidence and value.
+void write_scales(const fs::path& ply, const Scene& scene,
+                  const std::vector<cloud::PointScale>& scales, const io::PlyPlacement& placement) {
+  const bool colors = !scene.point_colors.empty(), normals = !scene.point_normals.empty();
+  std::string bytes = fmt::format("ply\nformat binary_little_endian 1.0\n{}element vertex {}\n{}",
+                                  io::geo_comment(placement), scene.points.size(),
+                                  io::position_properties(placement));
+  if (colors) bytes += "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
+  if (normals) bytes += "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
+  bytes += "property float32 confidence\nproperty float32 value\nend_header\n";
+  const auto add = [&](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    io::append_position(bytes, scene.points[i].position, placement);
+    if (colors) add(scene.point_colors[i].data(), 3);
+    if (normals) add(scene.point_normals[i].data(), 3 * sizeof(float));
+    add(&scales[i].confidence, sizeof(float));
+    add(&scales[i].scale, sizeof(float));
+  }
+  write_atomically(ply, bytes);
+}
+
+WrittenCloud export_scales(const Project& project, const Settings& settings) {
+  const Scene& scene = project.scene;
+  const fs::path ply = checked_output(settings, "_scale.ply");
+  std::vector<cloud::PointScale> scales = cloud::scales_of_points(scene);
+  for (cloud::PointScale& scale : scales)
+    scale.scale *= static_cast<float>(settings.estimate_scale);
+  write_scales(ply, scene, scales, placement_of(project, settings));
+  return told(ply, scene);
+}
+
+}  // namespace
+
+PointCloud cloud_of(const Scene& scene) {
+  PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  for (const SparsePoint& point : scene.points) {
+    cloud.positions.push_back(point.position);
+    for (const SparseView& view : point.views) {
+      cloud.view_images.push_back(view.image);
+      cloud.view_weights.push_back(view.confidence);
+    }
+    cloud.view_begin.push_back(cloud.view_images.size());
+  }
+  cloud.normals = scene.point_normals;
+  cloud.colors = scene.point_colors;
+  return cloud;
+}
+
+void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kept) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    if (!kept(i)) continue;
+    if (count != i) {
+      scene.points[count] = std::move(scene.points[i]);
+      if (!scene.point_normals.empty()) scene.point_normals[count] = scene.point_normals[i];
+      if (!scene.point_colors.empty()) scene.point_colors[count] = scene.point_colors[i];
+    }
+    ++count;
+  }
+  scene.points.resize(count);
+  if (!scene.point_normals.empty()) scene.point_normals.resize(count);
+  if (!scene.point_colors.empty()) scene.point_colors.resize(count);
+}
+
+WrittenCloud export_cloud(Project project, const Settings& settings) {
+  if (project.scene.points.empty()) fail("{}: has no points to export", settings.input.string());
+  if (settings.filter_point_cloud < 0) return export_filtered(project, settings);
+  if (settings.export_number_views != 0) return export_number_of_views(project, settings);
+  return export_scales(project, settings);
+}
+
+}  // namespace axial::densify

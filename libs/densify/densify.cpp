@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/densify.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "densify/agreement_check.h"
+#include "densify/cloud_exports.h"
+#include "densify/depth_stage.h"
+#include "densify/existing_maps.h"
+#include "densify/fusion_stage.h"
+#include "densify/image_store.h"
+#include "densify/memory_plan.h"
+#include "densify/neighbour_lists.h"
+#include "densify/outputs.h"
+#include "densify/pinhole_export.h"
+#include "densify/pinhole_folder.h"
+#include "densify/project.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+// As in OpenMVS. If the folder cannot be made, require_writable reports it.
+void make_folder_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::create_directories(file.parent_path(), ignored);
+}
+
+Report export_points(const Settings& settings) {
+  const WrittenCloud cloud = export_cloud(load_scene(settings), settings);
+  return {Result::point_export, cloud.file, cloud.points};
+}
+
+Report write_lists(const Settings& settings, const SceneObserver& observer) {
+  const Project project = load_project(settings, observer);
+  check_outputs(project, settings);
+  write_neighbour_lists(settings.neighbour_lists_output, project.scene);
+  return {Result::neighbour_lists, {}};
+}
+
+ExistingMaps checked_maps(Project& project, const Settings& settings) {
+  ExistingMaps existing = find_existing_maps(project, settings);
+  if (settings.make_maps)
+    check_overwriting(project, settings, existing);
+  else
+    keep_images_with_maps(project, settings, existing);
+  return existing;
+}
+
+// If the maps are not fused, the sparse cloud gets the dense cloud's name, as in OpenMVS.
+std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
+                               const fs::path& ply) {
+  io::write_cloud_ply(ply, cloud_of(project.scene), true, placement_of(project, settings));
+  return project.scene.points.size();
+}
+
+// The images are in memory only in this function.
+std::size_t make_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                       const ExistingMaps& existing, const fs::path& ply) {
+  ImageStore images(project, settings, plan.cached_images);
+  images.check_all(plan.decodes);
+  if (settings.make_maps)
+    make_depth_maps(project, settings, plan, existing, images);
+  else
+    check_agreement(project, settings, plan, false, [&](std::size_t image) {
+      return read_final_map(project, settings, existing, image, images.mask(image));
+    });
+  return settings.fuse ? write_cloud(project, settings, plan, existing, images, ply)
+                       : write_sparse_cloud(project, settings, ply);
+}
+
+void remove_depth_maps(const Project& project, const Settings& settings) {
+  for (const std::size_t image : project.references) {
+    const fs::path file = depth_map_path(project, settings, image);
+    fs::remove(file);
+    fs::remove(file.string() + ".json");
+  }
+}
+
+Report reconstruct(const Settings& settings, const SceneObserver& observer) {
+  Project project = load_project(settings, observer);
+  const ExistingMaps existing = checked_maps(project, settings);
+  const MemoryPlan plan = plan_memory(project, settings);
+  check_outputs(project, settings);
+  check_pinhole_export(project, settings);
+
+  const fs::path ply = fs::path(settings.output).replace_extension(".ply");
+  const std::size_t points = make_cloud(project, settings, plan, existing, ply);
+  return_freed_memory();  // the images' memory is needed to write the scene
+  write_cameras_beside_output(project, settings);
+  io::write_mvs(settings.output, project.scene, settings.working_folder);
+  log_info("{}: {} points", ply.string(), points);
+  export_pinholes(project, settings, plan, existing, ply);
+  if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
+  return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
+          project.references.size(), all_pinholes(project)};
+}
+
+}  // namespace
+
+Report densify(const Settings& settings, const SceneObserver& observer) {
+  share_one_heap();
+  const ThreadLimit threads(settings.max_threads);
+  make_folder_of(settings.output);
+  check_outputs(settings);
+  if (only_exports(settings)) return export_points(settings);
+  if (!settings.neighbour_lists_output.empty()) return write_lists(settings, observer);
+  return reconstruct(settings, observer);
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/depth_stage.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <vector>
+
+#include "densify/agreement_check.h"
+#include "densify/map_stages.h"
+#include "depth/border.h"
+#include "depth/filters.h"
+#include "depth/patch_match.h"
+#include "depth/weak_texture.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+// The data for matching one image. They must live while it runs.
+struct Task {
+  std::vector<std::shared_ptr<const WorkImage>> pixels;  // of the reference, then of the sources
+  std::vector<depth::MatchImage> views;                  // in the order of `pixels`
+  std::vector<const depth::MatchImage*> sources;
+  std::vector<Eigen::Vector3f> points;
+  depth::MatchInput input;
+};
+
+// Makes the maps of the stages. It must live while the stages run.
+class MapMaker {
+ public:
+  MapMaker(const Project& project, const Settings& settings, ImageStore& images)
+      : project_(project), settings_(settings), images_(images) {}
+
+  std::vector<Stage> stages() const {
+    std::vector<Stage> stages;
+    stages.push_back({"photometric", "Estimated depth maps",
+                      [this](std::size_t image, PreviousMaps&) { return estimate(image); }});
+    for (int pass = 0; pass < settings_.geometric_iterations; ++pass)
+      stages.push_back({fmt::format("geometric{}", pass + 1),
+                        fmt::format("Geometric-consistency pass {}", pass + 1),
+                        [this, pass](std::size_t image, PreviousMaps& previous) {
+                          return refine(image, pass, previous);
+                        }});
+    if (settings_.postprocess & kAdjust)
+      stages.push_back(
+          {"adjusted", "Adjusted depth maps",
+           [this](std::size_t image, PreviousMaps& previous) { return adjust(image, previous); },
+           true});
+    return stages;
+  }
+
+ private:
+  // The images of `list` that have depth maps of their own.
+  std::vector<std::size_t> with_maps(const std::vector<ViewScore>& list) const {
+    std::vector<std::size_t> images;
+    for (const ViewScore& neighbour : list)
+      if (!project_.sources[neighbour.image].empty()) images.push_back(neighbour.image);
+    return images;
+  }
+
+  void add_view(Task& task, std::size_t image) const {
+    const View& view = project_.views[image];
+    task.pixels.push_back(images_.get(image));
+    task.views.push_back({view.id, view.camera, view.pose, task.pixels.back()->grey});
+  }
+
+  std::unique_ptr<Task> task(std::size_t image) const {
+    auto result = std::make_unique<Task>();
+    add_view(*result, image);
+    for (const ViewScore& source : project_.sources[image]) add_view(*result, source.image);
+    for (std::size_t i = 1; i < result->views.size(); ++i)
+      result->sources.push_back(&result->views[i]);
+    for (const std::uint32_t point : project_.preparations[image].init_points)
+      result->points.push_back(project_.scene.points[point].position);
+    const cv::Mat1b& mask = result->pixels[0]->mask;
+    result->input = {&result->views[0], result->sources, result->points,
+                     mask.empty() ? nullptr : &mask, settings_.projection};
+    return result;
+  }
+
+  DepthMap named(DepthMap map, std::size_t image) const {
+    map.image_path = project_.scene.images[image].path;
+    return map;
+  }
+
+  DepthMap estimate(std::size_t image) const {
+    const std::unique_ptr<Task> work = task(image);
+    const DepthMap map = depth::estimate_depth_map(work->input, settings_.matching);
+    return named(settings_.geometric_iterations == 0 ? clean(map, *work, image) : map, image);
+  }
+
+  DepthMap refine(std::size_t image, int pass, PreviousMaps& previous) const {
+    const std::unique_ptr<Task> work = task(image);
+    const bool last = pass + 1 == settings_.geometric_iterations;
+    std::vector<std::shared_ptr<const DepthMap>> held;
+    std::vector<const DepthMap*> maps;
+    for (const ViewScore& source : project_.sources[image]) {
+      const bool has_map = !project_.sources[source.image].empty();
+      held.push_back(has_map ? previous.get(source.image) : nullptr);
+      maps.push_back(held.back().get());
+    }
+    const DepthMap map = depth::refine_depth_map(work->input, previous.read(image), maps, pass,
+                                                 last, settings_.matching);
+    return named(last ? clean(map, *work, image) : map, image);
+  }
+
+  DepthMap clean(DepthMap map, const Task& task, std::size_t image) const {
+    map = depth::remove_unconfirmed(map, task.views[0].grey, depth::border_pixels(task.input, map));
+    if (settings_.postprocess & kSpeckles) map = depth::remove_speckles(map, settings_.speckles);
+    if (settings_.postprocess & kGaps) {
+      cv::Mat1b ignored;
+      if (const cv::Mat1b mask = images_.mask(image); !mask.empty())
+        cv::compare(mask, 0, ignored, cv::CMP_EQ);
+      map = depth::fill_gaps(map, settings_.gaps, ignored);
+    }
+    return map;
+  }
+
+  DepthMap adjust(std::size_t image, PreviousMaps& previous) const {
+    std::vector<DepthMap> neighbours;
+    for (const std::size_t neighbour : with_maps(project_.neighbours[image]))
+      if (neighbours.size() < depth::AdjustOptions().max_neighbours)
+        neighbours.push_back(*previous.get(neighbour));
+    return named(depth::adjust_with_neighbours(*previous.get(image), neighbours), image);
+  }
+
+  const Project& project_;
+  const Settings& settings_;
+  ImageStore& images_;
+};
+
+}  // namespace
+
+fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
+  return settings.working_folder / fmt::format("depth{:04}.dmap", project.views[image].id);
+}
+
+void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                     const ExistingMaps& existing, ImageStore& images) {
+  const MapMaker maker(project, settings, images);
+  StageRun run;
+  run.images = project.references;
+  run.final_file = [&](std::size_t image) { return depth_map_path(project, settings, image); };
+  run.fingerprint = project.fingerprint;
+  run.existing = existing;
+  run.in_flight = plan.in_flight;
+  run.cached_depths = plan.cached_depths;
+  run.cached_maps = plan.cached_maps;
+  run.pictures = settings.pictures;
+  run.check = [&](bool first_stage, const ReadMap& read_map) {
+    check_agreement(project, settings, plan, first_stage, read_map);
+  };
+  run_stages(maker.stages(), run);
+}
+
+}  // namespace axial::densify

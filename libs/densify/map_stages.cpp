@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/map_stages.h"
+
+#include <mutex>
+#include <system_error>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "picture/dmap_pictures.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+ReadMap for_cache(ReadMap read, bool whole) {
+  if (whole) return read;
+  return [read = std::move(read)](std::size_t image) {
+    DepthMap map = read(image);
+    map.normal.release();
+    map.confidence.release();
+    return map;
+  };
+}
+
+class Runner {
+ public:
+  Runner(std::span<const Stage> stages, const StageRun& run) : stages_(stages), run_(run) {}
+
+  void run() const {
+    const std::size_t first = first_incomplete_stage();
+    if (first == stages_.size()) log_info("All {} depth maps exist already", run_.images.size());
+    if (first > 0) check(first - 1);
+    for (std::size_t s = first; s < stages_.size(); ++s) {
+      // Matching often frees and allocates large blocks but holds few of them; later stages hold
+      // many.
+      if (stages_[s].whole_maps) map_large_blocks();
+      run_stage(s);
+      if (s == 0) check(s);
+      if (s > 0) remove_stage(s - 1);
+      if (!is_last(s) && run_.pictures == Pictures::maps_of_every_stage) draw(s);
+    }
+    if (run_.pictures != Pictures::none) draw(stages_.size() - 1);
+  }
+
+ private:
+  bool is_last(std::size_t stage) const { return stage + 1 == stages_.size(); }
+
+  fs::path path(std::size_t stage, std::size_t image) const {
+    fs::path file = run_.final_file(image);
+    if (!is_last(stage)) file.replace_extension("." + stages_[stage].name + ".dmap");
+    return file;
+  }
+
+  std::string made_from(std::size_t stage) const {
+    return run_.fingerprint + " " + stages_[stage].name;
+  }
+
+  // Whether the file existed before this run: a stage asks before it writes.
+  bool finished(std::size_t stage, std::size_t image) const {
+    if (is_last(stage))
+      return run_.existing[image].origin == io::DmapOrigin::ours &&
+             run_.existing[image].made_from == made_from(stage);
+    return io::dmap_made_from(path(stage, image)) == made_from(stage);
+  }
+
+  std::size_t first_incomplete_stage() const {
+    for (std::size_t s = stages_.size(); s > 0; --s) {
+      bool complete = true;
+      for (const std::size_t image : run_.images) complete &= finished(s - 1, image);
+      if (complete) return s;
+    }
+    return 0;
+  }
+
+  ReadMap reader(std::size_t stage) const {
+    return [this, stage](std::size_t image) { return io::read_dmap(path(stage, image)).map; };
+  }
+
+  PreviousMaps previous_of(std::size_t stage) const {
+    const bool whole = stages_[stage].whole_maps;
+    return {stage > 0 ? reader(stage - 1) : ReadMap(), whole,
+            whole ? run_.cached_maps : run_.cached_depths};
+  }
+
+  void run_stage(std::size_t stage) const {
+    {
+      PreviousMaps previous = previous_of(stage);
+      make_maps(stage, previous);
+    }
+    return_freed_memory();
+  }
+
+  void make_maps(std::size_t stage, PreviousMaps& previous) const {
+    const ProgressSink progress = console_progress(stages_[stage].title);
+    std::mutex mutex;
+    std::size_t done = 0;
+    std::size_t reused = 0;
+    for_each_in_flight(run_.images.size(), run_.in_flight, [&](std::size_t i) {
+      const std::size_t image = run_.images[i];
+      const bool there = finished(stage, image);
+      if (!there)
+        io::write_dmap(path(stage, image), stages_[stage].make(image, previous), made_from(stage));
+      const std::lock_guard lock(mutex);
+      if (there) ++reused;
+      progress(++done, run_.images.size());
+    });
+    if (reused > 0) log_info("{}: {} maps existed already", stages_[stage].title, reused);
+  }
+
+  void check(std::size_t stage) const {
+    if (run_.check) run_.check(stage == 0, reader(stage));
+  }
+
+  void draw(std::size_t stage) const {
+    for_each_in_flight(run_.images.size(), run_.in_flight, [&](std::size_t i) {
+      const fs::path file = path(stage, run_.images[i]);
+      io::write_dmap_pictures(file, io::read_dmap(file).map);
+    });
+  }
+
+  void remove_stage(std::size_t stage) const {
+    for (const std::size_t image : run_.images) {
+      const fs::path file = path(stage, image);
+      std::error_code ignored;
+      fs::remove(file, ignored);
+      fs::remove(file.string() + ".json", ignored);
+    }
+  }
+
+  std::span<const Stage> stages_;
+  const StageRun& run_;
+};
+
+}  // namespace
+
+PreviousMaps::PreviousMaps(ReadMap read, bool whole, std::size_t capacity)
+    : read_(std::move(read)), cache_(for_cache(read_, whole), capacity) {}
+
+void run_stages(std::span<const Stage> stages, const StageRun& run) {
+  Runner(stages, run).run();
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes the depth maps of many images in stages. Each map of each stage is a file, so that a run
+// that was stopped continues where it ended.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/shared_cache.h"
+#include "densify/settings.h"
+#include "io/openmvs/dmap.h"
+#include "scene/depth_map.h"
+
+namespace axial::densify {
+
+using ReadMap = std::function<DepthMap(std::size_t image)>;
+
+// The maps of the previous stage. They are always read from their files and never handed over in
+// memory, because a resumed run must see the same bytes. Thread-safe.
+class PreviousMaps {
+ public:
+  // `capacity`: the number of maps in the cache.
+  PreviousMaps(ReadMap read, bool whole, std::size_t capacity);
+
+  // The whole map, read now.
+  DepthMap read(std::size_t image) const { return read_(image); }
+
+  // The map from the cache; without normals and confidences unless the stage asks for whole maps.
+  std::shared_ptr<const DepthMap> get(std::size_t image) { return cache_.get(image); }
+
+ private:
+  ReadMap read_;
+  SharedCache<DepthMap> cache_;
+};
+
+// One round over all images.
+struct Stage {
+  std::string name;   // in the names of its files, and in their side files
+  std::string title;  // of its progress
+  // Makes the map of an image; called for several images at a time. The first stage has no previous
+  // maps and must not ask for any.
+  std::function<DepthMap(std::size_t image, PreviousMaps& previous)> make;
+  bool whole_maps = false;  // PreviousMaps::get() gives whole maps, of which many are held
+};
+
+// What a round over the images needs to know, for all stages.
+struct StageRun {
+  std::span<const std::size_t> images;  // that get maps, in this order
+  // The file of an image's final map. Files of earlier stages are called alike, with the stage's
+  // name before the extension.
+  std::function<std::filesystem::path(std::size_t image)> final_file;
+  std::string fingerprint;  // of all input of the maps
+  // The final files as they were before the run; indexed by image.
+  std::span<const io::DmapStatus> existing;
+  std::size_t in_flight = 1;      // images at the same time
+  std::size_t cached_depths = 0;  // capacity of PreviousMaps
+  std::size_t cached_maps = 0;    // the same for stages that ask for whole maps
+  Pictures pictures = Pictures::none;
+  // Called once, with the maps of the first stage, or, in a run that continues after the first
+  // stage, with the latest maps that are complete. It is called early, because later stages may
+  // take hours. May be empty.
+  std::function<void(bool first_stage, const ReadMap& read_map)> check;
+};
+
+// Runs the stages one after the other and leaves the maps of the last one.
+//
+// * A file is used again only if its depth map is complete and its side file has the run's
+//   fingerprint and the stage's name. All other files of these names, damaged ones and those of
+//   other programs too, are made again and overwritten.
+// * The run begins after the last stage whose files can all be used again; files of the stages
+//   before it are not needed. In a stage that is not complete, only the missing maps are made.
+// * Every stage reads only complete files of the previous stage. So a run that was stopped and
+//   continues gives the same bytes as one that was not.
+// * The files of a stage are removed when the next stage is complete.
+//
+// Exceptions of make() end the run; the finished files stay.
+void run_stages(std::span<const Stage> stages, const StageRun& run);
+
+}  // namespace axial::densify

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/outputs.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/same_file.h"
+#include "densify/depth_stage.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/housing.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path cloud_file(const Settings& settings) {
+  return fs::path(settings.output).replace_extension(".ply");
+}
+
+// The housing is not among these files: it is not written if it is the file that was read.
+std::vector<fs::path> cloud_outputs(const Settings& settings) {
+  return {settings.output, cloud_file(settings), io::lenses_beside(settings.output)};
+}
+
+std::vector<fs::path> depth_outputs(const Project& project, const Settings& settings) {
+  std::vector<fs::path> files;
+  const bool pictures = settings.pictures != Pictures::none;
+  for (const std::size_t image : project.references) {
+    const fs::path map = depth_map_path(project, settings, image);
+    files.insert(files.end(), {map, map.string() + ".json"});
+    for (const char* picture : {".png", ".normal.png", ".confidence.png"})
+      if (pictures) files.push_back(fs::path(map).replace_extension(picture));
+  }
+  return files;
+}
+
+// Whether both paths name the same file, which may not exist.
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  return a.filename() == b.filename() &&
+         fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+// Error if the output is a file that the reconstruction reads, writes or resumes.
+void check_side_output(const char* option, const fs::path& output,
+                       const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+  if (output.empty()) return;
+  require_not_an_input(output, inputs, option);
+  for (const fs::path& other : outputs)
+    if (is_one_file(output, other))
+      fail("{} {}: is also the file name of the run's {}", option, output.string(),
+           other.filename().string());
+}
+
+}  // namespace
+
+std::vector<fs::path> scene_files(const Settings& settings) {
+  std::vector<fs::path> files{settings.input,
+                              housing_file(settings),
+                              io::lenses_beside(settings.input),
+                              io::geo_offset_beside(settings.input),
+                              settings.point_cloud,
+                              settings.neighbour_lists};
+  files.insert(files.end(), settings.other_inputs.begin(), settings.other_inputs.end());
+  return files;
+}
+
+void check_outputs(const Settings& settings) {
+  require_no_inputs(cloud_outputs(settings), scene_files(settings), "--output-file");
+  if (!settings.neighbour_lists_output.empty())
+    require_not_an_input(settings.neighbour_lists_output, scene_files(settings),
+                         "--output-view-neighbors-file");
+  require_writable(settings.output);
+  require_writable(cloud_file(settings));
+  if (!settings.report.empty()) {
+    require_not_an_input(settings.report, scene_files(settings), "--report-file");
+    require_writable(settings.report);
+  }
+  require_writable(settings.working_folder / "depth0000.dmap");
+  remove_abandoned(settings.working_folder, "depth");
+}
+
+void check_outputs(const Project& project, const Settings& settings) {
+  std::vector<fs::path> inputs = scene_files(settings);
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    inputs.push_back(project.scene.images[i].path);
+    inputs.push_back(project.views[i].mask);
+  }
+  require_no_inputs(cloud_outputs(settings), inputs, "--output-file");
+  std::vector<fs::path> outputs = depth_outputs(project, settings);
+  require_no_inputs(outputs, inputs, "--working-folder");
+  for (const fs::path& file : cloud_outputs(settings)) outputs.push_back(file);
+  outputs.push_back(io::housing_beside(settings.output));
+  outputs.push_back(io::geo_offset_beside(settings.output));
+  check_side_output("--report-file", settings.report, inputs, outputs);
+  check_side_output("--output-view-neighbors-file", settings.neighbour_lists_output, inputs,
+                    outputs);
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/pinhole_export.h"
+
+#include <algorithm>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/file_extension.h"
+#include "base/first_error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "cloud/pinhole_resampling.h"
+#include "densify/cloud_exports.h"
+#include "densify/depth_stage.h"
+#include "densify/image_store.h"
+#include "densify/pinhole_folder.h"
+#include "io/bytes/json.h"
+#include "io/bytes/written_files.h"
+#include "io/cameras/geo_offset.h"
+#include "io/colmap/colmap_export.h"
+#include "io/images/image.h"
+#include "io/images/masks.h"
+#include "io/openmvs/dmap.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
+#include "scene/resolution.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Exported {
+  cloud::PinholeView view;  // at the resolution of the photograph
+  double exact = 0;         // share of pixels with the label kExact
+};
+
+class Export {
+ public:
+  Export(Project& project, const Settings& settings, const MemoryPlan& plan,
+         const ExistingMaps& existing)
+      : project_(project),
+        settings_(settings),
+        plan_(plan),
+        existing_(existing),
+        photographs_(io::common_image_folder(project.scene)),
+        exported_(project.scene.images.size()),
+        is_exported_(project.scene.images.size(), false) {
+    for (const std::size_t image : project.references) is_exported_[image] = true;
+    find_range();
+  }
+
+  void run(const fs::path& ply) {
+    write_folder(settings_.pinhole_export, [&](const fs::path& folder) {
+      folder_ = fs::absolute(folder);
+      export_images();
+      export_cloud(ply);
+      export_scene();
+      export_marker();
+      remove_earlier_export(settings_.pinhole_export, folder_);
+    });
+    report();
+  }
+
+ private:
+  // Takes the range of the median image, so that the same lens and port give the same pinhole.
+  void find_range() {
+    std::vector<float> near, far;
+    for (const std::size_t image : project_.references) {
+      near.push_back(project_.preparations[image].min_depth);
+      far.push_back(project_.preparations[image].max_depth);
+    }
+    const auto median = [](std::vector<float>& values) {
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::ranges::nth_element(values, middle);
+      return static_cast<double>(*middle);
+    };
+    near_ = median(near), far_ = median(far);
+  }
+
+  fs::path image_file(std::size_t image) const {
+    return folder_ / "images" / exported_name(project_.scene.images[image], photographs_);
+  }
+
+  DepthMap load_map(std::size_t image, const cv::Mat1b& opaque) const {
+    cv::Mat1b mask;
+    if (!settings_.make_maps)
+      mask = working_mask(project_.views[image], opaque, settings_.ignore_mask_label);
+    return read_final_map(project_, settings_, existing_, image, mask);
+  }
+
+  // The resolution at which OpenMVS, with this run's settings, would work on the pinhole image.
+  cv::Size map_size(const CameraModel& pinhole, std::size_t image) const {
+    if (settings_.make_maps)
+      return working_size(pinhole.width, pinhole.height, settings_.resolution);
+    const View& view = project_.views[image];
+    const double scale = static_cast<double>(view.camera.width) / view.file.size.width;
+    return {std::max(1, cvRound(scale * pinhole.width)),
+            std::max(1, cvRound(scale * pinhole.height))};
+  }
+
+  void export_map(std::size_t image, DepthMap map, const cloud::PinholeView& view,
+                  const cv::Mat1f& surface) const {
+    map = cloud::resampled(map, view, surface);
+    map.image_path = image_file(image).string();
+    io::write_dmap(folder_ / depth_map_path(project_, settings_, image).filename(), map,
+                   made_from());
+  }
+
+  std::string made_from() const { return project_.fingerprint + " as a pinhole's"; }
+
+  void write_image(std::size_t image, const cloud::PinholeImage& pinhole) {
+    constexpr int kQuality = 98;  // the image is compressed a second time: little loss
+    const fs::path file = image_file(image);
+    if (is_jpeg_name(file))
+      io::write_jpeg(file, pinhole.color, kQuality);
+    else
+      io::write_png(file, pinhole.color);
+    io::write_png(io::mask_beside(file), pinhole.label);
+    const int exact = cv::countNonZero(pinhole.label == cloud::kExact);
+    exported_[image].exact = exact / static_cast<double>(pinhole.label.total());
+  }
+
+  void export_image(std::size_t image) {
+    const SceneImage& from = project_.scene.images[image];
+    io::Photograph photograph = io::read_photograph(from.path);
+    const cv::Mat3b color = io::in_8_bits(photograph.pixels, project_.bit_depth);
+    photograph.pixels.release();
+    const CameraModel camera = from.camera.resized(color.cols, color.rows);
+    const cloud::PinholeView view = cloud::pinhole_for(camera, near_, far_);
+    exported_[image].view = view;
+    DepthMap map = load_map(image, photograph.opaque);
+    const cv::Mat1f surface = cloud::render_surface(map, view);
+    const cv::Size size = map_size(view.camera, image);
+    const cloud::PinholeView small = view.resized(size.width, size.height);
+    const cv::Mat1f coarse = cloud::render_surface(map, small);
+    export_map(image, std::move(map), small, coarse);
+    const cv::Mat1f guess = cloud::filled(coarse, static_cast<float>((1 / near_ + 1 / far_) / 2));
+    write_image(image, cloud::resampled(color, photograph.opaque, camera, view, surface, guess));
+  }
+
+  void export_images() {
+    for (const std::size_t image : project_.references)
+      make_folder(image_file(image).parent_path());
+    const std::size_t count = project_.references.size();
+    const ProgressSink progress = console_progress("Exported pinhole images");
+    std::mutex reporting;
+    FirstError error;
+    std::size_t done = 0;
+    for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
+      error.run(i, [&] { export_image(project_.references[i]); });
+      const std::lock_guard lock(reporting);
+      progress(++done, count);
+    });
+    error.rethrow();
+  }
+
+  // Writes float positions in the scene's frame, in which its poses are.
+  void export_cloud(const fs::path& ply) const {
+    const fs::path file = folder_ / "scene.ply";
+    if (settings_.double_precision)
+      io::write_cloud_ply(file, io::read_cloud_ply(ply, project_.frame), true,
+                          {project_.frame, false});
+    else
+      fs::copy_file(ply, file);
+  }
+
+  SceneImage exported_scene_image(std::size_t image) const {
+    SceneImage result = project_.scene.images[image];
+    result.calibrated = is_exported_[image];
+    result.neighbours.clear();
+    result.mask_path.clear();
+    result.port_name.clear();
+    if (!result.calibrated) return result;
+    const cloud::PinholeView& view = exported_[image].view;
+    result.path = image_file(image).string();
+    result.mask_path = io::mask_beside(result.path).string();
+    result.camera = view.camera;
+    result.pose = view.pose(result.pose);
+    const auto nearer = static_cast<float>(view.centre.z());
+    result.min_depth -= nearer, result.average_depth -= nearer, result.max_depth -= nearer;
+    for (const ViewScore& neighbour : project_.scene.images[image].neighbours)
+      if (is_exported_[neighbour.image]) result.neighbours.push_back(neighbour);
+    return result;
+  }
+
+  void export_scene() {
+    Scene& scene = project_.scene;
+    Scene exported;
+    for (std::size_t i = 0; i < scene.images.size(); ++i)
+      exported.images.push_back(exported_scene_image(i));
+    exported.region = scene.region;
+    exported.points = std::move(scene.points);
+    exported.point_normals = std::move(scene.point_normals);
+    exported.point_colors = std::move(scene.point_colors);
+    for (SparsePoint& point : exported.points)
+      std::erase_if(point.views, [&](const SparseView& view) { return !is_exported_[view.image]; });
+    keep_points(exported, [&](std::size_t i) { return !exported.points[i].views.empty(); });
+    io::write_mvs(folder_ / "scene.mvs", exported, folder_);
+    io::write_geo_offset_beside(folder_ / "scene.mvs", project_.frame);
+  }
+
+  void export_marker() const {
+    nlohmann::json images = nlohmann::json::array();
+    for (const std::size_t image : project_.references) {
+      const Exported& as = exported_[image];
+      images.push_back(
+          {{"image",
+            "images/" + exported_name(project_.scene.images[image], photographs_).generic_string()},
+           {"photograph", project_.scene.images[image].path},
+           {"centre_in_camera_m", {as.view.centre.x(), as.view.centre.y(), as.view.centre.z()}},
+           {"exact_share", as.exact}});
+    }
+    io::write_json(folder_ / kPinholeMarker, {{"version", 1},
+                                              {"made_from", made_from()},
+                                              {"scene", settings_.input.string()},
+                                              {"images", images},
+                                              {"files", io::list_files(folder_)}});
+  }
+
+  void report() const {
+    double exact = 0;
+    std::size_t cut = 0;
+    for (const std::size_t image : project_.references) {
+      exact += exported_[image].exact;
+      cut += exported_[image].view.whole ? 0 : 1;
+    }
+    const std::size_t count = project_.references.size();
+    if (cut > 0)
+      log_warning(
+          "--pinhole-export: {} of {} images have a wider field of view than a pinhole can show: "
+          "their edges are cut off",
+          cut, count);
+    log_info(
+        "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
+        "can use scene.mvs, scene.ply and the depth maps in this folder",
+        settings_.pinhole_export.string(), count, 100 * exact / static_cast<double>(count));
+  }
+
+  Project& project_;
+  const Settings& settings_;
+  const MemoryPlan& plan_;
+  const ExistingMaps& existing_;
+  fs::path photographs_, folder_;
+  double near_ = 0, far_ = 0;       // lambda [m]
+  std::vector<Exported> exported_;  // one for each image of the scene
+  std::vector<bool> is_exported_;
+};
+
+}  // namespace
+
+std::uint64_t bytes_needed_to_resample(const View& view) {
+  const auto area = [](cv::Size size) { return static_cast<std::uint64_t>(size.area()); };
+  const std::uint64_t photograph = area(view.file.size);
+  // Photograph and opacity; depth, colour, label and the encoded colour of a pinhole at most 1.4
+  // times as wide and as high. While the photograph is read, the memory for reading.
+  const std::uint64_t images =
+      std::max<std::uint64_t>(view.file.decode_bytes + 4, 4 + 2 * (4 + 3 + 1 + 4)) * photograph;
+  // The map, the map of the pinhole and the memory for writing it; two depth images, filled.
+  const std::uint64_t pixels = area({view.camera.width, view.camera.height});
+  const std::uint64_t pinhole = bytes_of_map(pixels) + io::dmap_bytes_needed(pixels) + 16 * pixels;
+  return images + bytes_of_map(pixels) + 2 * pinhole;
+}
+
+void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
+                     const ExistingMaps& existing, const fs::path& ply) {
+  if (!settings.pinhole_export.empty()) Export(project, settings, plan, existing).run(ply);
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/pinhole_folder.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/log.h"
+#include "io/bytes/json.h"
+#include "io/bytes/written_files.h"
+#include "io/colmap/colmap_export.h"
+#include "io/images/masks.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+fs::path exported_name(const SceneImage& image, const fs::path& photographs) {
+  fs::path name = fs::path(image.path).lexically_normal().lexically_relative(photographs);
+  if (!is_jpeg_name(name) && name.extension() != ".png") name += ".png";
+  return name;
+}
+
+namespace {
+
+void check_names(const Project& project) {
+  const fs::path photographs = io::common_image_folder(project.scene);
+  std::map<fs::path, const std::string*> taken;
+  for (const std::size_t image : project.references) {
+    const std::string& path = project.scene.images[image].path;
+    const fs::path name = exported_name(project.scene.images[image], photographs);
+    for (const fs::path& file : {name, io::mask_beside(name)})
+      if (const auto [other, added] = taken.try_emplace(file, &path); !added)
+        fail("--pinhole-export: {} and {} would both be exported as images/{}", *other->second,
+             path, file.string());
+  }
+}
+
+void check_folder(const Project& project, const Settings& settings) {
+  const fs::path& folder = settings.pinhole_export;
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error))
+    fail("--pinhole-export {}: is a file, not a folder", folder.string());
+  // The folders that contain inputs, at any depth.
+  std::set<fs::path> inputs;
+  const auto add = [&](fs::path above) {
+    for (; inputs.insert(above).second && above.has_relative_path(); above = above.parent_path()) {
+    }
+  };
+  add(settings.input.parent_path());
+  add(settings.working_folder);
+  for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(folder, input, error))
+      fail("--pinhole-export {}: contains inputs of this run", folder.string());
+  if (fs::exists(folder / kPinholeMarker, error)) {
+    if (!io::read_json(folder / kPinholeMarker).is_object())
+      fail("{}: is not the list of an earlier export", (folder / kPinholeMarker).string());
+  } else if (!fs::is_empty(folder, error))
+    fail("--pinhole-export {}: contains other files: give an empty or a new folder",
+         folder.string());
+}
+
+}  // namespace
+
+void remove_earlier_export(const fs::path& folder, const fs::path& staging) {
+  std::error_code error;
+  const fs::path marker = folder / kPinholeMarker;
+  if (!fs::exists(marker, error)) return;
+  const nlohmann::json earlier = io::read_json(marker);
+  if (!earlier.contains("files"))
+    log_warning("{}: lists no files: files that this export does not replace are kept",
+                marker.string());
+  io::WrittenFiles files =
+      io::find_written(folder, earlier.value("files", nlohmann::json::object()));
+  const auto replaced = [&](const fs::path& file) { return fs::exists(staging / file, error); };
+  std::erase_if(files.unchanged, replaced);
+  std::erase_if(files.changed, replaced);
+  io::remove_below(folder, files.unchanged);
+  if (!files.changed.empty())
+    log_warning("{}: was changed after the earlier export and is kept, as are {} other files",
+                (folder / files.changed.front()).string(), files.changed.size() - 1);
+}
+
+void check_pinhole_export(const Project& project, const Settings& settings) {
+  if (settings.pinhole_export.empty()) return;
+  if (all_pinholes(project))
+    fail(
+        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS can use the "
+        "other results of this run directly",
+        settings.pinhole_export.string(), settings.input.string());
+  check_folder(project, settings);
+  check_names(project);
+  require_writable_folder(settings.pinhole_export);
+}
+
+}  // namespace axial::densify

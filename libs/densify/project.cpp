@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/project.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "base/first_error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/unused_input.h"
+#include "densify/fingerprint.h"
+#include "densify/masks.h"
+#include "densify/neighbour_lists.h"
+#include "densify/scene_memory.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/housing.h"
+#include "io/cameras/rival_ports.h"
+#include "io/images/bit_depth.h"
+#include "io/images/image.h"
+#include "io/openmvs/mvs.h"
+#include "io/openmvs/point_source.h"
+
+namespace axial::densify {
+namespace fs = std::filesystem;
+
+namespace {
+
+// Image paths in a scene count from the working folder. If a scene was moved with its images, they
+// are found relative to its file.
+void find_images(Scene& scene, const Settings& settings) {
+  const auto find = [&](std::string& path) {
+    std::error_code error;
+    if (path.empty() || fs::exists(path, error)) return;
+    const fs::path relative = fs::path(path).lexically_relative(settings.working_folder);
+    const fs::path beside = settings.input.parent_path() / relative;
+    if (fs::exists(beside, error)) path = beside.string();
+  };
+  for (SceneImage& image : scene.images) {
+    find(image.path);
+    find(image.mask_path);
+  }
+}
+
+std::optional<io::Housing> attach_housing(Scene& scene, const LocalFrame& frame,
+                                          const Settings& settings) {
+  if (settings.camera == CameraChoice::pinhole) return {};
+  const bool demanded = settings.refractive || settings.camera == CameraChoice::flat_port;
+  const fs::path file = housing_file(settings);
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    if (demanded || !settings.housing.empty())
+      fail("{}: housing file not found; --refractive needs a housing file (see --housing)",
+           file.string());
+    return {};
+  }
+  const io::Housing housing = io::read_housing(file);
+  io::warn_of_housing_beside(scene, settings.input, housing, file);
+  io::attach_ports(scene, io::in_frame(frame, housing), file.string());
+  std::size_t images = 0, wet = 0, flat = 0;
+  for (const SceneImage& image : scene.images) {
+    const auto& port = image.camera.port;
+    images += image.calibrated ? 1 : 0;
+    wet += port ? 1 : 0;
+    flat += port && std::holds_alternative<refractive::FlatPort<double>>(*port) ? 1 : 0;
+  }
+  if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
+  if (flat < images && settings.camera == CameraChoice::flat_port)
+    fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
+         flat, images);
+  log_info("Housing {}: {} of {} images behind a port", file.filename().string(), wet, images);
+  if (wet > 0) return housing;
+  if (!settings.housing.empty() && !housing.ports.empty())
+    UnusedInput(settings.allow_missing)
+        .report(fmt::format("--housing {}: gives no image a port", file.string()));
+  return {};
+}
+
+cv::Size size_to_work_on(const SceneImage& image, const cv::Size& file_size,
+                         const Settings& settings) {
+  if (!same_shape(file_size, {image.camera.width, image.camera.height}))
+    fail("{}: is {}x{}, but its camera is {}x{}", image.path, file_size.width, file_size.height,
+         image.camera.width, image.camera.height);
+  return working_size(file_size.width, file_size.height, settings.resolution);
+}
+
+View load_view(const SceneImage& image, std::size_t index, const Settings& settings) {
+  View view;
+  view.id = image.id == kNoId ? static_cast<std::uint32_t>(index) : image.id;
+  view.file = io::read_image_header(image.path);
+  const cv::Size size = size_to_work_on(image, view.file.size, settings);
+  view.camera = image.camera.resized(size.width, size.height);
+  view.pose = image.pose;
+  return view;
+}
+
+void find_bit_depth(Project& project, const Settings& settings) {
+  std::vector<fs::path> photographs;
+  std::vector<io::ImageHeader> headers;
+  for (std::size_t i = 0; i < project.views.size(); ++i) {
+    if (!project.scene.images[i].calibrated) continue;
+    photographs.emplace_back(project.scene.images[i].path);
+    headers.push_back(project.views[i].file);
+  }
+  project.bit_depth = io::common_bit_depth(photographs, headers, settings.bit_depth);
+}
+
+void load_views(Project& project, const Settings& settings) {
+  const std::size_t count = project.scene.images.size();
+  project.views.resize(count);
+  FirstError error;
+  parallel_for(count, [&](std::size_t i) {
+    if (project.scene.images[i].calibrated)
+      error.run(i, [&] { project.views[i] = load_view(project.scene.images[i], i, settings); });
+  });
+  error.rethrow();
+  choose_masks(project, settings);
+  find_bit_depth(project, settings);
+}
+
+void check_ids(const Project& project) {
+  std::set<std::uint32_t> seen;
+  for (std::size_t i = 0; i < project.views.size(); ++i)
+    if (project.scene.images[i].calibrated && !seen.insert(project.views[i].id).second)
+      fail("image {}: ID {} is used twice, depth maps would overwrite each other",
+           project.scene.images[i].path, project.views[i].id);
+}
+
+// Images with given neighbours need points of their own only for their depth range.
+void use_neighbour_lists(Project& project, const Settings& settings) {
+  const std::vector<bool> named = read_neighbour_lists(settings.neighbour_lists, project.scene);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    ViewPreparation& preparation = project.preparations[i];
+    if (named[i] && preparation.init_points.size() >= settings.selection.min_init_points)
+      preparation.problem.clear();
+  }
+}
+
+void tell(const SceneObserver& observer, const Project& project, bool own_region) {
+  if (observer)
+    observer({project.housing.has_value(), own_region, project.scene.region.has_value()});
+}
+
+void select_views(Project& project, const Settings& settings, const SceneObserver& observer) {
+  Scene& scene = project.scene;
+  const bool own_region = scene.region.has_value();
+  if (!scene.region) scene.region = estimate_region(scene, settings.region);
+  if (scene.region) scene.region = with_border(*scene.region, settings.roi_border);
+  tell(observer, project, own_region);
+  require_memory_to_score(scene, settings);
+  project.preparations =
+      score_neighbours(scene, settings.selection, console_progress("Scored neighbours"));
+  if (!settings.neighbour_lists.empty()) use_neighbour_lists(project, settings);
+  project.neighbours.resize(scene.images.size());
+  project.sources.resize(scene.images.size());
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    if (!scene.images[i].calibrated) continue;
+    if (!project.preparations[i].usable()) {
+      log_warning("{}: left out: {}", scene.images[i].path, project.preparations[i].problem);
+      continue;
+    }
+    project.neighbours[i] = filter_neighbours(scene.images[i].neighbours, settings.selection);
+    project.sources[i] =
+        choose_source_views(project.neighbours[i], settings.number_views, settings.selection);
+    if (project.sources[i].empty())
+      log_warning("{}: left out: {}", scene.images[i].path,
+                  why_no_source_view(scene.images[i].neighbours, settings.selection));
+    else
+      project.references.push_back(i);
+  }
+  if (project.references.empty())
+    fail("{}: no image has neighbours to be matched with", settings.input.string());
+}
+
+void attach_lenses(Scene& scene, const Settings& settings) {
+  if (io::attach_lenses_beside(scene, settings.input))
+    log_info("{}: {} images have distorted lenses and are matched without resampling",
+             io::lenses_beside(settings.input).filename().string(),
+             std::ranges::count_if(scene.images, [](const SceneImage& image) {
+               return image.camera.distortion.has_value();
+             }));
+}
+
+void warn_of_missing_lenses(const Settings& settings) {
+  const fs::path file = io::lenses_beside(settings.input);
+  std::error_code error;
+  if (!fs::exists(file, error))
+    log_warning("{}: file not found: the images count as undistorted", file.string());
+}
+
+}  // namespace
+
+bool all_pinholes(const Project& project) {
+  return std::ranges::none_of(
+      project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
+}
+
+fs::path housing_file(const Settings& settings) {
+  return settings.housing.empty() ? io::housing_beside(settings.input) : settings.housing;
+}
+
+Project load_scene(const Settings& settings) {
+  require_memory_to_read(settings);
+  Project project;
+  project.scene = io::read_mvs(settings.input, settings.working_folder);
+  project.frame = io::enter_local_frame(project.scene, settings.input);
+  find_images(project.scene, settings);
+  attach_lenses(project.scene, settings);
+  project.lenses = io::lenses_of(project.scene, settings.output);
+  project.housing = attach_housing(project.scene, project.frame, settings);
+  if (project.housing) warn_of_missing_lenses(settings);
+  log_info("Scene {}: {} images, {} points", settings.input.filename().string(),
+           project.scene.images.size(), project.scene.points.size());
+  if (!settings.point_cloud.empty())
+    io::use_point_cloud(project.scene, project.frame, settings.point_cloud);
+  return project;
+}
+
+Project load_project(const Settings& settings, const SceneObserver& observer) {
+  Project project = load_scene(settings);
+  load_views(project, settings);
+  check_ids(project);
+  select_views(project, settings, observer);
+  project.fingerprint = fingerprint(project, settings);
+  return project;
+}
+
+void write_cameras_beside_output(const Project& project, const Settings& settings) {
+  if (!project.frame.is_world() || settings.output != settings.input)
+    io::write_geo_offset_beside(settings.output, project.frame);
+  io::write_lenses_beside(settings.output, project.lenses, project.housing.has_value());
+  const fs::path file = io::housing_beside(settings.output);
+  std::error_code error;
+  if (fs::equivalent(file, housing_file(settings), error)) return;
+  if (project.housing) return io::write_housing(file, *project.housing);
+  if (fs::remove(file, error)) log_info("{} removed: the scene has no ports", file.string());
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The input of one run: the scene with its ports, neighbours, masks and working resolution, and a
+// fingerprint of all data that the depth maps depend on.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "densify/scene_facts.h"
+#include "densify/settings.h"
+#include "io/cameras/housing.h"
+#include "io/cameras/lenses.h"
+#include "io/images/image.h"
+#include "scene/local_frame.h"
+#include "scene/scene.h"
+#include "scene/view_selection.h"
+
+namespace axial::densify {
+
+// One image of the scene at its working resolution. ImageStore has its pixels. Images without
+// calibration have an empty camera.
+struct View {
+  std::uint32_t id = 0;  // global id
+  CameraModel camera;
+  Pose pose;
+  io::ImageHeader file;
+  std::filesystem::path mask;  // empty: none
+
+  // Whether WorkImage::mask may be non-empty.
+  bool masked() const { return !mask.empty() || file.alpha; }
+};
+
+struct Project {
+  Scene scene;                         // in `frame`, with ports and neighbour scores
+  LocalFrame frame;                    // the frame of the scene's coordinates
+  std::optional<io::Housing> housing;  // the source of the ports; in world coordinates
+  io::Lenses lenses;                   // to write beside the output
+  std::vector<ViewPreparation> preparations;
+  std::vector<View> views;                         // one for each image of the scene
+  std::vector<std::vector<ViewScore>> neighbours;  // filtered
+  std::vector<std::vector<ViewScore>> sources;     // chosen for matching
+  std::vector<std::size_t> references;             // images that get a depth map
+  int bit_depth = 16;  // number of bits that the values of 16-bit images use
+  std::string fingerprint;
+};
+
+// Loads the scene with its ports and lenses, and the points of Settings::point_cloud. Needs no
+// image files. Error for any fault of these files.
+Project load_scene(const Settings& settings);
+
+// Loads the scene, reads the headers and bytes of its images and masks (without keeping pixels),
+// and selects views. Error for a fault of the scene or its housing, for files that are missing or
+// truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds
+// other faults of images. `observer` is called before views are selected.
+Project load_project(const Settings& settings, const SceneObserver& observer = {});
+
+// Whether no camera has a port or a distorted lens.
+bool all_pinholes(const Project& project);
+
+// The path of the housing file, which may not exist.
+std::filesystem::path housing_file(const Settings& settings);
+
+// Writes housing, lenses and offset beside the output scene, where later programs look for them.
+// Removes such a file of the same name if the scene has no ports, distorted lenses or offset. The
+// housing file that was read is never changed.
+void write_cameras_beside_output(const Project& project, const Settings& settings);
+
+}  // namespace axial::densify

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "densify/scene_memory.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "densify/memory_limit.h"
+#include "densify/project.h"
+#include "io/openmvs/mvs_counts.h"
+#include "io/openmvs/point_source.h"
+
+namespace axial::densify {
+namespace {
+
+// The memory that a project holds for each image besides the scene: view, chosen neighbours,
+// fingerprint.
+std::uint64_t kept_of_images(std::uint64_t images) {
+  constexpr std::uint64_t kChosen = 1024;
+  return images * (sizeof(View) + kChosen);
+}
+
+// The memory for the text of the housing and of the lenses while it is read.
+std::uint64_t side_files(const Settings& settings) {
+  constexpr std::uint64_t kPerByte = 12;
+  std::uint64_t bytes = 0;
+  for (const std::filesystem::path& file :
+       {housing_file(settings), io::lenses_beside(settings.input)}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error) bytes += size;
+  }
+  return kPerByte * bytes;
+}
+
+// The memory of a scene before its views are scored.
+std::uint64_t kept_of(const io::MvsCounts& counts, const Settings& settings) {
+  return counts.scene_bytes() + side_files(settings) + kept_of_images(counts.images);
+}
+
+// `bytes`: the peak while the scene is read and its views are scored.
+void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
+  const std::uint64_t cap = memory_limit(settings), least = bytes + kProgramBytes;
+  if (bytes > kProgramBytes && cap < least)
+    fail(
+        "--max-memory {}: {} MB are too little, this scene needs at least {} MB for reading and "
+        "for scoring its views",
+        settings.max_memory, cap / kMegabyte, least / kMegabyte + 1);
+}
+
+}  // namespace
+
+void require_memory_to_read(const Settings& settings) {
+  auto counts = io::count_mvs(settings.input);
+  if (!counts) return;
+  std::uint64_t reading = counts->reading_bytes();
+  if (!settings.point_cloud.empty())
+    if (const auto cloud = io::count_point_cloud(settings.point_cloud, *counts)) {
+      reading = std::max(reading, cloud->reading_bytes);
+      if (!only_exports(settings)) counts = cloud->scene;
+    }
+  const ScoringMemory scoring =
+      scoring_memory({counts->images, counts->points, counts->observations, 0});
+  const std::uint64_t kept = kept_of(*counts, settings);
+  require_memory_for_scene(
+      std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()}),
+      settings);
+}
+
+void require_memory_to_score(const Scene& scene, const Settings& settings) {
+  ScoringSize size = scoring_size(scene, settings.selection);
+  const io::MvsCounts counts = io::count_scene(scene);
+  const auto needed = [&] {
+    const ScoringMemory scoring = scoring_memory(size);
+    io::MvsCounts written = counts;
+    written.set_view_scores(size.neighbours);
+    return kept_of(counts, settings) + scoring.kept +
+           std::max(scoring.work, written.writing_bytes());
+  };
+  if (needed() + kProgramBytes > memory_limit(settings))
+    size.neighbours = count_neighbours(scene, settings.selection);
+  require_memory_for_scene(needed(), settings);
+}
+
+}  // namespace axial::densify

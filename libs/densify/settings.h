@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The settings of one run of densify().
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cloud/fuse.h"
+#include "depth/filters.h"
+#include "depth/options.h"
+#include "scene/camera_list.h"
+#include "scene/region.h"
+#include "scene/resolution.h"
+#include "scene/view_selection.h"
+
+namespace axial::densify {
+
+enum class CameraChoice { automatic, pinhole, flat_port };
+
+// The depth maps of which pictures are written beside them.
+enum class Pictures { none, final_maps, maps_of_every_stage };
+
+// Bits of Settings::postprocess.
+inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
+
+// Paths are absolute. An empty path means "none", unless its comment says otherwise.
+struct Settings {
+  std::filesystem::path input;           // scene (.mvs)
+  std::filesystem::path output;          // scene to write (.mvs); its cloud has the extension .ply
+  std::filesystem::path working_folder;  // of the depth maps; base of relative paths in the scene
+  std::filesystem::path housing;         // empty: beside the scene, if there is one
+  std::filesystem::path point_cloud;     // empty: the scene's own points
+  std::filesystem::path mask_folder;     // empty: the masks that the scene names
+  std::filesystem::path neighbour_lists;
+  // The lists of neighbours are written to this file, and nothing else is made.
+  std::filesystem::path neighbour_lists_output;
+  std::filesystem::path report;                     // agreement of maps, points and cameras (.json)
+  std::filesystem::path pinhole_export;             // folder; needs `fuse`
+  std::vector<std::filesystem::path> other_inputs;  // the caller's files: never overwritten
+
+  int ignore_mask_label = -1;  // below 0: no masks
+  int bit_depth = 0;           // of 16-bit images: 8 to 16; 0: detected
+
+  CameraChoice camera = CameraChoice::automatic;
+  bool refractive = false;     // a housing is required
+  bool allow_missing = false;  // go on if the housing gives no image a port
+  ProjectionMethod projection = ProjectionMethod::exact;
+
+  ResolutionOptions resolution;
+  ViewSelectionOptions selection;
+  depth::PatchMatchOptions matching;
+  depth::SpeckleOptions speckles;
+  depth::GapOptions gaps;
+  // A text that becomes a part of the fingerprint of the depth maps. It describes the values of
+  // `matching`, `speckles` and `gaps` that differ from their defaults, except warp,
+  // sub_resolution_levels and iterations, which are in the fingerprint anyway.
+  std::string map_settings;
+  unsigned number_views = 0;  // source views of an image, at most 32; 0: all suitable views
+  int geometric_iterations = 2;
+  unsigned postprocess = kSpeckles | kGaps;
+
+  // `normals`, max_maps and max_loads are set by estimate_normals and by the memory plan.
+  cloud::FuseOptions fusion;
+  bool make_maps = true;         // otherwise existing maps in the working folder are used unchanged
+  bool fuse = true;              // otherwise the sparse points become the cloud
+  bool overwrite_dmaps = false;  // maps of other programs may be overwritten
+  unsigned estimate_colors = 2;  // 0: no, 1: from the nearest view, 2: from all views of a point
+  unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps
+  RegionMode region = RegionMode::adaptive;
+  double roi_border = 0;  // see with_border()
+  bool crop_to_roi = true;
+  bool remove_dmaps = false;      // after fusion
+  bool double_precision = false;  // cloud as double, in world coordinates
+
+  // Exports of the scene's points instead of densifying (cloud_exports.h); 0: none.
+  int filter_point_cloud = 0;   // below 0
+  int export_number_views = 0;  // N or -N
+  double estimate_scale = 0;    // above 0
+
+  Pictures pictures = Pictures::none;
+  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
+  unsigned max_threads = 0;      // 0: as many as cores
+};
+
+// Whether the cloud takes colours from the images.
+inline bool needs_colors(const Settings& settings) {
+  return settings.fuse && settings.estimate_colors > 0;
+}
+
+// Whether the settings ask for an export of the scene's points instead of densifying.
+inline bool only_exports(const Settings& settings) {
+  return settings.filter_point_cloud < 0 || settings.export_number_views != 0 ||
+         settings.estimate_scale > 0;
+}
+
+}  // namespace axial::densify

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole library on photographs of a textured floor.
+#include "densify/densify.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "io/images/image.h"
+#include "io/openmvs/mvs.h"
+#include "io/ply/ply.h"
+#include "scene/scene.h"
+#include "support/empty_folder.h"
+#include "support/error_of.h"
+#include "support/textured_scene.h"
+
+namespace axial::densify {
+namespace {
+
+namespace fs = std::filesystem;
+
+CameraModel camera() {
+  CameraModel model;
+  model.width = 160;
+  model.height = 120;
+  model.lens = {150, 150, 79.5, 59.5};
+  return model;
+}
+
+// Four cameras in a row, and sparse points that the first sees.
+class Densify : public testing::Test {
+ protected:
+  Densify() {
+    Scene scene;
+    for (int i = 0; i < 4; ++i) {
+      SceneImage image;
+      image.path = (folder_ / ("image" + std::to_string(i) + ".png")).string();
+      image.id = static_cast<std::uint32_t>(i);
+      image.camera = camera();
+      image.pose.centre = {0.25 * (i % 2), 0.25 * (i / 2), 0};
+      const cv::Mat1b grey = test::render(floor_, image.camera, image.pose).image;
+      cv::Mat3b color;
+      cv::cvtColor(grey, color, cv::COLOR_GRAY2BGR);
+      io::write_png(image.path, color);
+      scene.images.push_back(image);
+    }
+    for (int y = 4; y < 120; y += 7)
+      for (int x = 4; x < 160; x += 7) add_point(scene, x, y);
+    points_ = scene.points.size();
+    settings_.input = folder_ / "scene.mvs";
+    io::write_mvs(settings_.input, scene, folder_);
+    use_folder("out");
+  }
+
+  // The point of the floor at a pixel of the first image, if two images see it.
+  void add_point(Scene& scene, int x, int y) const {
+    const Eigen::Vector3d direction = Eigen::Vector3d((x - 79.5) / 150, (y - 59.5) / 150, 1);
+    const Eigen::Vector3d unit = direction.normalized();
+    SparsePoint point;
+    point.position = (floor_.depth(Eigen::Vector3d::Zero(), unit) * unit).cast<float>();
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Eigen::Vector3d at = scene.images[i].pose.to_camera(point.position.cast<double>());
+      const double u = 150 * at.x() / at.z() + 79.5, v = 150 * at.y() / at.z() + 59.5;
+      if (u >= 0 && u <= 159 && v >= 0 && v <= 119) point.views.push_back({i, 0});
+    }
+    if (point.views.size() > 1) scene.points.push_back(point);
+  }
+
+  void use_folder(const std::string& name) {
+    settings_.working_folder = folder_ / name;
+    settings_.output = folder_ / name / "dense.mvs";
+    fs::create_directories(settings_.working_folder);
+  }
+
+  fs::path map(int image) const {
+    return settings_.working_folder / ("depth000" + std::to_string(image) + ".dmap");
+  }
+
+  const test::TexturedScene floor_{.cell = 0.04};  // three pixels
+  const fs::path folder_ = test::empty_folder();
+  std::size_t points_ = 0;
+  Settings settings_;
+};
+
+TEST_F(Densify, MakesACloudOnTheSurfaceAndReportsIt) {
+  SceneFacts facts{true, true, false};
+  const Report report = densify(settings_, [&](const SceneFacts& found) { facts = found; });
+  EXPECT_FALSE(facts.behind_ports);
+  EXPECT_FALSE(facts.own_region);
+  EXPECT_TRUE(facts.region);
+  EXPECT_EQ(report.result, Result::dense_cloud);
+  EXPECT_EQ(report.cloud, folder_ / "out" / "dense.ply");
+  EXPECT_EQ(report.depth_maps, 4u);
+  EXPECT_TRUE(report.only_pinholes);
+  const PointCloud cloud = io::read_cloud_ply(report.cloud);
+  EXPECT_EQ(report.points, cloud.size());
+  // Half of the pixels that all images see, each at most once.
+  EXPECT_GT(cloud.size(), 5000u);
+  std::size_t near = 0;
+  for (const Eigen::Vector3f& point : cloud.positions) {
+    const Eigen::Vector3d place = point.cast<double>();
+    const double depth = floor_.depth(Eigen::Vector3d::Zero(), place.normalized());
+    // Half a pixel of disparity: 4 m^2 / (150 px * 0.25 m) / 2.
+    near += std::abs(place.norm() - depth) < 0.053 ? 1 : 0;
+  }
+  EXPECT_GT(near, cloud.size() * 9 / 10);
+  EXPECT_EQ(io::read_mvs(settings_.output, settings_.working_folder).images.size(), 4u);
+}
+
+TEST_F(Densify, ASecondRunUsesTheDepthMapsOfTheFirst) {
+  densify(settings_);
+  const auto written = fs::last_write_time(map(2));
+  const std::string cloud = read_file(folder_ / "out" / "dense.ply");
+  fs::remove(map(1));
+  densify(settings_);
+  EXPECT_EQ(fs::last_write_time(map(2)), written);
+  EXPECT_TRUE(fs::exists(map(1)));
+  EXPECT_EQ(read_file(folder_ / "out" / "dense.ply"), cloud);
+  settings_.matching.iterations = 1;
+  densify(settings_);
+  EXPECT_NE(fs::last_write_time(map(2)), written);
+}
+
+TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
+  densify(settings_);
+  const std::string cloud = read_file(folder_ / "out" / "dense.ply");
+  use_folder("other");
+  settings_.max_threads = 1;
+  settings_.max_memory = 200;
+  densify(settings_);
+  EXPECT_EQ(read_file(folder_ / "other" / "dense.ply"), cloud);
+}
+
+TEST_F(Densify, WithoutFusionTheSparsePointsAreTheCloud) {
+  settings_.fuse = false;
+  settings_.geometric_iterations = 0;
+  const Report report = densify(settings_);
+  EXPECT_EQ(report.result, Result::sparse_cloud);
+  EXPECT_EQ(report.points, points_);
+  EXPECT_EQ(io::read_cloud_ply(report.cloud).size(), points_);
+  EXPECT_TRUE(fs::exists(map(3)));
+}
+
+TEST_F(Densify, ExportsAndListsMakeNoDepthMaps) {
+  settings_.export_number_views = 2;
+  Report report = densify(settings_);
+  EXPECT_EQ(report.result, Result::point_export);
+  EXPECT_EQ(report.cloud, folder_ / "out" / "dense_2views.ply");
+  EXPECT_EQ(report.points, points_);
+  settings_.export_number_views = 0;
+  settings_.neighbour_lists_output = folder_ / "lists.txt";
+  report = densify(settings_);
+  EXPECT_EQ(report.result, Result::neighbour_lists);
+  EXPECT_TRUE(report.cloud.empty());
+  EXPECT_TRUE(fs::exists(folder_ / "lists.txt"));
+  EXPECT_FALSE(fs::exists(map(0)));
+}
+
+TEST_F(Densify, RefusesToOverwriteInputs) {
+  const std::string scene = read_file(settings_.input);
+  settings_.output = settings_.input;
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }),
+              testing::HasSubstr(settings_.input.string()));
+  EXPECT_EQ(read_file(settings_.input), scene);
+  use_folder("out");
+  settings_.other_inputs = {folder_ / "out" / "dense.ply"};
+  write_atomically(settings_.other_inputs.front(), "the caller's");
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }), testing::HasSubstr("dense.ply"));
+  EXPECT_EQ(read_file(settings_.other_inputs.front()), "the caller's");
+}
+
+}  // namespace
+}  // namespace axial::densify

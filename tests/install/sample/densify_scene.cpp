@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes depth maps and a cloud of a scene: densify_scene SCENE.mvs FOLDER. Prints the number of
+// points.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "densify/densify.h"
+
+int main(int, char** argv) try {
+  axial::densify::Settings settings;
+  settings.input = std::filesystem::absolute(argv[1]);
+  settings.working_folder = std::filesystem::absolute(argv[2]);
+  settings.output = settings.working_folder / "dense.mvs";
+  const axial::densify::Report report = axial::densify::densify(settings);
+  std::printf("%zu points in %s\n", report.points, report.cloud.c_str());
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
