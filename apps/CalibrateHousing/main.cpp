@@ -12,10 +12,10 @@
 #include "photographs.h"
 #include "report.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 io::ColmapCamera load_lens(const fs::path& path) {
   const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
@@ -168,7 +168,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("CalibrateHousing", [&] { return run(argc, argv); });
+  return axial::run_program("CalibrateHousing", [&] { return axial::apps::run(argc, argv); });
 }

@@ -13,10 +13,10 @@
 #include "io/bit_depth.h"
 #include "io/image.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 bool is_image_name(const fs::path& path) {
   const std::string extension = lower_extension(path);
@@ -87,3 +87,5 @@ std::vector<calibrate::View> find_views(std::span<const fs::path> photographs,
   });
   return views;
 }
+
+}  // namespace axial::apps

@@ -8,6 +8,8 @@
 #include "calibrate/board.h"
 #include "calibrate/board_bundle.h"
 
+namespace axial::apps {
+
 // The photographs: given files as they are, and of each folder the files with an image's extension,
 // in the order of names. Error for a path that does not exist, and for a folder without
 // photographs.
@@ -16,7 +18,8 @@ std::vector<std::filesystem::path> photographs_in(std::span<const std::filesyste
 // The board's corners in every photograph, in the order of `photographs`; without corners where the
 // board is not found. Error that names the first photograph that cannot be read or whose size
 // differs from the lens's. `bit_depth`: as for io::common_bit_depth.
-std::vector<axial::calibrate::View> find_views(std::span<const std::filesystem::path> photographs,
-                                               const axial::calibrate::Board& board,
-                                               const axial::io::ColmapCamera& lens,
-                                               int bit_depth = 0);
+std::vector<calibrate::View> find_views(std::span<const std::filesystem::path> photographs,
+                                        const calibrate::Board& board, const io::ColmapCamera& lens,
+                                        int bit_depth = 0);
+
+}  // namespace axial::apps
