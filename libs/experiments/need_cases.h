@@ -10,7 +10,7 @@
 
 namespace axial::experiments {
 
-// A scene that differs from the usual one in one parameter.
+// A scene, and the parameter in which it differs from the usual one.
 struct NeedCase {
   std::string name;    // name of the part
   std::string series;  // name of the varied parameter
