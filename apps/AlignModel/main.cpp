@@ -16,10 +16,10 @@
 #include "io/colmap/colmap_scene.h"
 #include "pose/import_check.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options {
   ParsedOptions parsed;
@@ -91,7 +91,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("AlignModel", [&] { return run(argc, argv); });
+  return axial::run_program("AlignModel", [&] { return axial::apps::run(argc, argv); });
 }

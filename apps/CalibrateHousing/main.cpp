@@ -5,17 +5,17 @@
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "calibrate/coverage.h"
+#include "calibrate/photographs.h"
 #include "io/cameras/calibmar.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/rival_ports.h"
 #include "options.h"
-#include "photographs.h"
 #include "report.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 io::ColmapCamera load_lens(const fs::path& path) {
   const std::vector<io::ColmapCamera> cameras = io::read_colmap_cameras(path);
@@ -154,9 +154,9 @@ int run(int argc, char** argv) {
     log_warning("The port of {} is used; the port of {} differs and is ignored",
                 options.housing.string(), options.lens.string());
   set_unknown(options, port);
-  const std::vector<fs::path> photographs = photographs_in(options.input);
+  const std::vector<fs::path> photographs = calibrate::photographs_in(options.input);
   check_outputs(options, photographs);
-  const auto views = find_views(photographs, options.board, lens, options.bit_depth);
+  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth);
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);
@@ -168,7 +168,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("CalibrateHousing", [&] { return run(argc, argv); });
+  return axial::run_program("CalibrateHousing", [&] { return axial::apps::run(argc, argv); });
 }

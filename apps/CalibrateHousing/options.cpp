@@ -8,8 +8,7 @@
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 
-using axial::fail;
-
+namespace axial::apps {
 namespace {
 
 // The options as text, before they are checked.
@@ -20,8 +19,7 @@ struct Texts {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-void declare(axial::OptionList& visible, Options& options, Texts& texts,
-             double& max_normal_degrees) {
+void declare_files(OptionList& visible, Options& options, Texts& texts) {
   visible
       .add("input-file,i", &texts.input,
            "photographs of the board under water: a folder, or a file; may be given several times")
@@ -42,12 +40,16 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts,
       .add("calibmar", &texts.calibmar, "also write a calibration.yaml for Calibmar")
       .add("report", &texts.report, "write all results to this file (.json)")
       .add("coverage", &texts.coverage,
-           "draw the corners' positions in the images to this file (.svg)")
-      .add("refine", &options.refine_list,
-           "values to estimate: any of normal, distance (flat ports), centre (domes), thickness "
-           "(of the glass), index (of the water) (default: normal,distance or centre)");
-  axial::io::declare_bit_depth(visible, options.bit_depth);
-  axial::pose::declare_sigmas(visible, options.sigmas);
+           "draw the corners' positions in the images to this file (.svg)");
+}
+
+// What is estimated, from which corners, and how precisely it must be known.
+void declare_estimate(OptionList& visible, Options& options, double& max_normal_degrees) {
+  visible.add("refine", &options.refine_list,
+              "values to estimate: any of normal, distance (flat ports), centre (domes), thickness "
+              "(of the glass), index (of the water) (default: normal,distance or centre)");
+  io::declare_bit_depth(visible, options.bit_depth);
+  pose::declare_sigmas(visible, options.sigmas);
   visible
       .add_with_default("max-error", &options.calibrate.max_error,
                         "corners with larger errors are dropped [px]")
@@ -69,7 +71,7 @@ void require_positive(const char* option, double value) {
 void check(const Options& options, double max_normal_degrees) {
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
   if (options.output.empty()) fail("--output-file is missing: the housing file to write");
-  axial::io::check_bit_depth(options.bit_depth);
+  io::check_bit_depth(options.bit_depth);
   require_positive("max-error", options.calibrate.max_error);
   require_positive("max-distance-sigma", options.limits.place);
   require_positive("max-normal-sigma", max_normal_degrees);
@@ -83,17 +85,18 @@ Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Texts texts;
   double max_normal_degrees = 0.1;
-  axial::ProgramOptions program{
-      "CalibrateHousing",
-      "calibrates the port of a housing from photographs of a board under water",
-      {},
-      {}};
-  program.version = axial::version_line(program.name);
-  declare(program.visible, options, texts, max_normal_degrees);
-  options.parsed = axial::parse_options(argc, argv, program);
+  ProgramOptions program{"CalibrateHousing",
+                         "calibrates the port of a housing from photographs of a board under water",
+                         {},
+                         {}};
+  program.version = version_line(program.name);
+  // In the order of --help.
+  declare_files(program.visible, options, texts);
+  declare_estimate(program.visible, options, max_normal_degrees);
+  options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   const auto path = [&](const std::string& text) {
-    return axial::in_working_folder(options.parsed.common, text);
+    return in_working_folder(options.parsed.common, text);
   };
   for (const std::string& input : texts.input) options.input.push_back(path(input));
   options.lens = path(texts.lens);
@@ -106,9 +109,11 @@ Options parse_command_line(int argc, const char* const* argv) {
   check(options, max_normal_degrees);
   if (texts.board.empty()) fail("--board is missing: the board in the photographs");
   try {
-    options.board = axial::calibrate::parse_board(texts.board);
-  } catch (const axial::Error& error) {
+    options.board = calibrate::parse_board(texts.board);
+  } catch (const Error& error) {
     fail("--board {}", error.what());
   }
   return options;
 }
+
+}  // namespace axial::apps

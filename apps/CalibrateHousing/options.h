@@ -9,21 +9,25 @@
 #include "calibrate/advice.h"
 #include "pose/free_numbers.h"
 
+namespace axial::apps {
+
 struct Options {
-  axial::ParsedOptions parsed;
+  ParsedOptions parsed;
   std::vector<std::filesystem::path> input;  // files of photographs, or folders of them
   std::filesystem::path lens;                // COLMAP cameras or calibration.yaml
   std::filesystem::path housing;  // housing file or calibration.yaml; empty: the port in `lens`
   std::string port;               // name of the port in `housing`; empty: the port of the camera
-  axial::calibrate::Board board;
+  calibrate::Board board;
   int bit_depth = 0;        // of 16-bit photographs; 0: detected
   std::string refine_list;  // see pose/free_numbers.h; empty: the words for the kind of port
-  axial::pose::Sigmas sigmas;
-  axial::calibrate::CalibrateOptions calibrate;
-  axial::calibrate::Limits limits;
+  pose::Sigmas sigmas;
+  calibrate::CalibrateOptions calibrate;
+  calibrate::Limits limits;
   std::filesystem::path output;                      // housing file
   std::filesystem::path calibmar, report, coverage;  // empty: not written
 };
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

@@ -9,9 +9,9 @@
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
 
+namespace axial::apps {
 namespace {
 
-using namespace axial;
 using calibrate::Calibration;
 using Json = nlohmann::ordered_json;
 
@@ -24,10 +24,7 @@ struct Photograph {
 
 std::vector<Photograph> photographs_of(const Calibration& calibration) {
   const pose::Bundle& bundle = calibration.bundle.bundle;
-  std::vector<std::vector<double>> errors(bundle.images.size());
-  const std::vector<double> all = reprojection_errors(bundle);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    errors[bundle.observations[i].image].push_back(all[i]);
+  const auto errors = pose::reprojection_errors_by_image(bundle);
   std::vector<Photograph> rows;
   for (std::size_t i = 0; i < errors.size(); ++i)
     rows.push_back({bundle.images[i].name, calibration.views[i].corners.size(), errors[i].size(),
@@ -92,3 +89,5 @@ std::string report_json(const Calibration& calibration, const calibrate::Limits&
   // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.
   return io::to_text(json, 1) + "\n";
 }
+
+}  // namespace axial::apps

@@ -9,8 +9,7 @@
 #include "evaluate/parts_report.h"
 #include "io/ply/ply_property.h"
 
-using namespace axial;
-
+namespace axial::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -60,3 +59,5 @@ Json report_parts(const Options& options, const Evaluated& e) {
     report["strip"] = told(evaluate::density_along_strip(e.points, e.whole.places, e.views));
   return report;
 }
+
+}  // namespace axial::apps

@@ -9,21 +9,24 @@
 #include "options.h"
 #include "scene/point_cloud.h"
 
+namespace axial::apps {
+
 // The properties of the points of the cloud in `path`: numbers of views from its view lists, and
 // the vertex properties `error` and `confidence`.
-axial::evaluate::PointWorth read_worth(const std::filesystem::path& path,
-                                       const axial::PointCloud& cloud);
+evaluate::PointWorth read_worth(const std::filesystem::path& path, const PointCloud& cloud);
 
 struct Evaluated {
   std::span<const Eigen::Vector3f> points;
-  const axial::evaluate::PointWorth& worth;  // of these points
-  const axial::Mesh& truth;
-  const axial::evaluate::Surface& surface;
-  std::span<const axial::evaluate::View> views;
-  const axial::evaluate::CloudEvaluation& whole;
+  const evaluate::PointWorth& worth;  // of these points
+  const Mesh& truth;
+  const evaluate::Surface& surface;
+  std::span<const evaluate::View> views;
+  const evaluate::CloudEvaluation& whole;
 };
 
 // Prints the tables and returns them for the JSON file: recall by the truth's vertex property
 // `thickness`, errors by the points' numbers of views, a comparison of expected and actual errors,
 // density along the strip of cameras.
 nlohmann::ordered_json report_parts(const Options& options, const Evaluated& evaluated);
+
+}  // namespace axial::apps

@@ -22,11 +22,11 @@
 #include "io/ply/ply.h"
 #include "runs.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-using evaluate::Similarity;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
+using evaluate::Similarity;
 
 // Adds the file's name to errors of `action`, which does not know the file.
 template <class Action>
@@ -244,13 +244,39 @@ void draw(const Options& options, const PointCloud& cloud, std::span<const evalu
   io::write_png(options.picture, evaluate::with_error_scale(picture, options.color_max));
 }
 
+// Measures the aligned input. `colored` gets the points that count, without colours.
+evaluate::CloudEvaluation measure(const Options& options, Input& input, const Mesh& truth,
+                                  const evaluate::Surface& surface,
+                                  std::span<const evaluate::View> views, PointCloud& colored) {
+  evaluate::CloudOptions settings;
+  settings.tolerances = options.tolerances;
+  settings.samples = options.samples;
+  settings.seed = options.seed;
+  settings.least_views = options.least_views;
+  settings.gross = options.gross;
+  return naming(options.input, [&] {
+    if (input.mesh)
+      return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
+                                     colored.positions);
+    colored = counted_points(options, input, views);
+    return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
+  });
+}
+
+// Writes the points coloured by their errors, and the picture of them.
+void write_errors(const Options& options, const PointCloud& colored, const LocalFrame& frame,
+                  std::span<const evaluate::View> views) {
+  if (!options.error_cloud.empty())
+    io::write_cloud_ply(options.error_cloud, colored, true, {frame, false});
+  if (!options.picture.empty()) draw(options, colored, views);
+}
+
 }  // namespace
 
 nlohmann::ordered_json run_cloud(const Options& options) {
   const Models models = read_models(options);
-  const Frames& frames = models.frames;
-  Input input = read_input(options.input, frames.input);
-  const Mesh truth = io::read_mesh_ply(options.truth, frames.truth);
+  Input input = read_input(options.input, models.frames.input);
+  const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
@@ -261,25 +287,11 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   report["align"] = align(options, input, surface, models);
   if (options.align == "centres") refuse_if_far(options, input, truth);
 
-  evaluate::CloudOptions settings;
-  settings.tolerances = options.tolerances;
-  settings.samples = options.samples;
-  settings.seed = options.seed;
-  settings.least_views = options.least_views;
-  settings.gross = options.gross;
   PointCloud colored;
-  const auto result = naming(options.input, [&] {
-    if (input.mesh)
-      return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
-                                     colored.positions);
-    colored = counted_points(options, input, views);
-    return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
-  });
+  const auto result = measure(options, input, truth, surface, views, colored);
   fmt::print("{}", evaluate::table(result));
   colored.colors = evaluate::error_colors(result.distances, options.color_max);
-  if (!options.error_cloud.empty())
-    io::write_cloud_ply(options.error_cloud, colored, true, {frames.truth, false});
-  if (!options.picture.empty()) draw(options, colored, views);
+  write_errors(options, colored, models.frames.truth, views);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
   report.update(naming(options.input, [&] {
@@ -287,3 +299,5 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   }));
   return report;
 }
+
+}  // namespace axial::apps

@@ -10,8 +10,7 @@
 #include "io/openmvs/dmap.h"
 #include "runs.h"
 
-using namespace axial;
-
+namespace axial::apps {
 namespace {
 
 void check(const Options& options) {
@@ -53,3 +52,5 @@ nlohmann::ordered_json run_depth_map(const Options& options) {
   report.update(evaluate::to_json(result));
   return report;
 }
+
+}  // namespace axial::apps

@@ -10,10 +10,10 @@
 #include "options.h"
 #include "runs.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::vector<fs::path> inputs_of(const Options& options) {
   std::vector<fs::path> inputs{options.input, options.truth, options.housing};
@@ -61,7 +61,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("EvaluateReconstruction", [&] { return run(argc, argv); });
+  return axial::run_program("EvaluateReconstruction", [&] { return axial::apps::run(argc, argv); });
 }

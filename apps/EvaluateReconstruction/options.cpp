@@ -11,8 +11,7 @@
 #include "base/unused_input.h"
 #include "base/version.h"
 
-using axial::fail, axial::parse_finite;
-
+namespace axial::apps {
 namespace {
 
 // The options as text, before they are checked.
@@ -33,7 +32,7 @@ std::vector<double> parse_tolerances(const std::string& text) {
   return values;
 }
 
-void declare(axial::OptionList& visible, Options& options, Texts& texts) {
+void declare_inputs(OptionList& visible, Options& options, Texts& texts) {
   visible
       .add("input-file,i", &texts.input,
            "file to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")
@@ -48,7 +47,11 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts) {
       .add("cameras", &texts.cameras,
            "COLMAP model with the true poses: only surface that its views see counts as missing")
       .add("housing", &texts.housing, "housing file with the ports of the cameras of --cameras")
-      .add("estimated", &texts.estimated, "COLMAP model from which the input was made")
+      .add("estimated", &texts.estimated, "COLMAP model from which the input was made");
+}
+
+void declare_measures(OptionList& visible, Options& options) {
+  visible
       .add_with_default(
           "samples", &options.samples,
           "approximate number of samples on the truth, for completeness (and on an input mesh)")
@@ -61,8 +64,11 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts) {
       .add("gross", &options.gross,
            "larger errors are gross [m] (default: four times the first tolerance)")
       .add_switch("strip", &options.strip,
-                  "report the density of a cloud along the strip of --cameras")
-      .add("json", &texts.json, "write all results to this file (.json)")
+                  "report the density of a cloud along the strip of --cameras");
+}
+
+void declare_outputs(OptionList& visible, Options& options, Texts& texts) {
+  visible.add("json", &texts.json, "write all results to this file (.json)")
       .add("error-cloud", &texts.error_cloud, "write the points coloured by error (.ply)")
       .add("picture", &texts.picture,
            "draw the errors (.png): a cloud in the view of a camera, or depth, truth and error of "
@@ -76,7 +82,14 @@ void declare(axial::OptionList& visible, Options& options, Texts& texts) {
       .add("aligned", &texts.aligned, "write the input after alignment (.ply)")
       .add("transform-out", &texts.transform,
            "write the alignment to this file, as a 4 x 4 matrix, row by row");
-  axial::UnusedInput::declare(visible, options.allow_missing);
+}
+
+// In the order of --help.
+void declare(OptionList& visible, Options& options, Texts& texts) {
+  declare_inputs(visible, options, texts);
+  declare_measures(visible, options);
+  declare_outputs(visible, options, texts);
+  UnusedInput::declare(visible, options.allow_missing);
 }
 
 void check(const Options& options) {
@@ -107,8 +120,8 @@ void check(const Options& options) {
 // Warns of valid options that have no effect.
 void warn_of_no_effect(const Options& options) {
   const auto warn = [&](bool without_effect, const char* name, const char* cause) {
-    if (without_effect && axial::given(options.parsed, name))
-      axial::log_warning("--{}: without effect {}", name, cause);
+    if (without_effect && given(options.parsed, name))
+      log_warning("--{}: without effect {}", name, cause);
   };
   const bool is_map = options.input.extension() == ".dmap";
   for (const char* name : {"samples", "seed", "min-views", "gross"})
@@ -125,16 +138,16 @@ void warn_of_no_effect(const Options& options) {
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Texts texts;
-  axial::ProgramOptions program{"EvaluateReconstruction",
-                                "compares a cloud, mesh or depth map with the ground truth",
-                                {},
-                                {}};
-  program.version = axial::version_line(program.name);
+  ProgramOptions program{"EvaluateReconstruction",
+                         "compares a cloud, mesh or depth map with the ground truth",
+                         {},
+                         {}};
+  program.version = version_line(program.name);
   declare(program.visible, options, texts);
-  options.parsed = axial::parse_options(argc, argv, program);
+  options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
   const auto path = [&](const std::string& text) {
-    return axial::in_working_folder(options.parsed.common, text);
+    return in_working_folder(options.parsed.common, text);
   };
   options.input = path(texts.input);
   options.truth = path(texts.truth);
@@ -152,3 +165,5 @@ Options parse_command_line(int argc, const char* const* argv) {
   warn_of_no_effect(options);
   return options;
 }
+
+}  // namespace axial::apps

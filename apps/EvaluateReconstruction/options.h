@@ -8,8 +8,10 @@
 
 #include "base/program.h"
 
+namespace axial::apps {
+
 struct Options {
-  axial::ParsedOptions parsed;
+  ParsedOptions parsed;
   std::filesystem::path input, truth;
   std::vector<double> tolerances;   // [m], at least one
   std::string align = "none";       // none, centres, icp
@@ -34,3 +36,5 @@ struct Options {
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

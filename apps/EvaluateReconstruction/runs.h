@@ -7,5 +7,9 @@
 
 #include "options.h"
 
+namespace axial::apps {
+
 nlohmann::ordered_json run_cloud(const Options& options);
 nlohmann::ordered_json run_depth_map(const Options& options);
+
+}  // namespace axial::apps

@@ -23,10 +23,10 @@
 #include "pose/colmap_bundle.h"
 #include "pose/import_check.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::size_t count_behind_ports(const Scene& scene) {
   std::size_t count = 0;
@@ -151,10 +151,11 @@ std::string say_missing(const Scene& scene, const Options& options) {
       missing, fs::weakly_canonical(options.parsed.common.working_folder, error).string());
 }
 
-// A scene with ports is written for COLMAP-Underwater, whose files can hold ports.
-int export_scene(const Options& options) {
+// The scene with its lenses and ports, and its points or the cloud that replaces them. `frame`: the
+// scene's frame.
+Scene read_scene(const Options& options, LocalFrame& frame) {
   Scene scene = io::read_mvs(options.scene_file, options.parsed.common.working_folder);
-  const LocalFrame frame = io::enter_local_frame(scene, options.scene_file);
+  frame = io::enter_local_frame(scene, options.scene_file);
   io::attach_lenses_beside(scene, options.scene_file);
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code error;
@@ -162,6 +163,22 @@ int export_scene(const Options& options) {
     io::attach_ports(scene, io::in_frame(frame, io::read_housing(housing_file)),
                      housing_file.string());
   if (!options.point_cloud.empty()) io::use_point_cloud(scene, frame, options.point_cloud);
+  return scene;
+}
+
+// A model with ports is written for COLMAP-Underwater, whose files can hold ports.
+void write_export(const Options& options, const fs::path& folder, const io::ColmapModel& model,
+                  bool behind_ports) {
+  write_folder(folder, [&](const fs::path& staging) {
+    (behind_ports ? io::write_underwater_text : io::write_colmap_text)(staging, model);
+    io::write_json(staging / kExportMarker,
+                   {{"version", 1}, {"scene", options.scene_file.string()}});
+  });
+}
+
+int export_scene(const Options& options) {
+  LocalFrame frame;
+  const Scene scene = read_scene(options, frame);
   const fs::path images =
       options.image_folder.empty() ? io::common_image_folder(scene) : options.image_folder;
   io::ColmapModel model = io::export_colmap_model(scene, images);
@@ -174,11 +191,7 @@ int export_scene(const Options& options) {
         "{} of {} images are behind ports, which are written in the format of COLMAP-Underwater: "
         "COLMAP itself cannot read them",
         behind_ports, scene.images.size());
-  write_folder(folder, [&](const fs::path& staging) {
-    (behind_ports > 0 ? io::write_underwater_text : io::write_colmap_text)(staging, model);
-    io::write_json(staging / kExportMarker,
-                   {{"version", 1}, {"scene", options.scene_file.string()}});
-  });
+  write_export(options, folder, model, behind_ports > 0);
   const std::string missing = say_missing(scene, options);
   const std::string line = fmt::format("{}: {} images below {}{}, {} cameras, {} points",
                                        folder.string(), model.images.size(), images.string(),
@@ -190,75 +203,113 @@ int export_scene(const Options& options) {
   return 0;
 }
 
-int run(int argc, char** argv) {
-  const Options options = parse_command_line(argc, argv);
-  if (!options.parsed.run) return options.parsed.exit_code;
-  const ThreadLimit threads(options.parsed.common.max_threads);
+// A model and its ports.
+struct Input {
+  fs::path folder;  // of the model
+  io::ColmapModel model;
+  LocalFrame frame;  // of the model
+  io::Housing housing;
+  bool warned = false;  // of poses that were computed without refraction
+};
 
-  if (!options.export_folder.empty()) return export_scene(options);
-  const fs::path model_folder = io::find_colmap_model(options.colmap_folder);
-  io::ColmapModel model = io::read_colmap_model(model_folder);
-  log_info("{}: {} images, {} cameras, {} points", model_folder.string(), model.images.size(),
+Input read_input(const Options& options) {
+  Input input;
+  input.folder = io::find_colmap_model(options.colmap_folder);
+  input.model = io::read_colmap_model(input.folder);
+  const io::ColmapModel& model = input.model;
+  log_info("{}: {} images, {} cameras, {} points", input.folder.string(), model.images.size(),
            model.cameras.size(), model.points.size());
-  const LocalFrame frame = io::enter_local_frame(model);
-  bool warned = false;
-  const io::Housing housing = load_housing(options, model, warned);
+  input.frame = io::enter_local_frame(input.model);
+  input.housing = load_housing(options, model, input.warned);
   say_image_folder(options, model);
-  check_outputs(options, model_folder, model);
+  check_outputs(options, input.folder, model);
+  return input;
+}
 
-  const fs::path folder = options.scene_file.parent_path();
-  make_folder(folder);
+// Attaches the ports to the scene, and writes the housing file beside it. Without ports, a housing
+// file that is there already is kept.
+void write_ports(const Options& options, const Input& input, const io::ColmapImport& import,
+                 Scene& scene) {
   const fs::path housing_file = io::housing_beside(options.scene_file);
   std::error_code ignored;
-  const bool behind_ports = !housing.ports.empty() || fs::exists(housing_file, ignored);
-  const bool undistort = options.undistort.value_or(!behind_ports);
-  const io::ColmapImport import{model_folder, options.image_folder, folder / "undistorted",
-                                undistort};
-  Scene scene = io::import_colmap_scene(model, import, console_progress("Undistorted images"),
-                                        progress_of_many("Prepared cameras"));
-
-  const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
-  // The housing is written first: a scene without its housing would be read as dry.
-  if (options.housing_file.empty() && housing.ports.empty()) {
-    if (behind_ports)
+  if (options.housing_file.empty() && input.housing.ports.empty()) {
+    if (fs::exists(housing_file, ignored))
       log_warning("{}: is kept unchanged and belongs to this scene", housing_file.string());
-  } else {
-    const io::Housing by_image = io::housing_by_image(housing, model, scene, import);
-    for (const std::string& entry : io::unused_entries(housing, model))
-      log_warning("{}: no image matches {}", options.housing_file.string(), entry);
-    io::warn_of_housing_beside(
-        scene, options.scene_file, by_image,
-        options.housing_file.empty() ? options.colmap_folder : options.housing_file);
-    // Messages about ports that the model carries name the housing file that is written here.
-    const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
-    io::attach_ports(scene, io::in_frame(frame, by_image), ports_from.string());
-    io::write_housing(housing_file, by_image);
-    log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
-             scene.images.size());
+    return;
   }
+  const io::Housing by_image = io::housing_by_image(input.housing, input.model, scene, import);
+  for (const std::string& entry : io::unused_entries(input.housing, input.model))
+    log_warning("{}: no image matches {}", options.housing_file.string(), entry);
+  io::warn_of_housing_beside(
+      scene, options.scene_file, by_image,
+      options.housing_file.empty() ? options.colmap_folder : options.housing_file);
+  // Messages about ports that the model carries name the housing file that is written here.
+  const fs::path& ports_from = options.housing_file.empty() ? housing_file : options.housing_file;
+  io::attach_ports(scene, io::in_frame(input.frame, by_image), ports_from.string());
+  io::write_housing(housing_file, by_image);
+  log_info("{}: {} of {} images behind a port", housing_file.string(), count_behind_ports(scene),
+           scene.images.size());
+}
+
+void write_lenses(const Options& options, const io::Lenses& lenses, const Scene& scene,
+                  bool behind_ports) {
   io::write_lenses_beside(options.scene_file, lenses, behind_ports);
   if (const std::size_t distorted = count_distorted(scene))
     log_info("{}: {} of {} images keep their distorted lens",
              io::lenses_beside(options.scene_file).string(), distorted, scene.images.size());
+}
+
+void write_frame(const Options& options, const LocalFrame& frame) {
   io::write_geo_offset_beside(options.scene_file, frame);
   if (!frame.is_world())
     log_info("{}: coordinates are relative to ({}, {}, {})",
              io::geo_offset_beside(options.scene_file).string(), frame.origin.x(), frame.origin.y(),
              frame.origin.z());
+}
+
+void warn_of_misfit(const Options& options, const Input& input) {
+  const io::Housing ports = io::in_frame(input.frame, input.housing);
+  if (const auto line = pose::import_warning(input.model, ports, options.image_folder))
+    log_warning("{}", *line);
+}
+
+int import_model(const Options& options) {
+  const Input input = read_input(options);
+  const fs::path folder = options.scene_file.parent_path();
+  make_folder(folder);
+  std::error_code ignored;
+  const bool behind_ports =
+      !input.housing.ports.empty() || fs::exists(io::housing_beside(options.scene_file), ignored);
+  const bool undistort = options.undistort.value_or(!behind_ports);
+  const io::ColmapImport import{input.folder, options.image_folder, folder / "undistorted",
+                                undistort};
+  Scene scene = io::import_colmap_scene(input.model, import, console_progress("Undistorted images"),
+                                        progress_of_many("Prepared cameras"));
+  const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
+  // The housing is written first: a scene without its housing would be read as dry.
+  write_ports(options, input, import, scene);
+  write_lenses(options, lenses, scene, behind_ports);
+  write_frame(options, input.frame);
   io::write_mvs(options.scene_file, scene, folder,
                 options.normalize ? io::MvsIntrinsics::normalised : io::MvsIntrinsics::pixels);
   log_info("{}: {} images, {} points", options.scene_file.string(), scene.images.size(),
            scene.points.size());
   // The ports of an existing housing file beside the scene are not known here.
-  if (warned || (housing.ports.empty() && behind_ports)) return 0;
-  const io::Housing ports = io::in_frame(frame, housing);
-  if (const auto line = pose::import_warning(model, ports, options.image_folder))
-    log_warning("{}", *line);
+  const bool ports_unknown = input.housing.ports.empty() && behind_ports;
+  if (!input.warned && !ports_unknown) warn_of_misfit(options, input);
   return 0;
 }
 
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const ThreadLimit threads(options.parsed.common.max_threads);
+  return options.export_folder.empty() ? import_model(options) : export_scene(options);
+}
+
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("InterfaceCOLMAP", [&] { return run(argc, argv); });
+  return axial::run_program("InterfaceCOLMAP", [&] { return axial::apps::run(argc, argv); });
 }

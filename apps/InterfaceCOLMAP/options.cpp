@@ -8,10 +8,16 @@
 #include "base/unused_input.h"
 #include "base/version.h"
 
-namespace fs = std::filesystem;
-using axial::fail;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
+
+// The options before they are checked.
+struct Values {
+  std::string input, output, image_folder = "images/", housing, point_cloud;
+  bool normalize = false, force_points = false, undistort = false;
+};
 
 // The output of an export is a folder. A file name, as for an import, is a mistake.
 void refuse_file_name(const std::string& output) {
@@ -24,10 +30,10 @@ void refuse_file_name(const std::string& output) {
 // A given folder counts from the working folder, as in OpenMVS. The default belongs to the COLMAP
 // folder: another images/ in the working folder must not be used instead of the model's.
 void find_image_folder(const std::string& name, Options& options) {
-  const axial::ParsedOptions& parsed = options.parsed;
-  fs::path candidates[] = {axial::in_working_folder(parsed.common, name),
+  const ParsedOptions& parsed = options.parsed;
+  fs::path candidates[] = {in_working_folder(parsed.common, name),
                            (options.colmap_folder / name).lexically_normal()};
-  if (!axial::given(parsed, "image-folder")) std::swap(candidates[0], candidates[1]);
+  if (!given(parsed, "image-folder")) std::swap(candidates[0], candidates[1]);
   std::error_code error;
   for (const fs::path& candidate : candidates) {
     if (!fs::is_directory(candidate, error)) continue;
@@ -38,76 +44,93 @@ void find_image_folder(const std::string& name, Options& options) {
   fail("--image-folder {}: no such folder (looked for {}{})", name, candidates[0].string(), also);
 }
 
+void declare_files(OptionList& visible, Values& values) {
+  visible
+      .add("input-file,i", &values.input,
+           "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "
+           "export to DIR/sparse, where DIR is -o or the scene's folder")
+      .add("output-file,o", &values.output, "scene to write (default: DIR/scene.mvs)")
+      .add_with_default("image-folder", &values.image_folder,
+                        "folder of the images, in the working folder or else in DIR (the default: "
+                        "in DIR first); images must have the size of their cameras")
+      .add("housing", &values.housing,
+           "housing file with the ports of the cameras, or Calibmar's calibration.yaml; written as "
+           "<scene>.housing.json");
+}
+
+void declare_changes(OptionList& visible, Values& values) {
+  visible
+      .add("undistort", &values.undistort,
+           "1: resample images of distorted lenses into pinhole images, which all programs can "
+           "read; 0: keep the images, and write the lenses to <scene>.lenses.json (default: 0 "
+           "behind ports, 1 in air)")
+      .add("pointcloud-file,p", &values.point_cloud,
+           "for an export: PLY cloud with views that replaces the scene's points")
+      .add_with_default("normalize,f", &values.normalize,
+                        "1: write intrinsics divided by the image's longer side, without its "
+                        "resolution; 0: in pixels")
+      .add_with_default("force-points,e", &values.force_points,
+                        "accepted and without effect: sparse points are always written");
+}
+
+// The options of an export: the input is a scene.
+void set_export(const Values& values, Options& options) {
+  const CommonOptions& common = options.parsed.common;
+  options.scene_file = std::exchange(options.colmap_folder, {});
+  refuse_file_name(values.output);
+  options.export_folder = values.output.empty() ? options.scene_file.parent_path()
+                                                : in_working_folder(common, values.output);
+  if (!values.housing.empty())
+    fail("--housing {}: is not used in an export, which takes the housing file beside the scene",
+         values.housing);
+  options.point_cloud = in_working_folder(common, values.point_cloud);
+  for (const char* name : {"undistort", "normalize", "force-points"})
+    if (given(options.parsed, name))
+      log_warning("--{}: without effect when a scene is exported", name);
+  if (given(options.parsed, "image-folder"))
+    options.image_folder = in_working_folder(common, values.image_folder) / "";
+}
+
+// The options of an import: the input is a COLMAP folder.
+void set_import(const Values& values, Options& options) {
+  const CommonOptions& common = options.parsed.common;
+  options.normalize = values.normalize;
+  if (!values.point_cloud.empty())
+    fail("--pointcloud-file {}: is not built for an import, only for the export of a scene (.mvs)",
+         values.point_cloud);
+  if (values.force_points)
+    log_warning("--force-points: without effect: sparse points are always written");
+  std::error_code error;
+  if (!fs::is_directory(options.colmap_folder, error))
+    fail("{}: is not a folder", options.colmap_folder.string());
+  options.scene_file = values.output.empty() ? options.colmap_folder / "scene.mvs"
+                                             : in_working_folder(common, values.output);
+  if (given(options.parsed, "undistort")) options.undistort = values.undistort;
+  options.housing_file = in_working_folder(common, values.housing);
+  find_image_folder(values.image_folder, options);
+}
+
 }  // namespace
 
 Options parse_command_line(int argc, const char* const* argv) {
-  std::string input, output, image_folder = "images/", housing, point_cloud;
-  bool normalize = false, force_points = false, undistort = false;
-  axial::ProgramOptions program{
+  Values values;
+  Options options;
+  ProgramOptions program{
       "InterfaceCOLMAP",
       "converts a COLMAP model and its images to a scene (.mvs), or a scene to a COLMAP model",
       {},
       {}};
-  program.version = axial::version_line(program.name);
-  program.visible
-      .add("input-file,i", &input,
-           "COLMAP folder: the model is in DIR/sparse, DIR/sparse/0 or DIR; or a scene (.mvs) to "
-           "export to DIR/sparse, where DIR is -o or the scene's folder")
-      .add("output-file,o", &output, "scene to write (default: DIR/scene.mvs)")
-      .add_with_default("image-folder", &image_folder,
-                        "folder of the images, in the working folder or else in DIR (the default: "
-                        "in DIR first); images must have the size of their cameras")
-      .add("housing", &housing,
-           "housing file with the ports of the cameras, or Calibmar's calibration.yaml; written as "
-           "<scene>.housing.json")
-      .add("undistort", &undistort,
-           "1: resample images of distorted lenses into pinhole images, which all programs can "
-           "read; 0: keep the images, and write the lenses to <scene>.lenses.json (default: 0 "
-           "behind ports, 1 in air)")
-      .add("pointcloud-file,p", &point_cloud,
-           "for an export: PLY cloud with views that replaces the scene's points")
-      .add_with_default("normalize,f", &normalize,
-                        "1: write intrinsics divided by the image's longer side, without its "
-                        "resolution; 0: in pixels")
-      .add_with_default("force-points,e", &force_points,
-                        "accepted and without effect: sparse points are always written");
-
-  Options options;
-  axial::UnusedInput::declare(program.visible, options.allow_missing);
-  options.parsed = axial::parse_options(argc, argv, program);
+  program.version = version_line(program.name);
+  // In the order of --help.
+  declare_files(program.visible, values);
+  declare_changes(program.visible, values);
+  UnusedInput::declare(program.visible, options.allow_missing);
+  options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  const axial::CommonOptions& common = options.parsed.common;
-
-  options.colmap_folder = axial::in_working_folder(common, input);
-  if (options.colmap_folder.extension() == ".mvs") {
-    options.scene_file = std::exchange(options.colmap_folder, {});
-    refuse_file_name(output);
-    options.export_folder = output.empty() ? options.scene_file.parent_path()
-                                           : axial::in_working_folder(common, output);
-    if (!housing.empty())
-      fail("--housing {}: is not used in an export, which takes the housing file beside the scene",
-           housing);
-    options.point_cloud = axial::in_working_folder(common, point_cloud);
-    for (const char* name : {"undistort", "normalize", "force-points"})
-      if (axial::given(options.parsed, name))
-        axial::log_warning("--{}: without effect when a scene is exported", name);
-    if (axial::given(options.parsed, "image-folder"))
-      options.image_folder = axial::in_working_folder(common, image_folder) / "";
-    return options;
-  }
-  options.normalize = normalize;
-  if (!point_cloud.empty())
-    fail("--pointcloud-file {}: is not built for an import, only for the export of a scene (.mvs)",
-         point_cloud);
-  if (force_points)
-    axial::log_warning("--force-points: without effect: sparse points are always written");
-  std::error_code error;
-  if (!fs::is_directory(options.colmap_folder, error))
-    fail("{}: is not a folder", options.colmap_folder.string());
-  options.scene_file = output.empty() ? options.colmap_folder / "scene.mvs"
-                                      : axial::in_working_folder(common, output);
-  if (axial::given(options.parsed, "undistort")) options.undistort = undistort;
-  options.housing_file = axial::in_working_folder(common, housing);
-  find_image_folder(image_folder, options);
+  options.colmap_folder = in_working_folder(options.parsed.common, values.input);
+  const bool is_export = options.colmap_folder.extension() == ".mvs";
+  (is_export ? set_export : set_import)(values, options);
   return options;
 }
+
+}  // namespace axial::apps

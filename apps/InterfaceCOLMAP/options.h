@@ -6,8 +6,10 @@
 
 #include "base/program.h"
 
+namespace axial::apps {
+
 struct Options {
-  axial::ParsedOptions parsed;
+  ParsedOptions parsed;
   std::filesystem::path colmap_folder;
   std::filesystem::path scene_file;     // output of an import, input of an export
   std::filesystem::path export_folder;  // empty: import
@@ -22,3 +24,5 @@ struct Options {
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

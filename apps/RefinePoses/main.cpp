@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -23,10 +24,10 @@
 #include "results.h"
 #include "scale_from.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Lenses = std::vector<io::ColmapCamera>;
 
@@ -232,67 +233,102 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
                                                           : known.scale_sigma));
 }
 
-int run(int argc, char** argv) {
-  Options options = parse_command_line(argc, argv);
-  if (!options.parsed.run) return options.parsed.exit_code;
-  const ThreadLimit threads(options.parsed.common.max_threads);
-  const fs::path folder = io::find_colmap_model(options.model);
-  io::ColmapModel model = io::read_colmap_model(folder);
+// A model, its lenses in air and its ports.
+struct Input {
+  fs::path folder;  // of the model
+  io::ColmapModel model;
+  LocalFrame frame;  // of the model
+  Lenses lenses;
+  io::Housing housing;
+};
+
+Input read_input(const Options& options) {
+  Input input;
+  input.folder = io::find_colmap_model(options.model);
+  input.model = io::read_colmap_model(input.folder);
   // In world coordinates of millions of metres the solver would stop too early, because its steps
   // are small relative to the coordinates.
-  const LocalFrame frame_of_model = io::enter_local_frame(model);
-  const Lenses lenses = load_lenses(options, model);
-  warn_of_other_lenses(options, model, lenses);
-  const io::Housing housing = load_housing(options, model, lenses);
-  pose::ColmapBundle refined = load(options, model, lenses, housing);
-  for (const std::string& entry : io::unused_entries(housing, model))
-    log_warning("{}: no image matches {}",
-                (!options.housing.empty() ? options.housing
-                 : options.lens.empty()   ? options.model
-                                          : options.lens)
-                    .string(),
-                entry);
-  if (std::ranges::none_of(refined.bundle.cameras, [](const pose::BundleCamera& camera) {
+  input.frame = io::enter_local_frame(input.model);
+  input.lenses = load_lenses(options, input.model);
+  warn_of_other_lenses(options, input.model, input.lenses);
+  input.housing = load_housing(options, input.model, input.lenses);
+  return input;
+}
+
+// Warns of ports that no image has. Error if no image has a port.
+void check_ports(const Options& options, const Input& input, const pose::Bundle& bundle) {
+  const fs::path& ports_from = !options.housing.empty() ? options.housing
+                               : options.lens.empty()   ? options.model
+                                                        : options.lens;
+  for (const std::string& entry : io::unused_entries(input.housing, input.model))
+    log_warning("{}: no image matches {}", ports_from.string(), entry);
+  if (std::ranges::none_of(bundle.cameras, [](const pose::BundleCamera& camera) {
         return camera.measured.port.has_value();
       }))
     fail("no image is behind a port: there is nothing to refine");
-  UnusedInput unused(options.allow_missing);
-  LocalFrame frame = set_known(options, refined.bundle, frame_of_model, unused);
-  check_output(options, folder);
-  log_info("{}: {} images, {} points, {} observations", folder.string(), model.images.size(),
-           model.points.size(), refined.bundle.observations.size());
-  if (refined.unseen > 0)
-    log_warning("{} observations lie at pixels for which the lens in air has no ray",
-                refined.unseen);
+}
 
+void say_input(const Input& input, const pose::ColmapBundle& bundle) {
+  log_info("{}: {} images, {} points, {} observations", input.folder.string(),
+           input.model.images.size(), input.model.points.size(), bundle.bundle.observations.size());
+  if (bundle.unseen > 0)
+    log_warning("{} observations lie at pixels for which the lens in air has no ray",
+                bundle.unseen);
+}
+
+// Refines with --scale-from, and from the start again without it if refining drops what it names;
+// then this function reports it to `unused`, and sets `frame` to the frame that the bundle is in.
+Refined refine_with_scale(Options& options, pose::ColmapBundle& refined, const Input& input,
+                          UnusedInput& unused, LocalFrame& frame) {
   std::optional<pose::ColmapBundle> start;
   if (options.allow_missing && !options.scale_from.empty()) start = refined;
-  Refined done = refine(options, refined, model);
-  if (!done.report.lost.empty()) {
-    unused.report("--scale-from " + options.scale_from + ": " + done.report.lost.front());
-    options.scale_from.clear();
-    refined = *std::move(start);
-    frame = set_known(options, refined.bundle, frame_of_model, unused);
-    done = refine(options, refined, model);
-  }
-  if (!unused.lines().empty()) log_warning("The model has no scale: --scale-from is not used");
+  Refined done = refine(options, refined, input.model);
+  if (done.report.lost.empty()) return done;
+  unused.report("--scale-from " + options.scale_from + ": " + done.report.lost.front());
+  options.scale_from.clear();
+  refined = *std::move(start);
+  frame = set_known(options, refined.bundle, input.frame, unused);
+  return refine(options, refined, input.model);
+}
+
+// Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.
+void finish(const Options& options, const Input& input, const pose::ColmapBundle& refined,
+            const Refined& done, const UnusedInput& unused, const LocalFrame& frame) {
+  const bool scale_lost = !unused.lines().empty();
+  if (scale_lost) log_warning("The model has no scale: --scale-from is not used");
   Results results{done.report,
                   errors_by_image(done.before, refined.bundle),
                   refined.bundle,
                   refined.ports,
                   options.refine.adjust,
                   unused.lines(),
-                  !unused.lines().empty()};
+                  scale_lost};
   for (const std::string& line : error_lines(results)) log_info("{}", line);
-  const io::Housing result = to_housing(refined, housing);
+  const io::Housing result = to_housing(refined, input.housing);
   for (const auto& [name, port] : result.ports) io::check_port(port, "The refined port " + name);
   warn(done.report, refined.bundle, options.refine, results.unused);
-  write(options, refined, model, frame, result, results);
+  write(options, refined, input.model, frame, result, results);
+}
+
+int run(int argc, char** argv) {
+  Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const ThreadLimit threads(options.parsed.common.max_threads);
+  const Input input = read_input(options);
+  pose::ColmapBundle refined = load(options, input.model, input.lenses, input.housing);
+  check_ports(options, input, refined.bundle);
+  UnusedInput unused(options.allow_missing);
+  LocalFrame frame = set_known(options, refined.bundle, input.frame, unused);
+  check_output(options, input.folder);
+  say_input(input, refined);
+  const Refined done = refine_with_scale(options, refined, input, unused, frame);
+  finish(options, input, refined, done, unused, frame);
   return 0;
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("RefinePoses", [&] { return run(argc, argv); });
+  return axial::run_program("RefinePoses", [&] { return axial::apps::run(argc, argv); });
 }

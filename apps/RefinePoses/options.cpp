@@ -7,10 +7,13 @@
 #include "base/unused_input.h"
 #include "base/version.h"
 
-namespace fs = std::filesystem;
-using axial::fail;
-
+namespace axial::apps {
 namespace {
+
+// The options as text, before they are checked.
+struct Texts {
+  std::string input, lens, housing, output;
+};
 
 void check(const Options& options) {
   if (!(options.scale_sigma > 0 && std::isfinite(options.scale_sigma)))
@@ -25,44 +28,39 @@ void check(const Options& options) {
   if (options.poses == "known" && !options.scale_from.empty())
     fail("--scale-from {}: contradicts --poses known, which means that the model is in metres",
          options.scale_from);
-  if (options.scale_from.empty() && axial::given(options.parsed, "scale-sigma"))
+  if (options.scale_from.empty() && given(options.parsed, "scale-sigma"))
     fail("--scale-sigma {}: is the standard deviation of --scale-from, which is missing",
          options.scale_sigma);
   if (options.output.empty()) fail("--output-folder is missing");
 }
 
-}  // namespace
-
-Options parse_command_line(int argc, const char* const* argv) {
-  std::string input, lens, housing, output;
-  Options options;
-  axial::ProgramOptions program{
-      "RefinePoses",
-      "computes refractive poses from the poses that COLMAP found for photographs under water",
-      {},
-      {}};
-  program.version = axial::version_line(program.name);
-  program.visible
-      .add("input-file,i", &input,
+void declare_files(OptionList& visible, Texts& texts) {
+  visible
+      .add("input-file,i", &texts.input,
            "COLMAP folder of the raw underwater photographs, with any camera models: the model is "
            "in DIR/sparse, DIR/sparse/0 or DIR")
-      .add("lens", &lens,
+      .add("lens", &texts.lens,
            "lens calibrated in air: cameras.txt or cameras.bin, a folder with this file, or "
            "Calibmar's calibration.yaml; lenses by camera id, or one lens for all cameras; a model "
            "of COLMAP-Underwater contains it")
-      .add("housing", &housing,
+      .add("housing", &texts.housing,
            "housing file with the ports of the cameras; a model of COLMAP-Underwater and "
            "Calibmar's file contain them")
-      .add("output-folder,o", &output,
-           "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json")
+      .add("output-folder,o", &texts.output,
+           "folder for sparse/ (COLMAP text, lens in air), housing.json and report.json");
+}
+
+// What is estimated, from which observations, and what is known.
+void declare_estimate(OptionList& visible, Options& options) {
+  visible
       .add_with_default("poses", &options.poses,
                         "adjust, or known: the poses are correct and in metres, and are kept; only "
                         "the points and the values of --refine are estimated")
       .add_with_default("refine", &options.refine_list,
                         "other values to adjust: any of normal, distance (flat ports), centre "
                         "(domes), thickness (of the glass), index (of the water), focal");
-  axial::pose::declare_sigmas(program.visible, options.sigmas);
-  program.visible
+  pose::declare_sigmas(visible, options.sigmas);
+  visible
       .add_with_default("focal-sigma", &options.sigmas.focal,
                         "standard deviation of the focal lengths, relative")
       .add("scale-from", &options.scale_from,
@@ -79,14 +77,32 @@ Options parse_command_line(int argc, const char* const* argv) {
           "also write colmap-underwater/, the model with its ports for COLMAP-Underwater")
       .add_with_default("min-angle", &options.refine.tracks.min_angle,
                         "points seen under smaller angles are dropped [degrees]");
-  axial::UnusedInput::declare(program.visible, options.allow_missing);
-  options.parsed = axial::parse_options(argc, argv, program);
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Texts texts;
+  Options options;
+  ProgramOptions program{
+      "RefinePoses",
+      "computes refractive poses from the poses that COLMAP found for photographs under water",
+      {},
+      {}};
+  program.version = version_line(program.name);
+  // In the order of --help.
+  declare_files(program.visible, texts);
+  declare_estimate(program.visible, options);
+  UnusedInput::declare(program.visible, options.allow_missing);
+  options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  const axial::CommonOptions& common = options.parsed.common;
-  options.model = axial::in_working_folder(common, input);
-  options.lens = axial::in_working_folder(common, lens);
-  options.housing = axial::in_working_folder(common, housing);
-  options.output = axial::in_working_folder(common, output);
+  const CommonOptions& common = options.parsed.common;
+  options.model = in_working_folder(common, texts.input);
+  options.lens = in_working_folder(common, texts.lens);
+  options.housing = in_working_folder(common, texts.housing);
+  options.output = in_working_folder(common, texts.output);
   check(options);
   return options;
 }
+
+}  // namespace axial::apps

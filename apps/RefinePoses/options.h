@@ -8,8 +8,10 @@
 #include "pose/free_numbers.h"
 #include "pose/refine.h"
 
+namespace axial::apps {
+
 struct Options {
-  axial::ParsedOptions parsed;
+  ParsedOptions parsed;
   std::filesystem::path model;    // COLMAP folder
   std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
   std::filesystem::path housing;  // file
@@ -20,9 +22,11 @@ struct Options {
   std::string scale_from;         // see scale_from.h; empty: refraction alone determines the scale
   double scale_sigma = 0.001;     // [m]
   std::string refine_list;        // see pose/free_numbers.h
-  axial::pose::Sigmas sigmas;
-  axial::pose::RefineOptions refine;
+  pose::Sigmas sigmas;
+  pose::RefineOptions refine;
 };
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

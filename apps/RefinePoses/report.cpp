@@ -10,18 +10,10 @@
 #include "io/bytes/json.h"
 #include "pose/free_numbers.h"
 
+namespace axial::apps {
 namespace {
 
-using namespace axial;
 using pose::Bundle;
-
-std::vector<std::vector<double>> errors_of_images(const Bundle& bundle) {
-  std::vector<std::vector<double>> errors(bundle.images.size());
-  const std::vector<double> all = reprojection_errors(bundle);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    errors[bundle.observations[i].image].push_back(all[i]);
-  return errors;
-}
 
 std::string doubt(double sigma) {
   return std::isfinite(sigma) ? fmt::format(" +- {:.2g}", sigma) : " (not known)";
@@ -50,7 +42,8 @@ pose::Uncertainty not_computed(const Results& results) {
 }  // namespace
 
 std::vector<ImageErrors> errors_by_image(const Bundle& before, const Bundle& after) {
-  const auto first = errors_of_images(before), last = errors_of_images(after);
+  const auto first = pose::reprojection_errors_by_image(before);
+  const auto last = pose::reprojection_errors_by_image(after);
   std::vector<ImageErrors> rows;
   for (std::size_t i = 0; i < first.size(); ++i)
     rows.push_back({before.images[i].name, last[i].size(), pose::root_mean_square(first[i]),
@@ -120,3 +113,5 @@ std::string report_json(const Results& results, const pose::Uncertainty* known) 
   // to_text() replaces bytes that are not UTF-8: such a name must not prevent the report.
   return io::to_text(json, 1) + "\n";
 }
+
+}  // namespace axial::apps

@@ -7,6 +7,8 @@
 
 #include "pose/refine.h"
 
+namespace axial::apps {
+
 // The RMS errors of one image [px], before and after.
 struct ImageErrors {
   std::string name;
@@ -14,16 +16,15 @@ struct ImageErrors {
   double rms_before = 0, rms_after = 0;
 };
 
-std::vector<ImageErrors> errors_by_image(const axial::pose::Bundle& before,
-                                         const axial::pose::Bundle& after);
+std::vector<ImageErrors> errors_by_image(const pose::Bundle& before, const pose::Bundle& after);
 
 // The result of a refinement without its standard deviations.
 struct Results {
-  const axial::pose::RefineReport& report;
+  const pose::RefineReport& report;
   std::vector<ImageErrors> images;
-  const axial::pose::Bundle& bundle;
+  const pose::Bundle& bundle;
   std::vector<std::string> ports;  // one for each camera
-  const axial::pose::AdjustOptions& options;
+  const pose::AdjustOptions& options;
   // Input that was given but not used, one entry for each line. `scale_lost`: the known scale was
   // not used. Then the scale counts as not known, even where refraction determines it.
   std::vector<std::string> unused;
@@ -34,9 +35,10 @@ struct Results {
 std::vector<std::string> error_lines(const Results& results);
 
 // The standard deviations of numbers and lengths, one entry for each line.
-std::vector<std::string> uncertainty_lines(const Results& results,
-                                           const axial::pose::Uncertainty& known);
+std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known);
 
 // Numbers that are not known are null. Without `known` all standard deviations are null, and the
 // report says that they are missing.
-std::string report_json(const Results& results, const axial::pose::Uncertainty* known);
+std::string report_json(const Results& results, const pose::Uncertainty* known);
+
+}  // namespace axial::apps

@@ -5,8 +5,9 @@
 #include "base/error.h"
 #include "base/out_of_memory.h"
 
+namespace axial::apps {
+
 namespace fs = std::filesystem;
-using namespace axial;
 
 pose::Uncertainty write_results(const fs::path& folder,
                                 const std::function<void(const fs::path& staging)>& write_model,
@@ -26,3 +27,5 @@ pose::Uncertainty write_results(const fs::path& folder,
          folder.string(), is_out_of_memory(error) ? "memory ran out" : error.what());
   }
 }
+
+}  // namespace axial::apps

@@ -15,9 +15,9 @@
 #include "io/cameras/position_file.h"
 #include "scene/decompositions.h"
 
+namespace axial::apps {
 namespace {
 
-using namespace axial;
 using pose::KnownDistance;
 
 const std::string kOption = "--scale-from ";
@@ -190,3 +190,5 @@ void add_known(const std::string& scale_from, double sigma,
     unused.report((what.starts_with(kOption) ? "" : kOption) + what);
   }
 }
+
+}  // namespace axial::apps

@@ -7,6 +7,8 @@
 #include "base/unused_input.h"
 #include "pose/adjust.h"
 
+namespace axial::apps {
+
 // Adds the known lengths that --scale-from names to `adjust`, each with the standard deviation
 // `sigma` [m]. An empty `scale_from` adds nothing.
 //
@@ -23,5 +25,7 @@
 // line) is reported to `unused`, and `adjust` stays as it is. Positions of images without a pose
 // are skipped with a warning for each: the list of a survey may name more photographs.
 void add_known(const std::string& scale_from, double sigma,
-               const std::filesystem::path& working_folder, const axial::pose::Bundle& bundle,
-               axial::pose::AdjustOptions& adjust, axial::UnusedInput& unused);
+               const std::filesystem::path& working_folder, const pose::Bundle& bundle,
+               pose::AdjustOptions& adjust, UnusedInput& unused);
+
+}  // namespace axial::apps

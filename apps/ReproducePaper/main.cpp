@@ -7,13 +7,12 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "experiments/results.h"
 #include "io/bytes/json.h"
 #include "options.h"
 #include "page.h"
-#include "results.h"
 
-using namespace axial;
-
+namespace axial::apps {
 namespace {
 
 void write_documents(const experiments::Experiment& experiment, const Arguments& arguments,
@@ -31,9 +30,9 @@ void write_documents(const experiments::Experiment& experiment, const Arguments&
 void reproduce(const experiments::Experiment& experiment, const Arguments& arguments,
                const CommonOptions& common) {
   const std::filesystem::path folder = results_folder(arguments, common);
-  compute(experiment.name, chosen_parts(experiment, arguments.part), folder,
-          console_progress(experiment.name));
-  const experiments::Json results = kept_results(experiment, arguments.quick, folder);
+  experiments::compute(experiment.name, experiments::chosen_parts(experiment, arguments.part),
+                       folder, console_progress(experiment.name));
+  const experiments::Json results = experiments::kept_results(experiment, arguments.quick, folder);
   if (results.is_null()) {
     log_info("{}: other parts are not computed yet", experiment.name);
     return;
@@ -48,27 +47,30 @@ void log_times(const std::vector<experiments::Experiment>& experiments,
   log_info("{:<16} {:>5} {:>9} {:>11}  {}", "experiment", "parts", "time [s]", "longest [s]",
            "longest part");
   for (const experiments::Experiment& experiment : experiments) {
-    const PartTimes times = part_times(experiment, folder);
+    const experiments::PartTimes times = experiments::part_times(experiment, folder);
     log_info("{:<16} {:>5} {:>9.1f} {:>11.1f}  {}", experiment.name, times.parts, times.sum,
              times.longest, times.longest_part);
   }
 }
 
+int run(int argc, char** argv) {
+  Arguments arguments;
+  const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
+  if (!parsed.run) return parsed.exit_code;
+  warn_of_no_effect(arguments, parsed);
+  const auto experiments = chosen_experiments(arguments, parsed.common);
+  if (!arguments.page.empty())
+    check_page(in_working_folder(parsed.common, arguments.page), experiments);
+  const ThreadLimit limit(parsed.common.max_threads);
+  for (const experiments::Experiment& experiment : experiments)
+    reproduce(experiment, arguments, parsed.common);
+  log_times(experiments, results_folder(arguments, parsed.common));
+  return 0;
+}
+
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("ReproducePaper", [&] {
-    Arguments arguments;
-    const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
-    if (!parsed.run) return parsed.exit_code;
-    warn_of_no_effect(arguments, parsed);
-    const auto experiments = chosen_experiments(arguments, parsed.common);
-    if (!arguments.page.empty())
-      check_page(in_working_folder(parsed.common, arguments.page), experiments);
-    const ThreadLimit limit(parsed.common.max_threads);
-    for (const experiments::Experiment& experiment : experiments)
-      reproduce(experiment, arguments, parsed.common);
-    log_times(experiments, results_folder(arguments, parsed.common));
-    return 0;
-  });
+  return axial::run_program("ReproducePaper", [&] { return axial::apps::run(argc, argv); });
 }

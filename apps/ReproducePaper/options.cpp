@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <sstream>
 #include <string_view>
@@ -9,19 +11,20 @@
 #include "base/log.h"
 #include "base/parse_number.h"
 #include "base/version.h"
-#include "chained.h"
-#include "results.h"
+#include "experiments/chained.h"
+#include "experiments/results.h"
 
-namespace axial {
+namespace axial::apps {
 namespace {
 
 struct Chained {
   const char* name;
-  experiments::Experiment (*make)(const Chain& chain, bool quick);
+  experiments::Experiment (*make)(const experiments::Chain& chain, bool quick);
 };
 constexpr const char* kCompleteness = "completeness";
-constexpr Chained kChained[] = {
-    {"reconstruction", reconstruction}, {"sensitivity", sensitivity}, {"need", need}};
+constexpr Chained kChained[] = {{"reconstruction", experiments::reconstruction},
+                                {"sensitivity", experiments::sensitivity},
+                                {"need", experiments::need}};
 
 // Options of the experiment that does not repeat one of the paper's.
 void declare_completeness(OptionList& list, Arguments& a) {
@@ -43,8 +46,8 @@ void declare_completeness(OptionList& list, Arguments& a) {
            "removed)");
 }
 
-Words words_of(const std::string& text) {
-  Words words;
+experiments::Words words_of(const std::string& text) {
+  experiments::Words words;
   std::istringstream stream(text);
   for (std::string word; stream >> word;) words.push_back(word);
   return words;
@@ -60,18 +63,34 @@ std::vector<int> seeds_of(const std::string& text) {
   return seeds;
 }
 
+// Error that names the option for an unknown medium, unknown poses, an invalid tolerance, and for
+// seeds that are missing or occur twice.
+void check(const experiments::CompletenessOptions& o) {
+  if (o.medium != "air" && o.medium != "water")
+    fail("--medium is '{}': must be air or water", o.medium);
+  if (o.poses != "true" && o.poses != "colmap")
+    fail("--poses is '{}': must be true or colmap", o.poses);
+  if (!(o.tolerance >= 0) || !std::isfinite(o.tolerance))
+    fail("--tolerance is {}: must be a length in metres", o.tolerance);
+  if (o.seeds.empty()) fail("--seeds is empty: must be whole numbers, separated by commas");
+  std::vector<int> seeds = o.seeds;
+  std::ranges::sort(seeds);
+  if (const auto twice = std::ranges::adjacent_find(seeds); twice != seeds.end())
+    fail("--seeds names {} twice", *twice);
+}
+
 experiments::Experiment completeness_of(const Arguments& a, const CommonOptions& common) {
-  CompletenessOptions options = a.completeness;
+  experiments::CompletenessOptions options = a.completeness;
   if (!a.seeds.empty()) options.seeds = seeds_of(a.seeds);
   options.scene = words_of(a.scene_options);
   if (a.quick && options.scene.empty())
     options.scene = {"--views", "5", "--width", "320", "--height", "240", "--coarseness", "4"};
   options.dense = words_of(a.dense_options);
   check(options);
-  const std::filesystem::path work = a.work.empty()
-                                         ? work_folder(a, common, completeness_name(options))
-                                         : in_working_folder(common, a.work);
-  return completeness({work, common.max_threads}, options);
+  const std::filesystem::path work =
+      a.work.empty() ? work_folder(a, common, experiments::completeness_name(options))
+                     : in_working_folder(common, a.work);
+  return experiments::completeness({work, common.max_threads}, options);
 }
 
 }  // namespace
@@ -143,10 +162,10 @@ std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
   if (is_completeness(a)) chosen.push_back(completeness_of(a, common));
   if (chosen.empty())
     fail("'{}' is not an experiment: must be {}{} or all", a.experiment, names, kCompleteness);
-  if (chosen_parts(chosen.front(), a.part).empty())
+  if (experiments::chosen_parts(chosen.front(), a.part).empty())
     fail("--part {}: no part has a name that begins with this text, in the experiment {}", a.part,
          a.experiment);
   return chosen;
 }
 
-}  // namespace axial
+}  // namespace axial::apps

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/program.h"
-#include "completeness.h"
+#include "experiments/completeness.h"
 #include "experiments/experiment.h"
 
-namespace axial {
+namespace axial::apps {
 
 struct Arguments {
   std::string experiment, output, page;
   std::string part;  // computes only the parts whose names begin with it
   bool quick = false;
-  CompletenessOptions completeness;  // for the experiment of that name
+  experiments::CompletenessOptions completeness;  // for the experiment of that name
   std::string seeds, scene_options, dense_options, work;
 };
 
@@ -40,4 +41,4 @@ std::filesystem::path results_folder(const Arguments& a, const CommonOptions& co
 std::filesystem::path work_folder(const Arguments& a, const CommonOptions& common,
                                   const std::string& experiment);
 
-}  // namespace axial
+}  // namespace axial::apps

@@ -4,7 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 
-namespace axial {
+namespace axial::apps {
 namespace {
 
 using experiments::Document;
@@ -58,4 +58,4 @@ void update_page(const std::filesystem::path& page, const std::vector<Document>&
   write_atomically(page, text);
 }
 
-}  // namespace axial
+}  // namespace axial::apps

@@ -7,7 +7,7 @@
 
 #include "experiments/experiment.h"
 
-namespace axial {
+namespace axial::apps {
 
 // Error unless the page can be read and written, has a table of each experiment, and an end marker
 // after every table. Called before the experiments, which take hours.
@@ -20,4 +20,4 @@ void check_page(const std::filesystem::path& page,
 void update_page(const std::filesystem::path& page,
                  const std::vector<experiments::Document>& documents);
 
-}  // namespace axial
+}  // namespace axial::apps

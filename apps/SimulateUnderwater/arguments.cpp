@@ -9,14 +9,11 @@
 #include "base/parse_number.h"
 #include "base/version.h"
 
-namespace axial {
+namespace axial::apps {
+namespace {
 
-ProgramOptions describe(Arguments& a) {
-  ProgramOptions program;
-  program.name = "SimulateUnderwater";
-  program.version = version_line(program.name);
-  program.description = "makes a synthetic scene with ground truth, in air and under water";
-  program.visible
+void declare_scene(OptionList& visible, Arguments& a) {
+  visible
       .add_with_default(
           "preset", &a.preset.name,
           "reef, outcrop, closeup, survey, thicket, sand or transect; NAME-hazy: with haze 6/7")
@@ -33,8 +30,11 @@ ProgramOptions describe(Arguments& a) {
       .add_with_default("coarseness", &a.preset.coarseness,
                         "factor for the distance between the vertices of the mesh")
       .add_with_default("relief", &a.preset.relief, "factor for the scene's heights")
-      .add_with_default("samples", &a.samples, "rays along each side of a pixel")
-      .add("port-distance", &a.port_distance, "camera centre to glass [m]")
+      .add_with_default("samples", &a.samples, "rays along each side of a pixel");
+}
+
+void declare_port(OptionList& visible, Arguments& a) {
+  visible.add("port-distance", &a.port_distance, "camera centre to glass [m]")
       .add("port-thickness", &a.port_thickness, "thickness of the glass [m]")
       .add("tilt-degrees", &a.tilt_degrees, "tilt of the port against the optical axis")
       .add("water-level", &a.water_level,
@@ -45,7 +45,11 @@ ProgramOptions describe(Arguments& a) {
       .add_with_default("dome-y", &a.dome_y, "y: camera centre to dome centre [m]")
       .add_with_default("dome-z", &a.dome_z, "z: camera centre to dome centre [m]")
       .add("n-glass", &a.n_glass, "refractive index of the glass")
-      .add("n-water", &a.n_water, "refractive index of the water")
+      .add("n-water", &a.n_water, "refractive index of the water");
+}
+
+void declare_photographs(OptionList& visible, Arguments& a) {
+  visible
       .add("haze", &a.haze,
            "share of the light that the medium, water or air, scatters into view, 0 to 1 (default: "
            "the preset's value, which is 0 except for NAME-hazy)")
@@ -54,6 +58,19 @@ ProgramOptions describe(Arguments& a) {
       .add_with_default("truth", &a.truth, "write distances and normals of the images")
       .add_switch("truth-only", &a.truth_only, "write only mesh.ply, distances and normals")
       .add_with_default("medium", &a.medium, "air, water or both");
+}
+
+}  // namespace
+
+ProgramOptions describe(Arguments& a) {
+  ProgramOptions program;
+  program.name = "SimulateUnderwater";
+  program.version = version_line(program.name);
+  program.description = "makes a synthetic scene with ground truth, in air and under water";
+  // In the order of --help.
+  declare_scene(program.visible, a);
+  declare_port(program.visible, a);
+  declare_photographs(program.visible, a);
   return program;
 }
 
@@ -114,4 +131,4 @@ void apply_port_options(simulate::Preset& preset, const Arguments& a, const Pars
   if (given(parsed, "n-water")) port.n_water = a.n_water;
 }
 
-}  // namespace axial
+}  // namespace axial::apps

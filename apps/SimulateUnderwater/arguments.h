@@ -6,7 +6,7 @@
 #include "base/program.h"
 #include "simulate/presets.h"
 
-namespace axial {
+namespace axial::apps {
 
 struct Arguments {
   simulate::PresetOptions preset;
@@ -33,4 +33,4 @@ void apply_lens_option(simulate::Preset& preset, const Arguments& a);
 // for options that contradict each other.
 void apply_port_options(simulate::Preset& preset, const Arguments& a, const ParsedOptions& parsed);
 
-}  // namespace axial
+}  // namespace axial::apps

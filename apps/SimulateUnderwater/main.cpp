@@ -9,8 +9,7 @@
 #include "io/images/image.h"
 #include "write_scene.h"
 
-using namespace axial;
-
+namespace axial::apps {
 namespace {
 
 // Renders the images and truth of all views in one medium, as far as the options ask for them.
@@ -55,21 +54,24 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   if (a.medium != "air") photograph(a, preset, scene, shader, true, folder / "water");
 }
 
+int run(int argc, char** argv) {
+  Arguments arguments;
+  const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
+  if (!parsed.run) return parsed.exit_code;
+  check(arguments);
+  const ThreadLimit limit(parsed.common.max_threads);
+  simulate::Preset preset = simulate::make_preset(arguments.preset);
+  if (!given(parsed, "haze")) arguments.haze = preset.haze;
+  apply_lens_option(preset, arguments);
+  apply_port_options(preset, arguments, parsed);
+  simulate::check_ports(preset);
+  simulate_scene(arguments, preset, in_working_folder(parsed.common, arguments.output));
+  return 0;
+}
+
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return run_program("SimulateUnderwater", [&] {
-    Arguments arguments;
-    const ParsedOptions parsed = parse_options(argc, argv, describe(arguments));
-    if (!parsed.run) return parsed.exit_code;
-    check(arguments);
-    const ThreadLimit limit(parsed.common.max_threads);
-    simulate::Preset preset = simulate::make_preset(arguments.preset);
-    if (!given(parsed, "haze")) arguments.haze = preset.haze;
-    apply_lens_option(preset, arguments);
-    apply_port_options(preset, arguments, parsed);
-    simulate::check_ports(preset);
-    simulate_scene(arguments, preset, in_working_folder(parsed.common, arguments.output));
-    return 0;
-  });
+  return axial::run_program("SimulateUnderwater", [&] { return axial::apps::run(argc, argv); });
 }

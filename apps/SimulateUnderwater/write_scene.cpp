@@ -11,7 +11,7 @@
 #include "io/ply/ply.h"
 #include "io/ply/ply_property.h"
 
-namespace axial {
+namespace axial::apps {
 namespace {
 
 io::ColmapImage colmap_image(std::size_t i, const simulate::View& view) {
@@ -103,4 +103,4 @@ void write_truth(const std::filesystem::path& folder, const std::string& name,
   io::write_float_tiff(folder / (name + ".normal.tiff"), truth.normal);
 }
 
-}  // namespace axial
+}  // namespace axial::apps

@@ -10,7 +10,7 @@
 #include "simulate/sparse_points.h"
 #include "simulate/triangle_mesh.h"
 
-namespace axial {
+namespace axial::apps {
 
 // "0007": the common name of an image, its truth and its entry in the sparse model.
 std::string view_name(std::size_t view);
@@ -30,4 +30,4 @@ void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh&
 void write_truth(const std::filesystem::path& folder, const std::string& name,
                  const simulate::Truth& truth);
 
-}  // namespace axial
+}  // namespace axial::apps

@@ -51,6 +51,14 @@ std::vector<double> reprojection_errors(const Bundle& bundle) {
   return errors;
 }
 
+std::vector<std::vector<double>> reprojection_errors_by_image(const Bundle& bundle) {
+  std::vector<std::vector<double>> errors(bundle.images.size());
+  const std::vector<double> all = reprojection_errors(bundle);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    errors[bundle.observations[i].image].push_back(all[i]);
+  return errors;
+}
+
 double root_mean_square(std::span<const double> errors) {
   double sum = 0;
   std::size_t count = 0;

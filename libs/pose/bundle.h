@@ -70,6 +70,9 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 // light from the point does not reach the lens.
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
+// The same errors, one list for each image; the list is empty for an image without observations.
+std::vector<std::vector<double>> reprojection_errors_by_image(const Bundle& bundle);
+
 // Root of the mean of the squared finite errors. 0 if no error is finite.
 double root_mean_square(std::span<const double> errors);
 

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "experiments/cells.h"
 #include "experiments/verdicts.h"
 
 namespace axial::experiments {
@@ -27,6 +28,13 @@ TEST(Verdicts, SayYesOrNo) {
   EXPECT_EQ(verdict_table({{"at most 1", "0.5", true}, {"at most 1", "2", false}}),
             "| asked | seen | met |\n|---|---|---|\n"
             "| at most 1 | 0.5 | yes |\n| at most 1 | 2 | no |\n");
+}
+
+TEST(Cells, AreMillimetresAndPercentOrADash) {
+  EXPECT_EQ(millimetres(0.00087125), "0.871");
+  EXPECT_EQ(percent(0.7416), "74.2");
+  EXPECT_EQ(millimetres(nullptr), "-");
+  EXPECT_EQ(percent(nullptr), "-");
 }
 
 }  // namespace

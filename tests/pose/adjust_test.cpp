@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "pose/survey.h"
 #include "support/error_of.h"
 
@@ -315,6 +317,26 @@ TEST(Adjust, FindsTheCentreOfADome) {
   const auto now = std::get<refractive::DomePort<double>>(*bundle.cameras[0].now().port);
   for (int k = 0; k < 3; ++k)
     EXPECT_LT(std::abs(now.centre(k) - port.centre(k)), 3 * found.camera_sigmas[0](k)) << k;
+}
+
+// One pixel is moved by 7 px, far more than the noise: its error is the last of its image.
+TEST(ReprojectionErrors, ByImageAreInTheOrderOfTheObservations) {
+  constexpr std::size_t kMoved = 5, kUnseen = 3;
+  Bundle bundle = survey(camera_behind(flat_port()), {.images = 6, .points = 40, .noise = 0.1});
+  std::erase_if(bundle.observations, [](const Observation& o) { return o.image == kUnseen; });
+  const auto is_moved = [](const Observation& o) { return o.image == kMoved; };
+  const auto last =
+      std::find_if(bundle.observations.rbegin(), bundle.observations.rend(), is_moved);
+  ASSERT_NE(last, bundle.observations.rend());
+  last->pixel.x() += 7;
+  const std::vector<std::vector<double>> errors = reprojection_errors_by_image(bundle);
+  ASSERT_EQ(errors.size(), bundle.images.size());
+  EXPECT_TRUE(errors[kUnseen].empty());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    EXPECT_EQ(errors[i].size(), observations_by_image(bundle)[i]) << i;
+    for (std::size_t k = 0; k < errors[i].size(); ++k)
+      EXPECT_EQ(errors[i][k] > 3, i == kMoved && k + 1 == errors[i].size()) << i << " " << k;
+  }
 }
 
 }  // namespace

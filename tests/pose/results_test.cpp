@@ -21,6 +21,11 @@ namespace axial::pose {
 namespace {
 
 namespace fs = std::filesystem;
+using apps::errors_by_image;
+using apps::report_json;
+using apps::Results;
+using apps::uncertainty_lines;
+using apps::write_results;
 using ::testing::HasSubstr;
 
 class WriteResults : public ::testing::Test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "chain.h"
+#include "experiments/chain.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include "base/hash.h"
 #include "base/parse_number.h"
 #include "evaluate/alignment.h"
+#include "experiments/steps.h"
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "steps.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ fs::path fused_again(const Chain& chain, const fs::path& dense, const std::strin
   return folder;
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

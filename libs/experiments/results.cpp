@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "results.h"
+#include "experiments/results.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,10 @@
 #include "base/parse_number.h"
 #include "io/bytes/json.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using experiments::Json;
-using experiments::Part;
 
 fs::path parts_folder(const fs::path& folder, const std::string& experiment) {
   return folder / "parts" / experiment;
@@ -51,8 +49,7 @@ void compute(const Part& part, const fs::path& file) {
 
 }  // namespace
 
-std::vector<Part> chosen_parts(const experiments::Experiment& experiment,
-                               const std::string& beginning) {
+std::vector<Part> chosen_parts(const Experiment& experiment, const std::string& beginning) {
   std::vector<Part> chosen;
   for (const Part& part : experiment.parts)
     if (part.name.starts_with(beginning)) chosen.push_back(part);
@@ -70,7 +67,7 @@ void compute(const std::string& experiment, const std::vector<Part>& parts, cons
   }
 }
 
-Json kept_results(const experiments::Experiment& experiment, bool quick, const fs::path& folder) {
+Json kept_results(const Experiment& experiment, bool quick, const fs::path& folder) {
   Json results{{"experiment", experiment.name}, {"quick", quick}, {"parts", Json::object()}};
   for (const Part& part : experiment.parts) {
     Json kept = kept_part(part_file(parts_folder(folder, experiment.name), part), part);
@@ -80,7 +77,7 @@ Json kept_results(const experiments::Experiment& experiment, bool quick, const f
   return results;
 }
 
-PartTimes part_times(const experiments::Experiment& experiment, const fs::path& folder) {
+PartTimes part_times(const Experiment& experiment, const fs::path& folder) {
   PartTimes times;
   for (const Part& part : experiment.parts) {
     const fs::path file = time_file(part_file(parts_folder(folder, experiment.name), part));
@@ -96,4 +93,4 @@ PartTimes part_times(const experiments::Experiment& experiment, const fs::path& 
   return times;
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

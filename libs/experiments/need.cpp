@@ -8,20 +8,17 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "chained.h"
+#include "experiments/cells.h"
+#include "experiments/chained.h"
 #include "experiments/charts.h"
+#include "experiments/judge.h"
+#include "experiments/need_cases.h"
 #include "experiments/tables.h"
-#include "need_cases.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
-using experiments::Document;
-using experiments::Experiment;
-using experiments::Part;
-using experiments::result_of;
-
-Calibration calibration(const Chain& chain, const Case& one, const SimulatedScene& scene) {
+Calibration calibration(const Chain& chain, const NeedCase& one, const SimulatedScene& scene) {
   if (!one.calibrated_in) return self_calibration(scene);
   const SimulatedScene first = simulated(chain, *one.calibrated_in);
   const ColmapPoses poses =
@@ -44,7 +41,7 @@ Json clouds_of_today(const Chain& chain, const SimulatedScene& scene,
   return clouds;
 }
 
-Json without_refraction(const Chain& chain, const Case& one, const SimulatedScene& scene,
+Json without_refraction(const Chain& chain, const NeedCase& one, const SimulatedScene& scene,
                         const EvaluationOptions& evaluation) {
   const ColmapPoses poses =
       colmap_poses(chain, "today", scene, "water", calibration(chain, one, scene));
@@ -62,7 +59,7 @@ double tilt_degrees(const refractive::FlatPort<double>& port) {
   return std::acos(std::min(1.0, port.normal.z())) * 180 / std::numbers::pi;
 }
 
-Json measure(const Chain& chain, const Case& one, const EvaluationOptions& evaluation) {
+Json measure(const Chain& chain, const NeedCase& one, const EvaluationOptions& evaluation) {
   const SimulatedScene scene = simulated(chain, one.scene);
   const SceneDistances distances = scene_distances(scene, "water");
   const auto dense = densified(chain, "ours", scene, scene.model(), "water", {scene.housing(), {}});
@@ -82,7 +79,7 @@ std::vector<Part> parts(const Chain& chain, bool quick) {
   if (quick) evaluation.samples = 20000;
   const Json programs = programs_of_the_chain();
   std::vector<Part> all;
-  for (const Case& one : need_cases(quick)) {
+  for (const NeedCase& one : need_cases(quick)) {
     Json inputs{{"version", 2},
                 {"programs", programs},
                 {"scene", to_json(one.scene)},
@@ -97,7 +94,7 @@ double number(const Json& result, const char* field) {
   return result.at(field).get<double>();
 }
 
-Words row_of(const Case& one, const Json& result) {
+Words row_of(const NeedCase& one, const Json& result) {
   const double distance = number(result, "scene_distance");
   const Json &ours = result.at("ours"), &today = result.at("today");
   const auto field = [&](const char* how, const char* name) {
@@ -126,24 +123,23 @@ std::string table(const Json& results, bool quick) {
        "field of view [degrees]", "known port on true poses: mean [mm]", "self-calibrated: images",
        "camera centres, RMS [mm]", "mean [mm]", "mean after a rigid move [mm]",
        "after the move / known port", "complete, known port [%]", "complete, self-calibrated [%]"}};
-  for (const Case& one : need_cases(quick))
+  for (const NeedCase& one : need_cases(quick))
     rows.push_back(row_of(one, result_of(results, one.name)));
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 // One panel for each series: the mean distance over the value `x` of each case.
-experiments::LinePanel panel(const Json& results, const std::vector<Case>& shown,
-                             const std::string& title,
-                             const std::function<double(const Case&, const Json&)>& x) {
-  experiments::Line ours{"known port, true poses", {}, {}}, today{"self-calibrated", {}, {}},
+LinePanel panel(const Json& results, const std::vector<NeedCase>& shown, const std::string& title,
+                const std::function<double(const NeedCase&, const Json&)>& x) {
+  Line ours{"known port, true poses", {}, {}}, today{"self-calibrated", {}, {}},
       moved{"self-calibrated, after a rigid move", {}, {}};
   std::vector<std::pair<double, const Json*>> sorted;
-  for (const Case& one : shown) {
+  for (const NeedCase& one : shown) {
     const Json& result = result_of(results, one.name);
     sorted.emplace_back(x(one, result), &result);
   }
   std::sort(sorted.begin(), sorted.end());
-  const auto add = [](experiments::Line& line, double at, const Json& cloud) {
+  const auto add = [](Line& line, double at, const Json& cloud) {
     if (cloud.is_null()) return;
     line.x.push_back(at);
     line.y.push_back(1e3 * number(cloud, "mean"));
@@ -158,20 +154,20 @@ experiments::LinePanel panel(const Json& results, const std::vector<Case>& shown
 
 std::string chart(const Json& results, bool quick) {
   const auto of = [&](const char* series, bool with_usual) {
-    std::vector<Case> shown;
-    for (const Case& one : need_cases(quick))
+    std::vector<NeedCase> shown;
+    for (const NeedCase& one : need_cases(quick))
       if (one.series == series || (with_usual && one.is_usual())) shown.push_back(one);
     return shown;
   };
   const auto value = [](double usual) {
-    return [usual](const Case& one, const Json&) { return one.is_usual() ? usual : one.value; };
+    return [usual](const NeedCase& one, const Json&) { return one.is_usual() ? usual : one.value; };
   };
   const auto field = [](const char* name) {
-    return [name](const Case&, const Json& result) { return number(result, name); };
+    return [name](const NeedCase&, const Json& result) { return number(result, name); };
   };
   const auto distance = field("scene_distance"), range = field("range_ratio");
-  std::vector<experiments::LinePanel> panels;
-  const auto add = [&](const std::vector<Case>& shown, const char* title, const auto& x) {
+  std::vector<LinePanel> panels;
+  const auto add = [&](const std::vector<NeedCase>& shown, const char* title, const auto& x) {
     if (!shown.empty()) panels.push_back(panel(results, shown, title, x));
   };
   add(of("port_distance_mm", true), "lens to glass [mm]", value(20));
@@ -181,8 +177,7 @@ std::string chart(const Json& results, bool quick) {
   add(of("relief", true), "far / near, the outcrop", range);
   add(of("reef_relief", false), "far / near, a reef from above", range);
   add(of("second_survey", false), "second survey: distance / first one's", value(1));
-  return experiments::draw_lines("A known port on true poses beside a lens calibrated under water",
-                                 panels, 3);
+  return draw_lines("A known port on true poses beside a lens calibrated under water", panels, 3);
 }
 
 }  // namespace
@@ -194,4 +189,4 @@ Experiment need(const Chain& chain, bool quick) {
           }};
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

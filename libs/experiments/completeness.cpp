@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "completeness.h"
+#include "experiments/completeness.h"
 
 #include <fmt/format.h>
 
@@ -7,16 +7,15 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "chained.h"
+#include "experiments/cells.h"
 #include "experiments/distribution.h"
+#include "experiments/steps.h"
 #include "experiments/tables.h"
-#include "steps.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using experiments::Experiment;
 
 bool is_near(const std::string& preset) {
   return preset.starts_with("closeup") || preset.starts_with("thicket");
@@ -165,7 +164,7 @@ std::string table(const std::vector<Column>& columns, const std::vector<int>& se
   std::vector<std::vector<double>> of_columns(columns.size());
   for (const int seed : seeds) {
     Words row{std::to_string(seed)};
-    const Json& result = experiments::result_of(results, part_name(seed));
+    const Json& result = result_of(results, part_name(seed));
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double value = columns[k].value(result);
       row.push_back(cell(columns[k], value));
@@ -175,14 +174,13 @@ std::string table(const std::vector<Column>& columns, const std::vector<int>& se
   }
   Words medians{"median"};
   for (std::size_t k = 0; k < columns.size(); ++k)
-    medians.push_back(
-        of_columns[k].empty() ? "-" : cell(columns[k], experiments::median_of(of_columns[k])));
+    medians.push_back(of_columns[k].empty() ? "-" : cell(columns[k], median_of(of_columns[k])));
   rows.push_back(medians);
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 std::string tables(const CompletenessOptions& options, const Json& results) {
-  const Json& any = experiments::result_of(results, part_name(options.seeds.front()));
+  const Json& any = result_of(results, part_name(options.seeds.front()));
   std::string text =
       fmt::format("{}, {}, {} poses, tolerance {:g} mm; gross: beyond {:g} mm\n\n", options.preset,
                   options.medium, options.poses, 1e3 * tolerance_of(options),
@@ -195,22 +193,13 @@ std::string tables(const CompletenessOptions& options, const Json& results) {
 
 }  // namespace
 
-void check(const CompletenessOptions& o) {
-  if (o.medium != "air" && o.medium != "water")
-    fail("--medium is '{}': must be air or water", o.medium);
-  if (o.poses != "true" && o.poses != "colmap")
-    fail("--poses is '{}': must be true or colmap", o.poses);
-  if (!(o.tolerance >= 0) || !std::isfinite(o.tolerance))
-    fail("--tolerance is {}: must be a length in metres", o.tolerance);
-  if (o.seeds.empty()) fail("--seeds is empty: must be whole numbers, separated by commas");
-  std::vector<int> seeds = o.seeds;
-  std::ranges::sort(seeds);
-  if (const auto twice = std::ranges::adjacent_find(seeds); twice != seeds.end())
-    fail("--seeds names {} twice", *twice);
-}
-
 std::string completeness_name(const CompletenessOptions& options) {
   return fmt::format("completeness_{}_{}_{}", options.preset, options.medium, options.poses);
+}
+
+std::vector<Document> completeness_documents(const CompletenessOptions& options,
+                                             const Json& results) {
+  return {{completeness_name(options) + ".md", tables(options, results)}};
 }
 
 Experiment completeness(const Chain& chain, const CompletenessOptions& options) {
@@ -226,10 +215,10 @@ Experiment completeness(const Chain& chain, const CompletenessOptions& options) 
                                  {"tolerance", tolerance_of(options)},
                                  {"dense", options.dense}},
                                 [=] { return measured(chain, options, seed); }});
-  experiment.documents = [=](const Json& results) -> std::vector<experiments::Document> {
-    return {{completeness_name(options) + ".md", tables(options, results)}};
+  experiment.documents = [options](const Json& results) {
+    return completeness_documents(options, results);
   };
   return experiment;
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

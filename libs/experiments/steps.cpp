@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "steps.h"
+#include "experiments/steps.h"
 
 #include <sys/resource.h>
 
@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "base/subprocess.h"
 
-namespace axial {
+namespace axial::experiments {
 
 namespace fs = std::filesystem;
 
@@ -58,4 +58,4 @@ Json content_of_programs(const Words& programs) {
   return contents;
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

@@ -2,18 +2,15 @@
 // Tables and figures for the paper's figures 5 and 6.
 #include <fmt/format.h>
 
+#include "experiments/cells.h"
+#include "experiments/reconstruction_maps.h"
+#include "experiments/steps.h"
 #include "experiments/tables.h"
 #include "experiments/verdicts.h"
 #include "picture/svg.h"
-#include "reconstruction_maps.h"
-#include "steps.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
-
-using experiments::Document;
-using experiments::result_of;
-using experiments::significant;
 
 // The clouds with one kind of poses.
 struct Clouds {
@@ -106,7 +103,7 @@ std::string colmap_poses_table(const Clouds& clouds, const Seeds& seeds) {
   for (std::size_t k = 0; k < reconstruction_methods().size(); ++k)
     rows.at(k + 1) += moved_cells(clouds, seeds, reconstruction_methods()[k]);
   rows.insert(rows.end(), {papers_row(kPapersAir), papers_row(kPapersWater)});
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 // The change of the mean distance from the paper's method to our method, for projection, warp and
@@ -132,7 +129,7 @@ std::string gains_table(const std::vector<Clouds>& kinds, const Seeds& seeds) {
                       fmt::format("{:+.1f}", median_over(seeds, gain)),
                       joined(seeds, [&](int s) { return fmt::format("{:+.1f}", gain(s)); })});
     }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 // Completeness of places that at least `views` cameras see; "-" if there are fewer cameras.
@@ -156,7 +153,7 @@ std::string completeness_table(const Clouds& clouds, const Seeds& seeds) {
     for (std::size_t k = 0; k < kCompletenessViews.size(); ++k)
       rows[k + 1].push_back(completeness_cell(clouds, seeds, method, kCompletenessViews[k]));
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 // Results of clouds fused with --number-views-fuse 2.
@@ -176,7 +173,7 @@ std::string two_table(const Clouds& clouds, const Seeds& seeds) {
                     percent(median_over(seeds, value("recall"))),
                     joined(seeds, [&](int s) { return percent(value("recall")(s)); })});
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 struct Panel {
@@ -254,7 +251,7 @@ std::string verdicts(const Json& results, const Clouds& clouds, const Seeds& see
     return clouds.of_two(s, "ours", "recall") - clouds.of_two(s, "air", "recall");
   });
   const double trend = largest_ring_difference(results, seeds);
-  return experiments::verdict_table(
+  return verdict_table(
       {{"our method, COLMAP's poses: mean / in air at most 0.95", fmt::format("{:.3f}", ratio),
         ratio <= 0.95},
        {"the same: completeness, of what two cameras see, no lower than in air",
@@ -275,7 +272,7 @@ Document registered_images(const Json& results, const Seeds& seeds) {
     rows.push_back({fmt::format("{}", seed), fmt::format("{}", poses.at("images").get<int>()),
                     millimetres(poses.at("centre_rms"))});
   }
-  return {"reconstruction_poses.md", experiments::markdown_table(rows)};
+  return {"reconstruction_poses.md", markdown_table(rows)};
 }
 
 }  // namespace
@@ -286,7 +283,7 @@ std::vector<Document> reconstruction_documents(const Json& results, const Seeds&
           {"reconstruction_complete.md", completeness_table(on_colmaps, seeds)},
           {"reconstruction_two.md", two_table(on_colmaps, seeds)},
           registered_images(results, seeds),
-          {"reconstruction_true.md", experiments::markdown_table(cloud_rows(on_true, seeds))},
+          {"reconstruction_true.md", markdown_table(cloud_rows(on_true, seeds))},
           {"reconstruction_gains.md", gains_table({on_colmaps, on_true}, seeds)},
           {"reconstruction_maps.md", maps_table(results, seeds)},
           {"reconstruction_rings.md", rings_table(results, seeds)},
@@ -298,4 +295,4 @@ std::vector<Document> reconstruction_documents(const Json& results, const Seeds&
           {"reconstruction_depth.svg", depth_pictures(results, seeds.front())}};
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "photographs.h"
+#include "calibrate/photographs.h"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 
-namespace fs = std::filesystem;
-using namespace axial;
-
+namespace axial::calibrate {
 namespace {
+
+namespace fs = std::filesystem;
 
 bool is_image_name(const fs::path& path) {
   const std::string extension = lower_extension(path);
@@ -71,19 +71,20 @@ std::vector<fs::path> photographs_in(std::span<const fs::path> input) {
   return photographs;
 }
 
-std::vector<calibrate::View> find_views(std::span<const fs::path> photographs,
-                                        const calibrate::Board& board, const io::ColmapCamera& lens,
-                                        int bit_depth) {
+std::vector<View> find_views(std::span<const fs::path> photographs, const Board& board,
+                             const io::ColmapCamera& lens, int bit_depth) {
   std::vector<io::ImageHeader> headers(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     headers[i] = io::read_image_header(photographs[i]);
     check_size(photographs[i], headers[i].size, lens);
   });
   const int bits = io::common_bit_depth(photographs, headers, bit_depth);
-  std::vector<calibrate::View> views(photographs.size());
+  std::vector<View> views(photographs.size());
   for_each_photograph(photographs, [&](std::size_t i) {
     views[i] = {photographs[i].filename().string(),
-                calibrate::find_corners(read_grey(photographs[i], bits), board)};
+                find_corners(read_grey(photographs[i], bits), board)};
   });
   return views;
 }
+
+}  // namespace axial::calibrate

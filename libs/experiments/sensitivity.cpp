@@ -6,18 +6,14 @@
 #include <array>
 #include <numbers>
 
-#include "chained.h"
+#include "experiments/cells.h"
+#include "experiments/chained.h"
+#include "experiments/judge.h"
 #include "experiments/tables.h"
 #include "io/cameras/housing.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
-
-using experiments::Document;
-using experiments::Experiment;
-using experiments::Part;
-using experiments::result_of;
-using refractive::FlatPort;
 
 // The errors of the housing file. All zero: none.
 struct Mistake {
@@ -158,7 +154,7 @@ std::string table(const Json& results, bool quick) {
                     millimetres(mean(result, "moved")), beside_right("moved"),
                     percent(result.at("as_it_lies").at("recall"))});
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 }  // namespace
@@ -169,4 +165,4 @@ Experiment sensitivity(const Chain& chain, bool quick) {
           }};
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

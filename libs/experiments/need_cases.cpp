@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "need_cases.h"
+#include "experiments/need_cases.h"
 
 #include <fmt/format.h>
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
 SceneOptions usual_scene() {
@@ -60,8 +60,8 @@ SceneOptions second_survey(double factor) {
   return scene;
 }
 
-std::vector<Case> all_cases() {
-  std::vector<Case> cases{{"usual", "usual", 0, usual_scene(), {}}};
+std::vector<NeedCase> all_cases() {
+  std::vector<NeedCase> cases{{"usual", "usual", 0, usual_scene(), {}}};
   const auto add = [&](const char* series, double value, const SceneOptions& scene) {
     cases.push_back({fmt::format("{}_{:g}", series, value), series, value, scene, {}});
   };
@@ -91,20 +91,20 @@ void shrink(SceneOptions& scene) {
 
 }  // namespace
 
-std::vector<Case> need_cases(bool quick) {
-  std::vector<Case> all = all_cases();
+std::vector<NeedCase> need_cases(bool quick) {
+  std::vector<NeedCase> all = all_cases();
   if (!quick) return all;
-  std::erase_if(all, [](const Case& one) {
+  std::erase_if(all, [](const NeedCase& one) {
     return !one.is_usual() && one.name != "tilt_degrees_6" && one.name != "second_survey_0.5";
   });
-  for (Case& one : all) {
+  for (NeedCase& one : all) {
     shrink(one.scene);
     if (one.calibrated_in) shrink(*one.calibrated_in);
   }
   return all;
 }
 
-std::string title_of(const Case& one) {
+std::string title_of(const NeedCase& one) {
   const auto value = [&](const char* format) {
     return fmt::format(fmt::runtime(format), one.value);
   };
@@ -122,4 +122,4 @@ std::string title_of(const Case& one) {
   return "scene '" + one.series + "' as it comes";
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

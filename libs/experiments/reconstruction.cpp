@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's figures 5 and 6: a scene reconstructed in air and through a port, with the paper's
 // method, with our method, and with one half (projection or warp) of each.
-#include "reconstruction.h"
+#include "experiments/reconstruction.h"
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "experiments/judge.h"
 
-namespace axial {
+namespace axial::experiments {
 
 const std::array<Method, 5>& reconstruction_methods() {
   static const std::array<Method, 5> all{
@@ -32,9 +33,6 @@ std::string true_part(int seed) {
 }
 
 namespace {
-
-using experiments::Experiment;
-using experiments::Part;
 
 constexpr int kPhotographWidth = 480;
 
@@ -199,4 +197,4 @@ Experiment reconstruction(const Chain& chain, bool quick) {
           }};
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the clouds and depth maps of a chain.
+#include "experiments/judge.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,12 +11,12 @@
 #include "evaluate/depth_evaluation.h"
 #include "evaluate/depth_places.h"
 #include "evaluate/statistics.h"
+#include "experiments/steps.h"
 #include "io/images/image.h"
 #include "io/openmvs/dmap.h"
 #include "picture/svg.h"
-#include "steps.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +212,4 @@ std::string depth_picture(const Chain& chain, const fs::path& dense, const Simul
   return small_picture(picture, kWidth);
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reconstruction_maps.h"
+#include "experiments/reconstruction_maps.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/cells.h"
 #include "experiments/distribution.h"
+#include "experiments/steps.h"
 #include "experiments/tables.h"
-#include "steps.h"
 
-namespace axial {
+namespace axial::experiments {
 namespace {
-
-using experiments::result_of;
 
 const Json& maps_of(const Json& results, int seed, const std::string& method) {
   return result_of(results, true_part(seed)).at("maps").at(method);
@@ -113,7 +112,7 @@ std::string ring_title(const Json& ring) {
 double median_over(const Seeds& seeds, const std::function<double(int seed)>& value) {
   std::vector<double> values;
   for (const int seed : seeds) values.push_back(value(seed));
-  return experiments::median_of(values);
+  return median_of(values);
 }
 
 std::string joined(const Seeds& seeds, const std::function<std::string(int seed)>& text) {
@@ -135,7 +134,7 @@ std::string maps_table(const Json& results, const Seeds& seeds) {
                     percent(middle("gross")), millimetres(middle("mean")),
                     percent(middle("completeness"))});
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 std::string places_table(const Json& results, const Seeds& seeds) {
@@ -145,7 +144,7 @@ std::string places_table(const Json& results, const Seeds& seeds) {
   for (const Method* method : judged_methods())
     for (std::size_t k = 0; k < places_of(results, seeds.front(), *method).size(); ++k)
       rows.push_back(place_row(results, seeds, *method, k));
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 std::string phases_table(const Json& results, const Seeds& seeds) {
@@ -162,7 +161,7 @@ std::string phases_table(const Json& results, const Seeds& seeds) {
                      })));
     rows.push_back(row);
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 std::string rings_table(const Json& results, const Seeds& seeds) {
@@ -188,7 +187,7 @@ std::string rings_table(const Json& results, const Seeds& seeds) {
     }
     rows.push_back(row);
   }
-  return experiments::markdown_table(rows);
+  return markdown_table(rows);
 }
 
 double largest_ring_difference(const Json& results, const Seeds& seeds) {
@@ -201,4 +200,4 @@ double largest_ring_difference(const Json& results, const Seeds& seeds) {
   return largest;
 }
 
-}  // namespace axial
+}  // namespace axial::experiments

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Completeness of clouds by the number of cameras that see a place: simulates, reconstructs and
+// measures scenes of one preset in one command.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/chain.h"
+#include "experiments/experiment.h"
+
+namespace axial::experiments {
+
+struct CompletenessOptions {
+  std::string preset = "closeup";      // of SimulateUnderwater
+  std::string medium = "water";        // "air" or "water"
+  std::string poses = "true";          // "true"; "colmap": computed from photographs in air
+  std::vector<int> seeds{11, 12, 13};  // of the scenes: at least one, each once
+  double tolerance = 0;  // [m]; 0: 2 mm for the presets closeup and thicket, else 5 mm
+  Words scene, dense;    // more options of SimulateUnderwater and of DensifyPointCloud
+};
+
+// The name of the experiment: "completeness_closeup_water_true".
+std::string completeness_name(const CompletenessOptions& options);
+
+// One part for each seed: the report of EvaluateReconstruction without histograms, and
+// "cpu_seconds", the CPU time of DensifyPointCloud [s]. `chain.work` keeps the scenes and clouds.
+// Errors as for the experiments in chained.h.
+Experiment completeness(const Chain& chain, const CompletenessOptions& options);
+
+// One document, completeness_....md, from the results of the experiment with the same options: one
+// row for each seed, and a row of medians. A number that a seed does not have is "-" and does not
+// count for the median.
+std::vector<Document> completeness_documents(const CompletenessOptions& options,
+                                             const Json& results);
+
+}  // namespace axial::experiments
