@@ -18,9 +18,10 @@
 #include "base/log.h"
 #include "base/parse_number.h"
 
+namespace axial::apps {
 namespace {
 
-using axial::densify::Settings;
+using densify::Settings;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -63,8 +64,8 @@ Setting point_inside_region(double& weight) {
 }
 
 std::vector<Setting> entries(Settings& settings) {
-  axial::ViewSelectionOptions& views = settings.selection;
-  axial::depth::PatchMatchOptions& matching = settings.matching;
+  ViewSelectionOptions& views = settings.selection;
+  depth::PatchMatchOptions& matching = settings.matching;
   return {setting("Min Views", views.min_views, 1, 1000),
           setting("Max Views", views.max_views, 1, 1000),
           setting("Min Views Trust Point", views.min_trusted_views, 1, 1000),
@@ -138,7 +139,7 @@ class ConfigFile {
       : name_(std::move(name)), settings_(settings), entries_(entries(settings)) {}
 
   void read(std::string_view text) {
-    text = axial::without_byte_order_mark(text);
+    text = without_byte_order_mark(text);
     while (!text.empty()) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++number_;
@@ -155,7 +156,7 @@ class ConfigFile {
     if (is_decoration(line)) return;
     const std::size_t sign = line.find('=');
     if (sign == std::string_view::npos)
-      axial::fail("{}: line {} is not 'title = value': {}", name_, number_, line);
+      fail("{}: line {} is not 'title = value': {}", name_, number_, line);
     set(std::string(title_of(line.substr(0, sign))), trimmed(line.substr(sign + 1)));
   }
 
@@ -172,12 +173,11 @@ class ConfigFile {
     if (titles_without_effect().contains(title)) return list(without_effect_, title);
     for (const Setting& setting : entries_) {
       if (title != setting.title) continue;
-      const std::optional<double> value = axial::parse_finite<double>(text);
-      if (!value)
-        axial::fail("{}: line {}: {} is '{}', expected a number", name_, number_, title, text);
+      const std::optional<double> value = parse_finite<double>(text);
+      if (!value) fail("{}: line {}: {} is '{}', expected a number", name_, number_, title, text);
       if (!(*value >= setting.low && *value <= setting.high))
-        axial::fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
-                    setting.low, setting.high);
+        fail("{}: line {}: {} is {}: must be from {} to {}", name_, number_, title, *value,
+             setting.low, setting.high);
       // A value written by this program is rounded: it must not change the last bits of the current
       // value.
       if (shown(*value) != shown(setting.get())) setting.set(*value);
@@ -191,12 +191,12 @@ class ConfigFile {
   }
 
   void warn() const {
-    if (!unknown_.empty()) axial::log_warning("{}: unknown settings, ignored: {}", name_, unknown_);
+    if (!unknown_.empty()) log_warning("{}: unknown settings, ignored: {}", name_, unknown_);
     if (!without_effect_.empty())
-      axial::log_info("{}: settings without effect here: {}", name_, without_effect_);
+      log_info("{}: settings without effect here: {}", name_, without_effect_);
     if (!of_options_.empty())
-      axial::log_info("{}: ignored, because only options set these values, as in OpenMVS: {}",
-                      name_, of_options_);
+      log_info("{}: ignored, because only options set these values, as in OpenMVS: {}", name_,
+               of_options_);
   }
 
   void note_what_maps_depend_on() {
@@ -219,10 +219,12 @@ class ConfigFile {
 void apply_dense_config(const std::filesystem::path& file, Settings& settings) {
   std::error_code error;
   if (std::filesystem::exists(file, error))
-    return ConfigFile(file.string(), settings).read(axial::read_file(file, 1 << 20));
+    return ConfigFile(file.string(), settings).read(read_file(file, 1 << 20));
   std::string text;
   for (const Setting& setting : entries(settings))
     text += fmt::format("{} = {}\n", setting.title, shown(setting.get()));
-  axial::write_atomically(file, text);
-  axial::log_info("{}: did not exist, written with the values in use", file.string());
+  write_atomically(file, text);
+  log_info("{}: did not exist, written with the values in use", file.string());
 }
+
+}  // namespace axial::apps

@@ -6,11 +6,12 @@
 #include "options.h"
 #include "without_effect.h"
 
+namespace axial::apps {
 namespace {
 
-void warn_if_empty(const axial::densify::Report& report, const Options& options) {
-  if (report.result == axial::densify::Result::dense_cloud && report.points == 0)
-    axial::log_warning(
+void warn_if_empty(const densify::Report& report, const Options& options) {
+  if (report.result == densify::Result::dense_cloud && report.points == 0)
+    log_warning(
         "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or masks and "
         "the region of interest exclude all points",
         options.settings.fusion.min_views);
@@ -18,12 +19,12 @@ void warn_if_empty(const axial::densify::Report& report, const Options& options)
 
 // OpenMVS's programs do not know ports or distortion, and report no error for scenes that have
 // them.
-void say_who_may_read(const axial::densify::Report& report, const Options& options) {
+void say_who_may_read(const densify::Report& report, const Options& options) {
   if (report.only_pinholes) return;
   const std::filesystem::path name = options.settings.output.filename();
   const std::filesystem::path& exported = options.settings.pinhole_export;
   const std::string folder = exported.empty() ? "DIR" : exported.filename().string();
-  axial::log_info(
+  log_info(
       "{} has cameras behind ports or with distorted lenses, which OpenMVS treats as pinholes: its "
       "ReconstructMesh can use {} and the cloud, but RefineMesh, TextureMesh and fusion of the "
       "depth maps give wrong results; --pinhole-export {} writes files that all of OpenMVS's "
@@ -34,17 +35,17 @@ void say_who_may_read(const axial::densify::Report& report, const Options& optio
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
-  const axial::densify::Report report =
-      axial::densify::densify(options.settings, [&](const axial::densify::SceneFacts& facts) {
-        warn_of_options_without_effect(options, facts);
-      });
+  const densify::Report report = densify::densify(
+      options.settings,
+      [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); });
   warn_if_empty(report, options);
   say_who_may_read(report, options);
   return 0;
 }
 
 }  // namespace
+}  // namespace axial::apps
 
 int main(int argc, char** argv) {
-  return axial::run_program("DensifyPointCloud", [&] { return run(argc, argv); });
+  return axial::run_program("DensifyPointCloud", [&] { return axial::apps::run(argc, argv); });
 }

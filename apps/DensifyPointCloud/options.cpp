@@ -12,8 +12,8 @@
 #include "io/images/bit_depth.h"
 #include "without_effect.h"
 
-using axial::fail;
-using axial::densify::Settings;
+namespace axial::apps {
+using densify::Settings;
 
 namespace {
 
@@ -46,7 +46,7 @@ std::vector<NotBuilt> not_built_hidden() {
           {"export-depth-maps-name", "", {""}}};
 }
 
-void declare_io(axial::OptionList& list, Raw& raw, Settings& settings) {
+void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
       .add("output-file,o", &raw.output, "scene and cloud to write (<input>_dense.mvs)")
       .add_with_default("resolution-level", &settings.resolution.level,
@@ -78,7 +78,7 @@ void declare_io(axial::OptionList& list, Raw& raw, Settings& settings) {
           "--estimate-normals 1 keep the whole cloud in additional memory");
 }
 
-void declare_matching(axial::OptionList& list, Settings& settings) {
+void declare_matching(OptionList& list, Settings& settings) {
   list.add_with_default("sub-resolution-levels", &settings.matching.sub_resolution_levels,
                         "number of coarser levels that are matched first")
       .add_with_default(
@@ -92,7 +92,7 @@ void declare_matching(axial::OptionList& list, Settings& settings) {
                         "neighbours' maps (OpenMVS's default is 7)");
 }
 
-void declare_fusion(axial::OptionList& list, Raw& raw, Settings& settings) {
+void declare_fusion(OptionList& list, Raw& raw, Settings& settings) {
   list.add_with_default(
           "fusion-mode", &raw.fusion_mode,
           "0 depth maps and fusion, 1 depth maps only, -1 fusion of the existing depth maps in the "
@@ -114,7 +114,7 @@ void declare_fusion(axial::OptionList& list, Raw& raw, Settings& settings) {
                         "crop the cloud to the region of interest");
 }
 
-void declare_points(axial::OptionList& list, Raw& raw, Settings& settings) {
+void declare_points(OptionList& list, Raw& raw, Settings& settings) {
   list.add("pointcloud-file,p", &raw.point_cloud,
            "PLY cloud with views that replaces the scene's sparse points")
       .add("view-neighbors-file", &raw.neighbour_lists,
@@ -137,7 +137,7 @@ void declare_points(axial::OptionList& list, Raw& raw, Settings& settings) {
            "OpenMVS's Densify.ini: settings that have no option; written if it does not exist");
 }
 
-void declare_camera(axial::OptionList& list, Raw& raw, Settings& settings) {
+void declare_camera(OptionList& list, Raw& raw, Settings& settings) {
   list.add_switch("refractive", &settings.refractive,
                   "cameras are behind ports: require a housing file")
       .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
@@ -151,7 +151,7 @@ void declare_camera(axial::OptionList& list, Raw& raw, Settings& settings) {
                         "published virtual homography");
 }
 
-void declare_not_built(axial::OptionList& list, std::vector<NotBuilt>& options) {
+void declare_not_built(OptionList& list, std::vector<NotBuilt>& options) {
   for (NotBuilt& option : options)
     list.add_with_default(option.name, &option.value, "not built yet: accepts only the default");
 }
@@ -200,7 +200,7 @@ void check_values(const Settings& settings, const Raw& raw) {
   check_range("estimate-normals", settings.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  axial::io::check_bit_depth(settings.bit_depth);
+  io::check_bit_depth(settings.bit_depth);
   check_range("roi-border", settings.roi_border, -1e6, 1e6);
   check_range("export-number-views", settings.export_number_views, -255, 255);
   check_range("estimate-scale", settings.estimate_scale, 0.0, 1e6);
@@ -211,11 +211,11 @@ void check_values(const Settings& settings, const Raw& raw) {
 // Warns of valid options that have no effect.
 void warn_of_no_effect(const Settings& settings, const Raw& raw) {
   if (raw.tower_mode != 0)
-    axial::log_warning(
+    log_warning(
         "--tower-mode {}: not built: as with 0, no points are added around a line of cameras",
         raw.tower_mode);
   if (settings.filter_point_cloud > 0)
-    axial::log_warning(
+    log_warning(
         "--filter-point-cloud {}: has no effect, as in OpenMVS: only values below 0 filter, and "
         "they filter only an existing cloud (-p)",
         settings.filter_point_cloud);
@@ -223,28 +223,24 @@ void warn_of_no_effect(const Settings& settings, const Raw& raw) {
 
 // The values of the options that are names.
 void take_choices(const Raw& raw, Settings& settings) {
-  using axial::densify::CameraChoice;
+  using densify::CameraChoice;
   settings.camera = one_of<CameraChoice>("camera-model", raw.camera_model,
                                          {{"auto", CameraChoice::automatic},
                                           {"pinhole", CameraChoice::pinhole},
                                           {"flatport", CameraChoice::flat_port}});
   settings.double_precision =
       one_of<bool>("output-precision", raw.precision, {{"float", false}, {"double", true}});
-  settings.projection =
-      one_of<axial::ProjectionMethod>("projection", raw.projection,
-                                      {{"exact", axial::ProjectionMethod::exact},
-                                       {"line-search", axial::ProjectionMethod::line_search}});
-  settings.matching.warp = one_of<axial::depth::Warp>(
-      "warp", raw.warp,
-      {{"affine", axial::depth::Warp::affine}, {"homography", axial::depth::Warp::homography}});
+  settings.projection = one_of<ProjectionMethod>(
+      "projection", raw.projection,
+      {{"exact", ProjectionMethod::exact}, {"line-search", ProjectionMethod::line_search}});
+  settings.matching.warp = one_of<depth::Warp>(
+      "warp", raw.warp, {{"affine", depth::Warp::affine}, {"homography", depth::Warp::homography}});
   if (settings.refractive && settings.camera == CameraChoice::pinhole)
     fail("--refractive contradicts --camera-model pinhole");
 }
 
-void take_paths(const axial::CommonOptions& common, const Raw& raw, Settings& settings) {
-  const auto path = [&](const std::string& given) {
-    return axial::in_working_folder(common, given);
-  };
+void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
+  const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
   settings.working_folder = common.working_folder;
   settings.input = path(raw.input);
   settings.output = path(raw.output);
@@ -263,8 +259,8 @@ void take_paths(const axial::CommonOptions& common, const Raw& raw, Settings& se
 
 // From -v 3 on, pictures of the depth maps are written beside them, as by OpenMVS. From -v 5 on,
 // pictures of the maps of every stage, too.
-axial::densify::Pictures pictures_of(int verbosity) {
-  using axial::densify::Pictures;
+densify::Pictures pictures_of(int verbosity) {
+  using densify::Pictures;
   if (verbosity < 3) return Pictures::none;
   return verbosity < 5 ? Pictures::final_maps : Pictures::maps_of_every_stage;
 }
@@ -279,32 +275,32 @@ void check_pinhole_export(const Settings& settings) {
 // Fills the settings from the values of the options.
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
-  const axial::CommonOptions& common = options.parsed.common;
-  if (const auto file = axial::in_working_folder(common, raw.dense_config); !file.empty()) {
+  const CommonOptions& common = options.parsed.common;
+  if (const auto file = in_working_folder(common, raw.dense_config); !file.empty()) {
     apply_dense_config(file, settings);
     settings.other_inputs.push_back(file);
   }
   take_paths(common, raw, settings);
-  if (!settings.mask_folder.empty() && !axial::given(options.parsed, "ignore-mask-label"))
+  if (!settings.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
     settings.ignore_mask_label = 0;
   take_choices(raw, settings);
   settings.make_maps = raw.fusion_mode >= 0;
   settings.fuse = raw.fusion_mode <= 0;
   check_pinhole_export(settings);
-  settings.region = static_cast<axial::RegionMode>(raw.estimate_roi);
-  settings.fusion.two_if_undisputed = !axial::given(options.parsed, "number-views-fuse");
+  settings.region = static_cast<RegionMode>(raw.estimate_roi);
+  settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
 }
 
-axial::ProgramOptions described_program() {
-  axial::ProgramOptions program{
+ProgramOptions described_program() {
+  ProgramOptions program{
       "DensifyPointCloud",
       "computes a dense point cloud from calibrated images, in air and under water",
-      axial::OptionList("Densify options"), axial::OptionList("Hidden options"),
+      OptionList("Densify options"), OptionList("Hidden options"),
       ", and pictures of the depth maps in the same folder; 5 and above: also pictures of the "
       "depth maps of every stage"};
-  program.version = axial::version_line(program.name);
+  program.version = version_line(program.name);
   return program;
 }
 
@@ -314,18 +310,18 @@ Options parse_command_line(int argc, const char* const* argv) {
   Options options;
   Settings& settings = options.settings;
   Raw raw;
-  axial::ProgramOptions program = described_program();
+  ProgramOptions program = described_program();
   declare_io(program.visible, raw, settings);
-  axial::io::declare_bit_depth(program.visible, settings.bit_depth);
+  io::declare_bit_depth(program.visible, settings.bit_depth);
   declare_camera(program.visible, raw, settings);
   declare_matching(program.visible, settings);
   declare_fusion(program.visible, raw, settings);
   declare_points(program.visible, raw, settings);
-  axial::UnusedInput::declare(program.visible, settings.allow_missing);
+  UnusedInput::declare(program.visible, settings.allow_missing);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);
-  options.parsed = axial::parse_options(argc, argv, program);
+  options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
 
   refuse_not_built(visible);
@@ -336,3 +332,5 @@ Options parse_command_line(int argc, const char* const* argv) {
   warn_of_options_without_effect(options);
   return options;
 }
+
+}  // namespace axial::apps

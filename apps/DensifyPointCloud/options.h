@@ -7,12 +7,16 @@
 #include "base/program.h"
 #include "densify/settings.h"
 
+namespace axial::apps {
+
 struct Options {
-  axial::ParsedOptions parsed;
-  axial::densify::Settings settings;
+  ParsedOptions parsed;
+  densify::Settings settings;
 };
 
 // Parses and checks the command line. Error for an unknown option, for a value out of range, and
 // for an OpenMVS option that is not implemented, unless it has its default or "off" value.
 // `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

@@ -7,9 +7,10 @@
 
 #include "base/log.h"
 
+namespace axial::apps {
 namespace {
 
-using axial::densify::Settings;
+using densify::Settings;
 using Names = std::initializer_list<const char*>;
 
 constexpr Names kMatching{"sub-resolution-levels", "iters",      "geometric-iters",
@@ -26,14 +27,13 @@ constexpr Names kImages{"resolution-level", "max-resolution",     "min-resolutio
 std::string given_of(const Options& options, Names names) {
   std::string listed;
   for (const char* name : names)
-    if (axial::given(options.parsed, name))
-      listed += (listed.empty() ? "--" : ", --") + std::string(name);
+    if (given(options.parsed, name)) listed += (listed.empty() ? "--" : ", --") + std::string(name);
   return listed;
 }
 
 void warn_of(const Options& options, Names names, const std::string& cause) {
   if (const std::string listed = given_of(options, names); !listed.empty())
-    axial::log_warning("{}: without effect {}", listed, cause);
+    log_warning("{}: without effect {}", listed, cause);
 }
 
 // If several exports are asked for, the first one is made.
@@ -56,7 +56,7 @@ void warn_of_rival_exports(const Options& options) {
 
 void warn_of_options_without_effect(const Options& options) {
   const Settings& settings = options.settings;
-  if (settings.camera == axial::densify::CameraChoice::pinhole)
+  if (settings.camera == densify::CameraChoice::pinhole)
     warn_of(options, {"housing"}, "with --camera-model pinhole");
   if (only_exports(settings)) return warn_of_rival_exports(options);
   if (!settings.neighbour_lists_output.empty()) {
@@ -71,11 +71,12 @@ void warn_of_options_without_effect(const Options& options) {
     warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
 }
 
-void warn_of_options_without_effect(const Options& options,
-                                    const axial::densify::SceneFacts& facts) {
+void warn_of_options_without_effect(const Options& options, const densify::SceneFacts& facts) {
   if (facts.own_region)
     warn_of(options, {"estimate-roi"}, "on a scene that already has a region of interest");
   if (!facts.behind_ports) warn_of(options, {"projection"}, "in air: no image is behind a port");
   if (!facts.region)
     warn_of(options, {"roi-border"}, "without a region of interest (see --estimate-roi)");
 }
+
+}  // namespace axial::apps

@@ -29,9 +29,9 @@ class Drawing {
         svg_(kWidth + 2 * kMargin, height_ + kTitle + kMargin) {}
 
   void head(const std::string& title) {
-    svg_.text(kMargin, 22, title, io::Anchor::kStart, "title");
+    svg_.text(kMargin, 22, title, picture::Anchor::kStart, "title");
     svg_.text(kMargin, 40, "error: blue: up to the RMS; orange: up to twice the RMS; red: larger",
-              io::Anchor::kStart, "small");
+              picture::Anchor::kStart, "small");
   }
 
   void grid() {
@@ -51,7 +51,7 @@ class Drawing {
     for (std::size_t i = 0; i < counts_.size(); ++i)
       for (std::size_t j = 0; j < counts_[i].size(); ++j)
         svg_.text(column(static_cast<int>(j)) + 4, row(static_cast<int>(i)) + 14,
-                  fmt::format("{}", counts_[i][j]), io::Anchor::kStart, "small");
+                  fmt::format("{}", counts_[i][j]), picture::Anchor::kStart, "small");
     return svg_.str();
   }
 
@@ -65,7 +65,7 @@ class Drawing {
   }
 
   double scale_, height_;
-  io::Svg svg_;
+  picture::Svg svg_;
   std::array<std::array<int, kColumns>, kRows> counts_{};
 };
 

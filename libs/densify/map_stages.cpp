@@ -117,7 +117,7 @@ class Runner {
   void draw(std::size_t stage) const {
     for_each_in_flight(run_.images.size(), run_.in_flight, [&](std::size_t i) {
       const fs::path file = path(stage, run_.images[i]);
-      io::write_dmap_pictures(file, io::read_dmap(file).map);
+      picture::write_dmap_pictures(file, io::read_dmap(file).map);
     });
   }
 

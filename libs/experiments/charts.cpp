@@ -13,9 +13,9 @@
 namespace axial::experiments {
 namespace {
 
-using io::Anchor;
-using io::Rectangle;
-using io::Svg;
+using picture::Anchor;
+using picture::Rectangle;
+using picture::Svg;
 
 // Colours by Okabe and Ito, which colour-blind readers can distinguish.
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",

@@ -26,7 +26,7 @@ std::string small_picture(const fs::path& file, int width) {
   cv::Mat picture = io::read_color_image(file);
   const double factor = std::min(1.0, static_cast<double>(width) / picture.cols);
   cv::resize(picture, picture, {}, factor, factor, cv::INTER_AREA);
-  return io::png_in_base64(picture);
+  return picture::png_in_base64(picture);
 }
 
 fs::path truth_of(const SimulatedScene& scene, const std::string& medium, const fs::path& image) {

@@ -186,13 +186,13 @@ std::string picture_sheet(const std::string& title, const std::vector<Panel>& pa
   constexpr double kTitle = 34, kHead = 26, kGap = 14;
   const double step_x = width + kGap, step_y = height + kHead;
   const std::size_t rows = (panels.size() + columns - 1) / columns;
-  io::Svg svg(kGap + step_x * static_cast<double>(columns),
-              kTitle + step_y * static_cast<double>(rows) + kGap);
-  svg.text(kGap, 22, title, io::Anchor::kStart, "title");
+  picture::Svg svg(kGap + step_x * static_cast<double>(columns),
+                   kTitle + step_y * static_cast<double>(rows) + kGap);
+  svg.text(kGap, 22, title, picture::Anchor::kStart, "title");
   for (std::size_t k = 0; k < panels.size(); ++k) {
     const double x = kGap + step_x * static_cast<double>(k % columns);
     const double y = kTitle + step_y * static_cast<double>(k / columns);
-    svg.text(x, y + 18, panels[k].title, io::Anchor::kStart, "small");
+    svg.text(x, y + 18, panels[k].title, picture::Anchor::kStart, "small");
     svg.picture({x, y + kHead, width, height}, panels[k].picture->get<std::string>());
   }
   return svg.str();

@@ -8,7 +8,7 @@
 
 #include "io/images/image.h"
 
-namespace axial::io {
+namespace axial::picture {
 namespace {
 
 // Scales the values above 0 to 1 .. 255. The lowest and highest hundredth are clamped. 0 where
@@ -56,9 +56,9 @@ void write_dmap_pictures(const std::filesystem::path& dmap, const DepthMap& map)
     std::filesystem::path path = dmap;
     return path.replace_extension(extension);
   };
-  write_png(beside(".png"), depth_picture(map.depth));
-  write_png(beside(".normal.png"), normal_picture(map.normal));
-  if (!map.confidence.empty()) write_png(beside(".confidence.png"), levels_of(map.confidence));
+  io::write_png(beside(".png"), depth_picture(map.depth));
+  io::write_png(beside(".normal.png"), normal_picture(map.normal));
+  if (!map.confidence.empty()) io::write_png(beside(".confidence.png"), levels_of(map.confidence));
 }
 
-}  // namespace axial::io
+}  // namespace axial::picture

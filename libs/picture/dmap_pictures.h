@@ -6,7 +6,7 @@
 
 #include "scene/depth_map.h"
 
-namespace axial::io {
+namespace axial::picture {
 
 // Writes pictures beside "<name>.dmap". <name>.png shows the depth from near (blue) to far
 // (yellow). <name>.normal.png shows the normal: red to the right, green down, blue towards the
@@ -15,4 +15,4 @@ namespace axial::io {
 // share one colour.
 void write_dmap_pictures(const std::filesystem::path& dmap, const DepthMap& map);
 
-}  // namespace axial::io
+}  // namespace axial::picture

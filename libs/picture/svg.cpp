@@ -5,7 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-namespace axial::io {
+namespace axial::picture {
 namespace {
 
 constexpr std::string_view kStyle = R"(
@@ -112,4 +112,4 @@ std::string Svg::str() const {
       width_, height_, kStyle, body_);
 }
 
-}  // namespace axial::io
+}  // namespace axial::picture

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace axial::io {
+namespace axial::picture {
 
 struct Rectangle {
   double x, y, width, height;
@@ -41,4 +41,4 @@ class Svg {
   std::string body_;
 };
 
-}  // namespace axial::io
+}  // namespace axial::picture

@@ -6,7 +6,7 @@
 #include "io/images/image.h"
 #include "support/empty_folder.h"
 
-namespace axial::io {
+namespace axial::picture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,9 +28,9 @@ DepthMap slope() {
 TEST(DmapPictures, ShowsWhatIsThereAndBlackElsewhere) {
   const fs::path folder = test::empty_folder();
   write_dmap_pictures(folder / "depth0007.dmap", slope());
-  const cv::Mat3b depth = read_color_image(folder / "depth0007.png");
-  const cv::Mat3b normal = read_color_image(folder / "depth0007.normal.png");
-  const cv::Mat3b confidence = read_color_image(folder / "depth0007.confidence.png");
+  const cv::Mat3b depth = io::read_color_image(folder / "depth0007.png");
+  const cv::Mat3b normal = io::read_color_image(folder / "depth0007.normal.png");
+  const cv::Mat3b confidence = io::read_color_image(folder / "depth0007.confidence.png");
 
   ASSERT_EQ(depth.size(), cv::Size(21, 5));
   for (const cv::Mat3b& picture : {depth, normal, confidence})
@@ -49,13 +49,13 @@ TEST(DmapPictures, TakesMapsThatAreFlatOrEmpty) {
   map.depth = 2.0f;
   map.confidence.release();
   write_dmap_pictures(folder / "flat.dmap", map);
-  EXPECT_NE(read_color_image(folder / "flat.png")(0, 0), cv::Vec3b(0, 0, 0));
+  EXPECT_NE(io::read_color_image(folder / "flat.png")(0, 0), cv::Vec3b(0, 0, 0));
   EXPECT_FALSE(fs::exists(folder / "flat.confidence.png"));
   map.depth = 0.0f;
   write_dmap_pictures(folder / "empty.dmap", map);
-  EXPECT_EQ(cv::countNonZero(read_color_image(folder / "empty.png").reshape(1)), 0);
+  EXPECT_EQ(cv::countNonZero(io::read_color_image(folder / "empty.png").reshape(1)), 0);
   fs::remove_all(folder);
 }
 
 }  // namespace
-}  // namespace axial::io
+}  // namespace axial::picture
