@@ -84,10 +84,10 @@ if(NOT AXIAL_SANITIZE)
     --param=max-inline-insns-single=400)
 endif()
 
-# add_axial_library(depth SOURCES a.cpp LINK scene opencv_core) adds libs/depth as the library
-# axial_depth. In LINK, the project's own libraries are written without the prefix axial_. Headers in
-# libs/depth/private are for this library alone: they are included as "private/x.h", which only its
-# own files find.
+# add_axial_library(io SOURCES ply/ply_read.cpp LINK scene opencv_core) adds libs/io as the library
+# axial_io. In LINK, the project's own libraries are written without the prefix axial_. Headers in
+# libs/io/private are for this library alone: they are included as "private/ply/ply_header.h", which
+# only its own files find.
 function(axial_link target)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})
@@ -125,7 +125,7 @@ endfunction()
 
 # The unit tests of these folders read files and manage memory, so they are built with the
 # sanitizers. The unit tests of the other folders are numeric and are built in release.
-set(AXIAL_SANITIZED_FOLDERS base io scene picture cloud)
+set(AXIAL_SANITIZED_FOLDERS base lens io scene picture cloud)
 
 # add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
 #                [BUILD release] [TIMEOUT 300] [PRIVATE_OF io])

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs missing packages, builds, and runs all tests under CTest. Each unit test is built once:
-# the tests of base, io, scene, picture and cloud with AddressSanitizer and UndefinedBehaviorSanitizer
-# ("sanitized/..."), the numeric tests in the release build, like the programs.
+# the tests of base, lens, io, scene, picture and cloud with AddressSanitizer and
+# UndefinedBehaviorSanitizer ("sanitized/..."), the other tests in the release build, like the
+# programs.
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #

@@ -226,8 +226,8 @@ Input read_input(const Options& options) {
   return input;
 }
 
-// Attaches the ports to the scene, and writes the housing file beside it. Without ports, a housing
-// file that is there already is kept.
+// Attaches the ports to the scene, and writes the housing file beside it. If neither --housing nor
+// the model gives ports, a housing file that is there already is kept.
 void write_ports(const Options& options, const Input& input, const io::ColmapImport& import,
                  Scene& scene) {
   const fs::path housing_file = io::housing_beside(options.scene_file);

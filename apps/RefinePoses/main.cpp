@@ -255,7 +255,8 @@ Input read_input(const Options& options) {
   return input;
 }
 
-// Warns of ports that no image has. Error if no image has a port.
+// Warns of entries of the housing that match no image or camera. Error if no image is behind a
+// port.
 void check_ports(const Options& options, const Input& input, const pose::Bundle& bundle) {
   const fs::path& ports_from = !options.housing.empty() ? options.housing
                                : options.lens.empty()   ? options.model
@@ -276,10 +277,11 @@ void say_input(const Input& input, const pose::ColmapBundle& bundle) {
                 bundle.unseen);
 }
 
-// Refines with --scale-from, and from the start again without it if refining drops what it names;
-// then this function reports it to `unused`, and sets `frame` to the frame that the bundle is in.
-Refined refine_with_scale(Options& options, pose::ColmapBundle& refined, const Input& input,
-                          UnusedInput& unused, LocalFrame& frame) {
+// Refines the bundle. If refining drops the images or points that --scale-from names, reports this
+// to `unused`, clears --scale-from, and refines once more from the start. `frame` is then the frame
+// of the new bundle.
+Refined refine_or_without_scale(Options& options, pose::ColmapBundle& refined, const Input& input,
+                                UnusedInput& unused, LocalFrame& frame) {
   std::optional<pose::ColmapBundle> start;
   if (options.allow_missing && !options.scale_from.empty()) start = refined;
   Refined done = refine(options, refined, input.model);
@@ -321,7 +323,7 @@ int run(int argc, char** argv) {
   LocalFrame frame = set_known(options, refined.bundle, input.frame, unused);
   check_output(options, input.folder);
   say_input(input, refined);
-  const Refined done = refine_with_scale(options, refined, input, unused, frame);
+  const Refined done = refine_or_without_scale(options, refined, input, unused, frame);
   finish(options, input, refined, done, unused, frame);
   return 0;
 }

@@ -28,7 +28,7 @@ struct WorkImageSize {
 std::uint64_t bytes_needed(const WorkImageSize& size);
 
 // An upper bound of the memory [bytes] while ImageStore reads an image, without the WorkImage.
-// `decode`: of the photograph (io/image.h). `pixels`: of the WorkImage.
+// `decode`: of the photograph (io/images/image.h). `pixels`: of the WorkImage.
 std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels);
 
 // The WorkImage::mask of an image, at the size of `view.camera`. `opaque`: non-zero where pixels

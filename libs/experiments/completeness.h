@@ -25,7 +25,8 @@ std::string completeness_name(const CompletenessOptions& options);
 
 // One part for each seed: the report of EvaluateReconstruction without histograms, and
 // "cpu_seconds", the CPU time of DensifyPointCloud [s]. `chain.work` keeps the scenes and clouds.
-// Errors as for the experiments in chained.h.
+// Errors as for the experiments in chained.h. Precondition: `options` are as the comments of their
+// fields say; so for completeness_documents().
 Experiment completeness(const Chain& chain, const CompletenessOptions& options);
 
 // One document, completeness_....md, from the results of the experiment with the same options: one
