@@ -9,14 +9,6 @@
 namespace axial::apps {
 namespace {
 
-void warn_if_empty(const densify::Report& report, const Options& options) {
-  if (report.result == densify::Result::dense_cloud && report.points == 0)
-    log_warning(
-        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or masks and "
-        "the region of interest exclude all points",
-        options.settings.fusion.min_views);
-}
-
 // OpenMVS's programs do not know ports or distortion, and report no error for scenes that have
 // them.
 void say_who_may_read(const densify::Report& report, const Options& options) {
@@ -38,7 +30,6 @@ int run(int argc, char** argv) {
   const densify::Report report = densify::densify(
       options.settings,
       [&](const densify::SceneFacts& facts) { warn_of_options_without_effect(options, facts); });
-  warn_if_empty(report, options);
   say_who_may_read(report, options);
   return 0;
 }

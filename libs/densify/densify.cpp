@@ -94,6 +94,11 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
   write_cameras_beside_output(project, settings);
   io::write_mvs(settings.output, project.scene, settings.working_folder);
   log_info("{}: {} points", ply.string(), points);
+  if (settings.fuse && points == 0)
+    log_warning(
+        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or masks and "
+        "the region of interest exclude all points",
+        settings.fusion.min_views);
   export_pinholes(project, settings, plan, existing, ply);
   if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
   return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,

@@ -21,7 +21,7 @@ struct Report {
   Result result = Result::dense_cloud;
   std::filesystem::path cloud;  // the cloud that was written; empty: none
   std::size_t points = 0;       // of this cloud
-  std::size_t depth_maps = 0;   // number of images with a depth map
+  std::size_t depth_maps = 0;   // number of images whose depth map was made or used
   // OpenMVS's programs read the depth maps and the scene correctly: no camera has a port or a
   // distorted lens.
   bool only_pinholes = true;
@@ -40,8 +40,9 @@ struct Report {
 //   cloud (value 1) is kept in additional memory.
 // * Progress, results and warnings are logged (base/log.h). `observer` is called once, before views
 //   are selected; it is not called for a point export.
-// * All threads of the process then share one heap (share_one_heap() in base/memory.h), and large
-//   blocks come from the system. So call it before other threads start, and one run at a time.
+// * From the call on, and after it, all threads of the process share one heap (share_one_heap() in
+//   base/memory.h), and large blocks come from the system. So call it before other threads start,
+//   and one run at a time.
 //
 // Error for a fault of the scene or of a file that belongs to it, for images that are missing,
 // truncated, damaged or of another shape than their camera, for an output that cannot be written or

@@ -16,8 +16,8 @@ std::vector<std::filesystem::path> scene_files(const Settings& settings);
 void check_outputs(const Settings& settings);
 
 // The same for the photographs and masks of the scene, and for the depth maps and their pictures.
-// Maps of earlier runs are not inputs. But the report and the lists of neighbours must not
-// name a map or another output.
+// Maps of earlier runs are not inputs. But the report and the lists of neighbours must not name a
+// map or another output.
 void check_outputs(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

@@ -2,13 +2,14 @@
 // What the stages say that they need, against the memory that they use.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <fstream>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "cloud/fusion_map.h"
 #include "densify/image_store.h"
 #include "depth/filters.h"
@@ -67,14 +68,14 @@ std::uint64_t status(const std::string& name) {
   return 0;
 }
 
-// The largest number of bytes that were resident while `run` ran, besides those before. Nothing if
+// The largest number of bytes that were resident while `run` ran, besides those before. Empty if
 // the system cannot forget an earlier peak.
 template <class Run>
-std::uint64_t peak_of(const Run& run) {
+std::optional<std::uint64_t> peak_of(const Run& run) {
   return_freed_memory();
   std::ofstream("/proc/self/clear_refs") << 5;
   const std::uint64_t before = status("VmHWM");
-  if (before > resident_memory() + (4u << 20)) return 0;
+  if (before > resident_memory() + (4u << 20)) return {};
   run();
   return status("VmHWM") - before;
 }
@@ -86,11 +87,14 @@ constexpr std::uint64_t kSmallBlocks = 12u << 20;
 // runs slow that have little memory.
 template <class Run>
 void expect_within(std::uint64_t bound, double use, const Run& run) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
+#endif
   run();  // starts threads and loads code
-  const std::uint64_t peak = peak_of(run);
-  if (peak == 0) GTEST_SKIP() << "the system does not measure the peak";
-  EXPECT_LE(peak, bound + kSmallBlocks);
-  EXPECT_GE(static_cast<double>(peak), use * static_cast<double>(bound));
+  const auto peak = peak_of(run);
+  if (!peak) GTEST_SKIP() << "the system does not measure the peak";
+  EXPECT_LE(*peak, bound + kSmallBlocks);
+  EXPECT_GE(static_cast<double>(*peak), use * static_cast<double>(bound));
 }
 
 CameraModel large_camera() {
@@ -122,7 +126,8 @@ TEST_F(Matching, MemoryIsWithinItsBound) {
   depth::PatchMatchOptions options;
   options.iterations = 1;
   DepthMap map;
-  expect_within(depth::bytes_needed(depth::MatchSize{pixels_, 4}), 0.5, [&] {
+  // The bound includes the filters' copies, which are made after the planes were freed.
+  expect_within(depth::bytes_needed(depth::MatchSize{pixels_, 4}), 0.35, [&] {
     map = DepthMap();
     map = depth::estimate_depth_map(input, options);
   });
