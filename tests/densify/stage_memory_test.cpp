@@ -126,7 +126,7 @@ TEST_F(Matching, MemoryIsWithinItsBound) {
   depth::PatchMatchOptions options;
   options.iterations = 1;
   DepthMap map;
-  // The bound includes the filters' copies, which are made after the planes were freed.
+  // The bound includes the copies of the filters, which this call does not make.
   expect_within(depth::bytes_needed(depth::MatchSize{pixels_, 4}), 0.35, [&] {
     map = DepthMap();
     map = depth::estimate_depth_map(input, options);
