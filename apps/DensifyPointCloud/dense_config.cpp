@@ -31,29 +31,19 @@ struct Setting {
   double low, high;
   std::function<double()> get;
   std::function<void(double)> set;
-  // Depth maps depend on it, and it is in no other part of their fingerprint.
-  bool of_maps = false;
 };
 
 template <class T>
-Setting setting(const char* title, T& target, double low, double high, double unit = 1,
-                bool of_maps = false) {
-  return {title,
-          low,
-          high,
-          [&target, unit] { return static_cast<double>(target) / unit; },
-          [&target, unit](double value) { target = static_cast<T>(value * unit); },
-          of_maps};
+Setting setting(const char* title, T& target, double low, double high, double unit = 1) {
+  return {title, low, high, [&target, unit] { return static_cast<double>(target) / unit; },
+          [&target, unit](double value) { target = static_cast<T>(value * unit); }};
 }
 
 // A standard deviation of grey levels in [0, 1]. The target holds its square.
 Setting min_texture(float& target) {
-  return {"Descriptor Min Magnitude Threshold",
-          0,
-          1,
+  return {"Descriptor Min Magnitude Threshold", 0, 1,
           [&target] { return std::sqrt(static_cast<double>(target)); },
-          [&target](double value) { target = static_cast<float>(value * value); },
-          true};
+          [&target](double value) { target = static_cast<float>(value * value); }};
 }
 
 // 0: the region has no effect; 1: points outside the region have less weight.
@@ -79,10 +69,10 @@ std::vector<Setting> entries(Settings& settings) {
           setting("Depth Diff Threshold", settings.fusion.depth_threshold, 1e-6, 1),
           setting("Normal Diff Threshold", settings.fusion.normal_threshold, 0, 180, kDegree),
           min_texture(matching.min_texture),
-          setting("NCC Threshold Keep", matching.keep_cost, 0, 2, 1, true),
-          setting("Estimation Geometric Weight", matching.geometric_weight, 0, 100, 1, true),
-          setting("Speckle Size", settings.speckles.min_pixels, 0, 1e9, 1, true),
-          setting("Interpolate Gap Size", settings.gaps.max_gap, 0, 1e6, 1, true)};
+          setting("NCC Threshold Keep", matching.keep_cost, 0, 2),
+          setting("Estimation Geometric Weight", matching.geometric_weight, 0, 100),
+          setting("Speckle Size", settings.speckles.min_pixels, 0, 1e9),
+          setting("Interpolate Gap Size", settings.gaps.max_gap, 0, 1e6)};
 }
 
 std::string shown(double value) {
@@ -136,7 +126,7 @@ bool is_decoration(std::string_view line) {
 class ConfigFile {
  public:
   ConfigFile(std::string name, Settings& settings)
-      : name_(std::move(name)), settings_(settings), entries_(entries(settings)) {}
+      : name_(std::move(name)), entries_(entries(settings)) {}
 
   void read(std::string_view text) {
     text = without_byte_order_mark(text);
@@ -147,7 +137,6 @@ class ConfigFile {
       text.remove_prefix(std::min(end + 1, text.size()));
     }
     warn();
-    note_what_maps_depend_on();
   }
 
  private:
@@ -199,16 +188,7 @@ class ConfigFile {
                of_options_);
   }
 
-  void note_what_maps_depend_on() {
-    Settings defaults;
-    const std::vector<Setting> before = entries(defaults);
-    for (std::size_t i = 0; i < entries_.size(); ++i)
-      if (entries_[i].of_maps && entries_[i].get() != before[i].get())
-        settings_.map_settings += fmt::format("{} {}\n", entries_[i].title, entries_[i].get());
-  }
-
   std::string name_;
-  Settings& settings_;
   std::vector<Setting> entries_;
   std::size_t number_ = 0;
   std::string unknown_, without_effect_, of_options_;

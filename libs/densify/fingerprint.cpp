@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/fingerprint.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <initializer_list>
+#include <string>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -53,6 +57,88 @@ void add_settings(Fingerprint& print, const Settings& settings) {
     print.add(value);
 }
 
+// A number of the settings and its name in the fingerprint.
+struct NamedNumber {
+  const char* name;
+  double value;
+};
+using NamedNumbers = std::vector<NamedNumber>;
+
+template <class T>
+NamedNumber named(const char* name, T value) {
+  return {name, static_cast<double>(value)};
+}
+
+// The numbers that OpenMVS's file of settings has, under their titles there. The side files of
+// existing depth maps hold fingerprints of these names, values and their order.
+NamedNumbers numbers_of_openmvs(const Settings& settings) {
+  const depth::PatchMatchOptions& matching = settings.matching;
+  return {named("Descriptor Min Magnitude Threshold",
+                std::sqrt(static_cast<double>(matching.min_texture))),
+          named("NCC Threshold Keep", matching.keep_cost),
+          named("Estimation Geometric Weight", matching.geometric_weight),
+          named("Speckle Size", settings.speckles.min_pixels),
+          named("Interpolate Gap Size", settings.gaps.max_gap)};
+}
+
+// The numbers that are neither in numbers_of_openmvs() nor in add_settings(). The structured
+// bindings name all members: a new member does not compile until it has a name here.
+NamedNumbers other_numbers(const depth::PatchMatchOptions& matching) {
+  const auto& [warp, sub_resolution_levels, iterations, coarsest_side, sigma_color, sigma_space,
+               min_texture, smoothness, prior_texture, coarse_pairs, first_pairs, later_pairs,
+               last_pairs, refinement_shrink, restart_trials, refinement_pixels, refinement_angle,
+               good_cost, fair_cost, bad_cost, search_planes, search_pairs, certain_cost, keep_cost,
+               geometric_weight, geometric_limit] = matching;
+  const auto& [depth_sigma, depth_bonus, normal_sigma, normal_bonus] = smoothness;
+  return {named("coarsest_side", coarsest_side),
+          named("sigma_color", sigma_color),
+          named("sigma_space", sigma_space),
+          named("smoothness.depth_sigma", depth_sigma),
+          named("smoothness.depth_bonus", depth_bonus),
+          named("smoothness.normal_sigma", normal_sigma),
+          named("smoothness.normal_bonus", normal_bonus),
+          named("prior_texture", prior_texture),
+          named("coarse_pairs", coarse_pairs),
+          named("first_pairs", first_pairs),
+          named("later_pairs", later_pairs),
+          named("last_pairs", last_pairs),
+          named("refinement_shrink", refinement_shrink),
+          named("restart_trials", restart_trials),
+          named("refinement_pixels", refinement_pixels),
+          named("refinement_angle", refinement_angle),
+          named("good_cost", good_cost),
+          named("fair_cost", fair_cost),
+          named("bad_cost", bad_cost),
+          named("search_planes", search_planes),
+          named("search_pairs", search_pairs),
+          named("certain_cost", certain_cost),
+          named("geometric_limit", geometric_limit)};
+}
+
+// As other_numbers(), of the filters.
+NamedNumbers filter_numbers(const Settings& settings) {
+  const auto& [speckle_difference, min_pixels] = settings.speckles;
+  const auto& [max_gap, gap_difference] = settings.gaps;
+  return {named("speckles.max_difference", speckle_difference),
+          named("gaps.max_difference", gap_difference)};
+}
+
+NamedNumbers all_numbers(const Settings& settings) {
+  NamedNumbers all = numbers_of_openmvs(settings);
+  for (const NamedNumbers& more : {other_numbers(settings.matching), filter_numbers(settings)})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+// A line for each number that differs from its default. The text is empty for the defaults.
+std::string changed_numbers(const Settings& settings) {
+  const NamedNumbers now = all_numbers(settings), before = all_numbers(Settings());
+  std::string text;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i].value != before[i].value) text += fmt::format("{} {}\n", now[i].name, now[i].value);
+  return text;
+}
+
 // Fingerprints of the files that each view's pixels and mask come from.
 std::vector<std::string> content_of_files(const Project& project) {
   std::vector<std::string> prints(project.views.size());
@@ -70,9 +156,10 @@ std::vector<std::string> content_of_files(const Project& project) {
 
 std::string fingerprint(const Project& project, const Settings& settings) {
   Fingerprint print;
-  print.add("AxialMVS depth maps 12");  // the number is the version of the matching method
+  // The number is the version of the matching method and of the defaults of its settings.
+  print.add("AxialMVS depth maps 12");
   add_settings(print, settings);
-  if (!settings.map_settings.empty()) print.add(settings.map_settings);
+  if (const std::string changed = changed_numbers(settings); !changed.empty()) print.add(changed);
   const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     const View& view = project.views[i];

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "cloud/fuse.h"
@@ -53,10 +52,6 @@ struct Settings {
   depth::PatchMatchOptions matching;
   depth::SpeckleOptions speckles;
   depth::GapOptions gaps;
-  // A text that becomes a part of the fingerprint of the depth maps. It describes the values of
-  // `matching`, `speckles` and `gaps` that differ from their defaults, except warp,
-  // sub_resolution_levels and iterations, which are in the fingerprint anyway.
-  std::string map_settings;
   unsigned number_views = 0;  // source views of an image, at most 32; 0: all suitable views
   int geometric_iterations = 2;
   unsigned postprocess = kSpeckles | kGaps;

@@ -3,10 +3,13 @@
 #include "densify/fingerprint.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <functional>
 #include <set>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -63,7 +66,9 @@ TEST_F(FingerprintTest, ChangesWithEverythingThatTheDepthMapsDependOn) {
       [](Input& in) { in.settings.geometric_iterations = 1; },
       [](Input& in) { in.settings.postprocess = kSpeckles; },
       [](Input& in) { in.settings.ignore_mask_label = 3; },
-      [](Input& in) { in.settings.map_settings = "Speckle Size 7\n"; },
+      [](Input& in) { in.settings.matching.keep_cost = 1.5f; },
+      [](Input& in) { in.settings.speckles.min_pixels = 7; },
+      [](Input& in) { in.settings.gaps.max_gap = 3; },
       [](Input& in) { in.project.views[1].id = 7; },
       [](Input& in) { in.project.views[1].camera.lens.fx += 1e-9; },
       [](Input& in) { in.project.views[1].camera.width = 48; },
@@ -104,6 +109,123 @@ TEST_F(FingerprintTest, DependsOnTheContentsOfFilesAndNotOnTheirNames) {
   EXPECT_EQ(after([](Input&) {}), after([](Input& in) {
               in.project.scene.images[1].path = in.project.scene.images[0].path;
             }));
+}
+
+// One image behind a flat port. All numbers are written out, so that no mathematical library
+// changes their last bits.
+Input written_out_input(const std::filesystem::path& image) {
+  CameraModel camera;
+  camera.width = 96;
+  camera.height = 72;
+  camera.lens = {75, 74, 47.5, 36.25};
+  refractive::FlatPort<double> port;
+  port.distance = 0.02;
+  port.thickness = 0.014;
+  port.n_glass = 1.52;
+  port.n_water = 1.333;
+  camera.port = port;
+  Pose pose;
+  pose.centre = {0.5, -0.25, 1};
+  Input input;
+  Project& project = input.project;
+  project.scene = test::scene_of(camera, {pose});
+  project.scene.images[0].path = image.string();
+  write_atomically(image, "pixels");
+  project.scene.points.resize(1);
+  project.scene.points[0].position = {1, 2, 3};
+  project.preparations.resize(1);
+  project.preparations[0].init_points = {0};
+  project.neighbours = {{{.image = 4}}};
+  project.sources = {{{.image = 4}, {.image = 5}}};
+  project.views.push_back({3, camera, pose, {}, {}});
+  return input;
+}
+
+// The side files of existing depth maps hold fingerprints. If one of these fingerprints changes,
+// all maps are made again, which only a new version of the matching method may do. The expected
+// digests are those of XXH3 for the same bytes, computed by another program.
+TEST(KnownFingerprints, StayAsTheyAre) {
+  using Change = void (*)(Settings&);
+  const Input input = written_out_input(test::empty_folder() / "image");
+  for (const auto& [expected, change] : std::vector<std::pair<std::string, Change>>{
+           {"ba0b4fc4b3102bf03b1ccba744836aee", [](Settings&) {}},
+           {"4120aeb0ce35a60bc1a716167f8a0093", [](Settings& in) { in.matching.iterations = 5; }},
+           {"064875871470e66d1404172d734859ad", [](Settings& in) { in.matching.keep_cost = 1.5f; }},
+           {"a448bba4a16354dc50fa6fc81d9e5ab8",
+            [](Settings& in) { in.matching.min_texture = 4e-4f; }},
+           {"e6d250b4b4fc37952db240ca8b27c592",
+            [](Settings& in) { in.matching.geometric_weight = 0.5f; }},
+           {"9e44a999a5285088a2793d4fd689f1c5", [](Settings& in) { in.matching.later_pairs = 3; }},
+           {"595a05b0ad487da2e77b53879931991c", [](Settings& in) { in.speckles.min_pixels = 7; }},
+           {"f13552691e99fb6f6e3c659e086f3f15", [](Settings& in) { in.gaps.max_gap = 3; }},
+           {"de88be94ea1d2c157de0478c1e0706b8", [](Settings& in) {
+              in.matching.keep_cost = 1.5f;
+              in.speckles.min_pixels = 7;
+              in.gaps.max_gap = 3;
+            }}}) {
+    Settings changed = input.settings;
+    change(changed);
+    EXPECT_EQ(fingerprint(input.project, changed), expected);
+  }
+}
+
+// Calls visit(number) for each number that depth maps depend on. The structured bindings name all
+// members: a new member does not compile until the test names it.
+template <class Visit>
+void each_number(Settings& settings, const Visit& visit) {
+  auto& [warp, levels, iterations, coarsest_side, sigma_color, sigma_space, min_texture, smoothness,
+         prior_texture, coarse_pairs, first_pairs, later_pairs, last_pairs, refinement_shrink,
+         restart_trials, refinement_pixels, refinement_angle, good_cost, fair_cost, bad_cost,
+         search_planes, search_pairs, certain_cost, keep_cost, geometric_weight, geometric_limit] =
+      settings.matching;
+  auto& [depth_sigma, depth_bonus, normal_sigma, normal_bonus] = smoothness;
+  auto& [speckle_difference, min_pixels] = settings.speckles;
+  auto& [max_gap, gap_difference] = settings.gaps;
+  const auto each = [&](auto&... numbers) { (visit(numbers), ...); };
+  each(levels, iterations, coarsest_side, sigma_color, sigma_space, min_texture, prior_texture,
+       coarse_pairs, first_pairs, later_pairs, last_pairs, refinement_shrink, restart_trials,
+       refinement_pixels, refinement_angle, good_cost, fair_cost, bad_cost, search_planes,
+       search_pairs, certain_cost, keep_cost, geometric_weight, geometric_limit);
+  each(depth_sigma, depth_bonus, normal_sigma, normal_bonus, speckle_difference, min_pixels,
+       max_gap, gap_difference, settings.geometric_iterations, settings.postprocess,
+       settings.ignore_mask_label);
+}
+
+// Adds `steps` to one of the numbers.
+void step(Settings& settings, int place, int steps) {
+  int i = 0;
+  each_number(settings, [&](auto& number) {
+    using Number = std::remove_reference_t<decltype(number)>;
+    if (i++ == place) number = static_cast<Number>(number + static_cast<Number>(steps));
+  });
+}
+
+std::vector<double> numbers(Settings settings) {
+  std::vector<double> all;
+  each_number(settings, [&](const auto& number) { all.push_back(static_cast<double>(number)); });
+  return all;
+}
+
+TEST(FingerprintOfSettings, ChangesWithEachNumber) {
+  const std::size_t count = numbers({}).size();
+  std::set<std::string> prints{fingerprint({}, {})};
+  for (std::size_t place = 0; place < count; ++place) {
+    Settings changed;
+    step(changed, static_cast<int>(place), 1);
+    EXPECT_TRUE(prints.insert(fingerprint({}, changed)).second) << "number " << place;
+  }
+}
+
+RC_GTEST_PROP(FingerprintOfSettings, IsTheSameForEqualNumbersAlone, ()) {
+  const auto count = static_cast<int>(numbers({}).size());
+  const auto some_step = [&](Settings& settings) {
+    step(settings, *rc::gen::inRange(0, count), *rc::gen::inRange(0, 3));
+  };
+  Settings one;
+  for (int i = 0; i < 4; ++i) some_step(one);
+  Settings other = one;
+  some_step(other);
+  RC_ASSERT((fingerprint({}, one) == fingerprint({}, other)) == (numbers(one) == numbers(other)));
 }
 
 }  // namespace
