@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -126,14 +128,32 @@ TEST_F(Densify, ASecondRunUsesTheDepthMapsOfTheFirst) {
   EXPECT_NE(fs::last_write_time(map(2)), written);
 }
 
+// The least memory [MB] that these settings need, from the message that refuses less.
+std::uint64_t least_memory(Settings settings) {
+  settings.max_memory = 1;
+  const std::string refusal = test::error_of([&] { densify(settings); });
+  const std::string_view before = "this scene needs ";
+  const std::size_t at = refusal.find(before);
+  EXPECT_NE(at, std::string::npos) << refusal;
+  return at == std::string::npos ? 1 : std::stoull(refusal.substr(at + before.size()));
+}
+
+// With the least memory, one image at a time is matched, also by several threads: matching an image
+// needs more than the megabyte to which the least memory is rounded up.
 TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
   densify(settings_);
   const std::string cloud = read_file(folder_ / "out" / "dense.ply");
   use_folder("other");
-  settings_.max_threads = 1;
-  settings_.max_memory = 200;
-  densify(settings_);
-  EXPECT_EQ(read_file(folder_ / "other" / "dense.ply"), cloud);
+  const std::uint64_t least = least_memory(settings_);
+  settings_.max_memory = least - 1;
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }), testing::HasSubstr("are too little"));
+  settings_.max_memory = least;
+  for (const unsigned threads : {0u, 1u}) {
+    use_folder("threads" + std::to_string(threads));
+    settings_.max_threads = threads;
+    densify(settings_);
+    EXPECT_EQ(read_file(settings_.working_folder / "dense.ply"), cloud) << threads;
+  }
 }
 
 TEST_F(Densify, WithoutFusionTheSparsePointsAreTheCloud) {
