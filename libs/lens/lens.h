@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "lens/models.h"
 #include "refractive/lens_distortion.h"
@@ -16,7 +17,7 @@ namespace axial::lens {
 struct Lens {
   const Model* model = nullptr;
   refractive::PinholeLens<double> pinhole{};  // the lens without its distortion
-  Parameters distortion;                      // must outlive the lens
+  std::vector<double> distortion;             // the Parameters of `model`
   int width = 0, height = 0;                  // of the image [px]
 };
 

@@ -124,6 +124,14 @@ TEST(Lens, PinholesAreTakenAsTheyAre) {
   EXPECT_FALSE(pinhole_lens(lens_of(two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0}))));
 }
 
+// In the sanitized build, a lens that referred to its camera's memory would end this test.
+TEST(Lens, OutlivesItsCamera) {
+  const Lens lens = lens_of(two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -2e-3}));
+  const ColmapCamera camera = two_focal_camera("OPENCV", {-0.1, 0.02, 1e-3, -2e-3});
+  EXPECT_EQ(lens.distortion, (std::vector<double>{-0.1, 0.02, 1e-3, -2e-3}));
+  EXPECT_EQ(image_direction(lens, 0.3, -0.2), image_direction(lens_of(camera), 0.3, -0.2));
+}
+
 RC_GTEST_PROP(Lens, NoPixelOfTheUndistortedImageIsEmpty, ()) {
   const ColmapCamera camera{
       1,

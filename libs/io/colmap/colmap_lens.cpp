@@ -2,6 +2,7 @@
 #include "io/colmap/colmap_lens.h"
 
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 
@@ -18,14 +19,14 @@ lens::Lens lens_of(const ColmapCamera& camera) {
   if (!model)
     fail("camera {}: model {} is not supported; undistort its images with {} first", camera.id,
          camera.model, camera.model == kNotColmaps ? "the program that calibrated it" : "COLMAP");
-  const lens::Parameters p(camera.params);
+  const std::vector<double>& p = camera.params;
   if (static_cast<int>(p.size()) != colmap_parameter_count(camera.model))
     fail("camera {}: model {} has {} parameters, not {}", camera.id, camera.model,
          colmap_parameter_count(camera.model), p.size());
   const auto n = static_cast<std::size_t>(colmap_focal_count(camera.model));
   return {model,
           {p[0], p[n - 1], p[n] - 0.5, p[n + 1] - 0.5},
-          p.subspan(n + 2),
+          {p.begin() + static_cast<std::ptrdiff_t>(n + 2), p.end()},
           static_cast<int>(camera.width),
           static_cast<int>(camera.height)};
 }

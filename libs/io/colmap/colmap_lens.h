@@ -9,9 +9,8 @@
 
 namespace axial::io {
 
-// Returns the lens. It refers to the parameters of `camera`, which must outlive it. Error for a
-// wrong number of parameters, and for a model that is not supported: EQUIRECTANGULAR, which is no
-// perspective camera, and METASHAPE_FISHEYE.
+// Returns the lens. Error for a wrong number of parameters, and for a model that is not supported:
+// EQUIRECTANGULAR, which is no perspective camera, and METASHAPE_FISHEYE.
 lens::Lens lens_of(const ColmapCamera& camera);
 
 // lens::pinhole_inside of the camera's lens. Error that starts with `name` if there is none.
