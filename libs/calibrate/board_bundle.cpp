@@ -2,6 +2,7 @@
 #include "calibrate/board_bundle.h"
 
 #include "io/colmap/colmap_lens.h"
+#include "lens/lens.h"
 
 namespace axial::calibrate {
 namespace {

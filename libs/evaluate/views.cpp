@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "io/colmap/colmap_lens.h"
+#include "lens/lens.h"
 
 namespace axial::evaluate {
 namespace {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/colmap/colmap_lens.h"
 #include "io/colmap/colmap_scene.h"
+#include "lens/lens.h"
 #include "pose/tracks.h"
 
 namespace axial::pose {
