@@ -132,9 +132,9 @@ set(AXIAL_SANITIZED_FOLDERS base lens io scene picture cloud)
 # adds tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", or with the sanitizers
 # "sanitized/io/ply_test/...". PROGRAMS are the programs that the test runs; they are built first. A
 # test of LABELS unit (the default) is built in the build of its folder (see above), or in the build
-# that BUILD names (release, sanitized or both); with AXIAL_EVERY_TEST in both builds. Tests with
-# other labels are only built in release. PRIVATE_OF names the library whose private headers the test
-# may include.
+# that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds. Tests with other
+# labels are only built in release. PRIVATE_OF names the library whose private headers the test may
+# include.
 add_custom_target(axial_tests)
 function(add_axial_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;BUILD;PRIVATE_OF" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})

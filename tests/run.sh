@@ -3,7 +3,7 @@
 # Installs missing packages, builds, and runs all tests under CTest. Each unit test is built once:
 # the tests of base, lens, io, scene, picture and cloud with AddressSanitizer and
 # UndefinedBehaviorSanitizer ("sanitized/..."), the other tests in the release build, like the
-# programs. A few tests of densify are built in both.
+# programs.
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #
