@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RefinePoses: what --scale-from and the options about refinement name is used, refused, or reported
-as not used."""
+"""RefinePoses: everything that --scale-from and the options of refinement name is used, refused, or
+reported as not used."""
 
 import json
 import math
