@@ -127,10 +127,10 @@ endfunction()
 # sanitizers. The unit tests of the other folders are numeric and are built in release.
 set(AXIAL_SANITIZED_FOLDERS base lens io scene picture cloud)
 
-# add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
+# add_axial_test(io/dmap_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
 #                [BUILD release] [TIMEOUT 300] [PRIVATE_OF io])
-# adds tests/io/ply_test.cpp as the CTest cases "io/ply_test/...", or with the sanitizers
-# "sanitized/io/ply_test/...". PROGRAMS are the programs that the test runs; they are built first. A
+# adds tests/io/dmap_test.cpp as the CTest cases "io/dmap_test/...", or with the sanitizers
+# "sanitized/io/dmap_test/...". PROGRAMS are the programs that the test runs; they are built first. A
 # test of LABELS unit (the default) is built in the build of its folder (see above), or in the build
 # that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds. Tests with other
 # labels are only built in release. PRIVATE_OF names the library whose private headers the test may

@@ -37,7 +37,7 @@ struct MatchInput {
 // necessary. Confidence is 1 - cost, at least 0. Throws an Error if
 //   - no sparse point is visible in the reference view,
 //   - there is no source view, or more than 32,
-//   - the options ask for more planes of a pixel at once than kMaxCandidates (sweep.h),
+//   - the options ask for more planes of a pixel at once than kMaxCandidates (candidates.h),
 //   - the source images are too large for LaneMatcher,
 //   - the paper's homography or line search is asked for and does not support the cameras.
 DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& options);

@@ -26,24 +26,19 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "depth/candidates.h"
 #include "depth/matcher.h"
 #include "depth/plane_map.h"
 #include "depth/random.h"
+#include "depth/strips.h"
 
 namespace axial::depth {
 
-inline constexpr int kStripHeight = 32;
-inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
-inline constexpr std::size_t kOwnViews = 4;       // number of views for a pixel's own plane
+inline constexpr std::size_t kOwnViews = 4;  // number of views for a pixel's own plane
 // Number of views for all planes of a pixel on coarse levels, and for random planes. More views do
 // not find better planes: the views alternate from pixel to pixel, and a plane that is good in one
 // view is propagated together with this view.
 inline constexpr std::size_t kManyViews = 5;
-
-// The mean of the two smallest costs; the smallest alone if the second is kOutsideCost or more.
-inline float aggregate(float smallest, float second) {
-  return second < kOutsideCost ? 0.5f * (smallest + second) : smallest;
-}
 
 struct SweepInput {
   std::uint32_t image_id = 0;
@@ -65,7 +60,7 @@ class Sweep {
  public:
   Sweep(const Matcher& matcher, PlaneMap& map, const PatchMatchOptions& options,
         const SweepInput& input)
-      : matcher_(matcher), map_(map), options_(options), input_(input) {
+      : matcher_(matcher), map_(map), options_(options), input_(input), strips_(map) {
     for (std::size_t i = 0; i < matcher.views(); ++i) all_views_[i] = static_cast<std::uint8_t>(i);
   }
 
@@ -79,20 +74,12 @@ class Sweep {
   }
 
   // The steps of run(): first prepare(), then run_strip() for each strip, in any order.
-  int strips() const { return (map_.height + kStripHeight - 1) / kStripHeight; }
+  int strips() const { return strips_.count(); }
 
-  void prepare() {
-    const auto width = static_cast<std::ptrdiff_t>(map_.width);
-    edges_.clear();
-    for (int strip = 0; strip + 1 < strips(); ++strip) {
-      const auto begin = map_.pixels.begin() + ((strip + 1) * kStripHeight - 1) * width;
-      edges_.insert(edges_.end(), begin, begin + 2 * width);
-    }
-  }
+  void prepare() { strips_.copy_edges(); }
 
   std::uint64_t run_strip(int number) {
-    const int top = number * kStripHeight;
-    const int bottom = std::min(top + kStripHeight, map_.height);
+    const int top = strips_.top(number), bottom = strips_.bottom(number);
     Strip strip{number, {}, 0};
     if (input_.sweep % 2 == 0) {
       for (int y = top; y < bottom; ++y)
@@ -105,15 +92,6 @@ class Sweep {
   }
 
  private:
-  // A pixel of the strip or next to it. Outside the strip, its state before the sweep.
-  const PlanePixel& neighbour(int strip, int x, int y) const {
-    const int top = strip * kStripHeight;
-    if (y >= top && y < top + kStripHeight) return map_.at(x, y);
-    const int edge = y < top ? strip - 1 : strip;
-    const int row = y < top ? 0 : 1;
-    return edges_[static_cast<std::size_t>((edge * 2 + row) * map_.width + x)];
-  }
-
   // The rays of the tile of pixels that was visited last.
   struct Rays {
     int x = -1, y = -1;  // first pixel of the tile
@@ -136,30 +114,6 @@ class Sweep {
     return rays.tile[static_cast<std::size_t>(x - begin)];
   }
 
-  struct Neighbourhood {
-    std::array<SurfacePoint, 4> points;
-    std::size_t count = 0;
-
-    std::span<const SurfacePoint> all() const { return {points.data(), count}; }
-  };
-
-  Neighbourhood neighbourhood(int strip, int x, int y) const {
-    Neighbourhood around;
-    const auto add = [&](int nx, int ny) {
-      if (nx < 0 || ny < 0 || nx >= map_.width || ny >= map_.height) return;
-      const PlanePixel& pixel = neighbour(strip, nx, ny);
-      if (!(pixel.plane.depth > 0)) return;
-      const Eigen::Vector3f& p = pixel.point;
-      const Eigen::Vector3f& n = pixel.plane.normal;
-      around.points[around.count++] = {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}};
-    };
-    add(x - 1, y);
-    add(x, y - 1);
-    add(x + 1, y);
-    add(x, y + 1);
-    return around;
-  }
-
   bool in_range(float depth) const {
     return depth >= input_.min_depth && depth <= input_.max_depth;
   }
@@ -178,14 +132,6 @@ class Sweep {
   }
 
   void clear(PlanePixel& pixel) const { pixel = PlanePixel(); }
-
-  // A hypothesis with its cost and its best views.
-  struct Best {
-    PlaneHypothesis plane;
-    float cost = std::numeric_limits<float>::max();
-    BestViews views{kNoView, kNoView};
-    float motion = 0;  // in the best view [px/m]
-  };
 
   // The data that all hypotheses of one pixel are scored with.
   struct Visit {
@@ -217,17 +163,17 @@ class Sweep {
       current.motion = 0;  // cost and views are those of the old plane
     }
 
-    const Neighbourhood around = neighbourhood(strip.number, x, y);
+    const Neighbourhood around = strips_.neighbourhood(strip.number, x, y);
     const PlanePixel none;
     const bool beside = x + step >= 0 && x + step < map_.width;
     const bool above = y + step >= 0 && y + step < map_.height;
     const std::array<const PlanePixel*, 2> before{
-        beside ? &neighbour(strip.number, x + step, y) : &none,
-        above ? &neighbour(strip.number, x, y + step) : &none};
-    const Views own = own_views(x, y, current, before);
+        beside ? &strips_.neighbour(strip.number, x + step, y) : &none,
+        above ? &strips_.neighbour(strip.number, x, y + step) : &none};
+    const ViewList own = own_views(x, y, current, before);
     Candidates candidates;
     candidates.add(current.plane, own.all());
-    std::optional<Best> likely;
+    std::optional<BestPlane> likely;
     offer(current.plane, current, likely);
     for (const PlanePixel* from : before) {
       const std::optional<PlaneHypothesis> plane = carried(pixel, *from);
@@ -243,29 +189,17 @@ class Sweep {
                    strip.scores};
     const bool at_once = likely && trials_fit(candidates, at.trial_pairs);
     if (at_once) add_trials(at, *likely, random, candidates);
-    Best best;
+    BestPlane best;
     keep_best(at, candidates, best);
     if (!at_once || best.cost >= options_.bad_cost) refine(at, random, best);
     current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views, best.motion};
   }
 
-  struct Views {
-    std::array<std::uint8_t, kMaxSources> views;
-    std::size_t count = 0;
-
-    std::span<const std::uint8_t> all() const { return {views.data(), count}; }
-
-    void add(std::uint8_t view) {
-      const auto end = views.begin() + static_cast<std::ptrdiff_t>(count);
-      if (view != kNoView && std::find(views.begin(), end, view) == end) views[count++] = view;
-    }
-  };
-
   // The views for the pixel's own plane: all, or the best views of the pixel and its neighbours and
   // some others. These take turns, so that a view that was occluded can be chosen again.
-  Views own_views(int x, int y, const PlanePixel& current,
-                  std::span<const PlanePixel* const> before) const {
-    Views own;
+  ViewList own_views(int x, int y, const PlanePixel& current,
+                     std::span<const PlanePixel* const> before) const {
+    ViewList own;
     const std::size_t views = matcher_.views();
     const std::size_t wanted = std::min(views, input_.many_views ? kManyViews : kOwnViews);
     if (wanted < views) {
@@ -276,32 +210,13 @@ class Sweep {
     return own;
   }
 
-  void add_in_turn(Views& own, std::size_t turn, std::size_t wanted) const {
+  void add_in_turn(ViewList& own, std::size_t turn, std::size_t wanted) const {
     add_in_turn(own, turn, wanted, matcher_.views());
   }
 
   // Adds views from the first `of` views, starting with number `turn`, until there are `wanted`.
-  void add_in_turn(Views& own, std::size_t turn, std::size_t wanted, std::size_t of) const {
+  void add_in_turn(ViewList& own, std::size_t turn, std::size_t wanted, std::size_t of) const {
     for (; own.count < wanted; ++turn) own.add(all_views_[turn % of]);
-  }
-
-  // Planes and the views in which each plane is scored.
-  struct Candidates {
-    std::array<PlaneHypothesis, kMaxCandidates> planes;
-    std::array<ScorePair, kMaxCandidates * kMaxSources> pairs;
-    std::size_t count = 0, pair_count = 0;
-
-    void add(const PlaneHypothesis& plane, std::span<const std::uint8_t> views) {
-      for (const std::uint8_t view : views)
-        pairs[pair_count++] = {static_cast<std::uint8_t>(count), view};
-      planes[count++] = plane;
-    }
-    std::span<const PlaneHypothesis> all() const { return {planes.data(), count}; }
-    std::span<const ScorePair> all_pairs() const { return {pairs.data(), pair_count}; }
-  };
-
-  static std::span<const std::uint8_t> distinct(const BestViews& views) {
-    return {views.data(), views[0] == views[1] ? 1u : 2u};
   }
 
   // The neighbour's plane where this pixel's ray meets it (eq. 8). No value without a plane of good
@@ -317,7 +232,7 @@ class Sweep {
   }
 
   // Adds a neighbour's plane unless it equals a candidate.
-  void propagate(const PlaneHypothesis& plane, const PlanePixel& from, const Views& own,
+  void propagate(const PlaneHypothesis& plane, const PlanePixel& from, const ViewList& own,
                  Candidates& candidates) const {
     for (const PlaneHypothesis& other : candidates.all())
       if (std::abs(plane.depth - other.depth) < 1e-5f * plane.depth &&
@@ -337,7 +252,7 @@ class Sweep {
                          Candidates& candidates) const {
     const std::size_t of = std::min(matcher_.views(), kManyViews);
     for (int i = 0; i < options_.search_planes; ++i) {
-      Views tried;
+      ViewList tried;
       const PlaneHypothesis plane = facing_plane(pixel, random);
       const auto turn = static_cast<std::size_t>(random.unit() * static_cast<float>(of));
       add_in_turn(tried, turn, std::min(of, BestViews().size()), of);
@@ -349,9 +264,9 @@ class Sweep {
   // lower. Only planes that this level or pass has scored count (their motion is known). At the
   // start of a geometric pass, these are only the planes of the neighbours visited before.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
-             std::optional<Best>& likely) const {
+             std::optional<BestPlane>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))
-      likely = Best{plane, from.cost, from.views, from.motion};
+      likely = BestPlane{plane, from.cost, from.views, from.motion};
   }
 
   bool trials_fit(const Candidates& candidates, int pairs) const {
@@ -360,7 +275,7 @@ class Sweep {
   }
 
   // Scores the candidates. Sets `best` to the best candidate if its cost is lower.
-  void keep_best(const Visit& at, const Candidates& candidates, Best& best) const {
+  void keep_best(const Visit& at, const Candidates& candidates, BestPlane& best) const {
     std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
     matcher_.score(at.pixel, candidates.all(), pairs, at.around.all(), scores);
@@ -392,7 +307,7 @@ class Sweep {
   }
 
   // Scores trials around the best plane, all at once in its two best views.
-  void refine(const Visit& at, KeyedRandom& random, Best& best) const {
+  void refine(const Visit& at, KeyedRandom& random, BestPlane& best) const {
     if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
     if (at.trial_pairs == 0) return;
     Candidates trials;
@@ -409,7 +324,7 @@ class Sweep {
   // Adds pairs of trials, one on either side of the plane. Pairs change depth and normal in turn,
   // with decreasing ranges. A trial that changed both would seldom be better: near the optimum, one
   // change loses what the other gains.
-  void add_trials(const Visit& at, const Best& best, KeyedRandom& random,
+  void add_trials(const Visit& at, const BestPlane& best, KeyedRandom& random,
                   Candidates& trials) const {
     const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,
                                                          0.05f * best.plane.depth)
@@ -441,11 +356,11 @@ class Sweep {
 
   // For a pixel with a bad cost: tries random planes in many views, without the smoothness factors.
   // False if the cost stays bad.
-  bool restart(const Visit& at, KeyedRandom& random, Best& best) const {
+  bool restart(const Visit& at, KeyedRandom& random, BestPlane& best) const {
     Candidates candidates;
     const std::size_t views = matcher_.views();
     for (int trial = 0; trial < options_.restart_trials; ++trial) {
-      Views tried;
+      ViewList tried;
       const PlaneHypothesis plane = random_plane(at.pixel, random);
       const std::size_t turn =
           views > kManyViews ? static_cast<std::size_t>(random.unit() * static_cast<float>(views))
@@ -461,8 +376,8 @@ class Sweep {
   PlaneMap& map_;
   const PatchMatchOptions& options_;
   SweepInput input_;
+  Strips strips_;
   std::array<std::uint8_t, kMaxSources> all_views_{};
-  std::vector<PlanePixel> edges_;  // the two rows at each inner strip edge, before the sweep
 };
 
 }  // namespace axial::depth

@@ -1,222 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""--pinhole-export: programs for pinhole cameras reach the quality of the refractive scene."""
+"""--pinhole-export: which files are written, replaced and kept, and which exports are refused."""
 
 import json
 import os
 import re
 import shutil
 import struct
-import tempfile
 
-from programs import ProgramTest, cloud_size, depth_rows, files_below, main, read, run, write
-
-VIEWS = 5
-QUICK = ("--resolution-level", "1", "--min-resolution", "100", "--iters", "1",
-         "--number-views-fuse", "2")
-
-
-class Reader:
-    """Reads a .mvs scene of version 7 field by field (docs/formats.md)."""
-
-    def __init__(self, data):
-        assert data[:8] == b"MVSI" + struct.pack("<I", 7)
-        self.data, self.at = data, 12
-        self.platforms = [self.platform() for _ in range(self.number("Q"))]
-        self.images = [self.image() for _ in range(self.number("Q"))]
-        self.points = [(self.numbers("3f"), [self.numbers("If")[0] for _ in range(self.number("Q"))])
-                       for _ in range(self.number("Q"))]
-
-    def numbers(self, kind):
-        values = struct.unpack_from("<" + kind, self.data, self.at)
-        self.at += struct.calcsize("<" + kind)
-        return values
-
-    def number(self, kind):
-        return self.numbers(kind)[0]
-
-    def string(self):
-        length = self.number("Q")
-        self.at += length
-        return self.data[self.at - length:self.at].decode()
-
-    def platform(self):
-        self.string()
-        cameras = []
-        for _ in range(self.number("Q")):
-            self.string(), self.string()
-            cameras.append((self.numbers("2I"), self.numbers("9d")))
-            self.numbers("12d")
-        return cameras, [(self.numbers("9d"), self.numbers("3d")) for _ in range(self.number("Q"))]
-
-    def image(self):
-        name, mask, ids = self.string(), self.string(), self.numbers("4I")
-        self.numbers("3f")
-        for _ in range(self.number("Q")):
-            self.numbers("2I4f")
-        return name, mask, ids
-
-    def camera(self, image):
-        """Size, K, R and C of an image; None if the image has no pose."""
-        platform, camera, pose, _ = self.images[image][2]
-        if pose == 0xFFFFFFFF:
-            return None
-        cameras, poses = self.platforms[platform]
-        return *cameras[camera], *poses[pose]
-
-
-def image_size(scene, image):
-    return scene.camera(image)[0]
-
-
-def project(camera, point):
-    """The pixel (x, y) and the z-depth of a point."""
-    _, k, r, c = camera
-    x, y, z = (sum(r[3 * i + j] * (point[j] - c[j]) for j in range(3)) for i in range(3))
-    return k[0] * x / z + k[2], k[4] * y / z + k[5], z
-
-
-class Exports(ProgramTest):
-    """The close-up scene under water, densified and exported once."""
-
-    @classmethod
-    def setUpClass(cls):
-        if cls is Exports:
-            return
-        cls.shared = tempfile.TemporaryDirectory(prefix="axial_")
-        cls.addClassCleanup(cls.shared.cleanup)
-        cls.truth = cls.at("closeup")
-        cls.must("SimulateUnderwater", "--preset", "closeup", "--coarseness", 4, "--views", VIEWS,
-                 "--width", 320, "--height", 240, "--medium", "water", "--samples", 2, "--truth", 0,
-                 "-o", cls.truth)
-        cls.make_scene(cls.at("work"))
-        cls.must(*cls.command(cls.at("work"), "--pinhole-export", "pinholes"))
-
-    @classmethod
-    def at(cls, *names):
-        return os.path.join(cls.shared.name, *names)
-
-    @classmethod
-    def must(cls, *command):
-        result = run(*command)
-        assert result.returncode == 0, result.stderr
-        return result.stdout
-
-    @classmethod
-    def make_scene(cls, folder):
-        cls.must("InterfaceCOLMAP", "-i", cls.truth, "--image-folder",
-                 os.path.join(cls.truth, "water"), "-o", os.path.join(folder, "scene.mvs"),
-                 "--housing", os.path.join(cls.truth, "housing.json"))
-
-    @staticmethod
-    def command(folder, *arguments):
-        return ("DensifyPointCloud", "-i", "scene.mvs", "-w", folder, *QUICK, *arguments)
-
-    def copy(self, *names, leave_out=()):
-        """A copy of a shared folder for one test. It lies beside the shared folder, because maps
-        hold relative image paths."""
-        target = self.at(f"copy_{self._testMethodName}")
-        self.addCleanup(shutil.rmtree, target, True)
-        shutil.copytree(self.at(*names), target,
-                        ignore=shutil.ignore_patterns("pinholes", *leave_out))
-        self.folder = target
-        return target
-
-    def contents(self, folder):
-        return {name: read(os.path.join(folder, name)) for name in files_below(folder)}
-
-    def export(self, folder, *arguments):
-        self.succeeds(*self.command(folder, "--pinhole-export", "pinholes", *arguments))
-        return os.path.join(folder, "pinholes")
-
-
-class Taken(Exports):
-    """The export as input of a program for pinhole cameras: DensifyPointCloud without a housing."""
-
-    def error_of(self, cloud):
-        """Mean distance of the points to the true surface [mm], and the number of points."""
-        report = os.path.join(os.path.dirname(cloud), "evaluation.json")
-        self.succeeds("EvaluateReconstruction", "-i", cloud, "-m",
-                      os.path.join(self.truth, "mesh.ply"), "--cameras",
-                      os.path.join(self.truth, "sparse"), "--housing",
-                      os.path.join(self.truth, "housing.json"), "--tolerance", "0.002", "--samples",
-                      "10000", "--json", report)
-        return 1000 * json.loads(read(report))["accuracy"]["mean"], cloud_size(read(cloud))
-
-    def test_the_cloud_is_the_same(self):
-        self.assertEqual(read(self.at("work", "pinholes", "scene.ply")),
-                         read(self.at("work", "scene_dense.ply")))
-
-    def test_fusing_the_depth_maps(self):
-        folder = self.copy("work", "pinholes")
-        maps = {name: data for name, data in self.contents(folder).items() if ".dmap" in name}
-        self.assertEqual(len(maps), 2 * VIEWS)
-        said = self.succeeds(*self.command(folder, "--fusion-mode", "-1")).stdout
-        self.assertIn(f"{VIEWS} of {VIEWS} images have a depth map", said)
-        self.assertEqual({n: d for n, d in self.contents(folder).items() if ".dmap" in n}, maps)
-        error, points = self.error_of(os.path.join(folder, "scene_dense.ply"))
-        refractive, refractive_points = self.error_of(self.at("work", "scene_dense.ply"))
-        print(f"\nfused {error:.3f} mm, {points} points; refractive {refractive:.3f} mm, "
-              f"{refractive_points}")
-        # An exported depth interpolates three depths. The image has 0.8 times as many pixels.
-        self.assertLess(error, 1.15 * refractive)
-        self.assertGreater(points, 0.65 * refractive_points)
-
-    def test_without_our_side_files(self):
-        folder = self.copy("work", "pinholes", leave_out=("*.json",))
-        said = self.succeeds(*self.command(folder, "--fusion-mode", "-1")).stdout
-        self.assertIn(f"{VIEWS} by other programs", said)
-
-    def test_matching_the_images_anew(self):
-        folder = self.copy("work", "pinholes", leave_out=("*.dmap*",))
-        self.succeeds(*self.command(folder))
-        error, points = self.error_of(os.path.join(folder, "scene_dense.ply"))
-        refractive, refractive_points = self.error_of(self.at("work", "scene_dense.ply"))
-        # The photographs themselves, matched as if a pinhole camera had taken them.
-        as_they_are = self.copy_of_photographs()
-        ignored, _ = self.error_of(as_they_are)
-        print(f"\nrematched {error:.3f} mm, {points} points; refractive {refractive:.3f} mm, "
-              f"{refractive_points}; photographs taken for a pinhole's {ignored:.3f} mm")
-        self.assertLess(error, 1.3 * refractive)
-        self.assertGreater(points, 0.65 * refractive_points)
-        self.assertGreater(ignored, 4 * refractive)
-
-    def copy_of_photographs(self):
-        folder = self.at("ignored")
-        self.make_scene(folder)
-        self.succeeds(*self.command(folder, "--camera-model", "pinhole"))
-        return os.path.join(folder, "scene_dense.ply")
-
-    def test_masks_leave_out_what_the_photograph_does_not_show(self):
-        folder = self.copy("work", "pinholes", leave_out=("*.dmap*",))
-        said = self.succeeds(*self.command(folder, "--ignore-mask-label", "0")).stdout
-        self.assertNotIn("no mask", said)
-        self.assertGreater(cloud_size(read(os.path.join(folder, "scene_dense.ply"))), 10000)
-
-    def test_poses_and_maps_agree_with_the_points_of_the_scene(self):
-        """The simulated points, which do not depend on depth maps, have the depths of the maps."""
-        folder = self.at("work", "pinholes")
-        scene = Reader(read(os.path.join(folder, "scene.mvs")))
-        ratios, shown = [], 0
-        for image in range(VIEWS):
-            size = image_size(scene, image)
-            rows = depth_rows(read(os.path.join(folder, f"depth{image:04}.dmap")))
-            scale = len(rows[0]) / size[0], len(rows) / size[1]
-            for point, views in scene.points:
-                if image not in views:
-                    continue
-                # Points were observed in air, where the field of view is wider.
-                u, v, z = project(scene.camera(image), point)
-                x, y = round((u + 0.5) * scale[0] - 0.5), round((v + 0.5) * scale[1] - 0.5)
-                if not (0 <= x < len(rows[0]) and 0 <= y < len(rows)):
-                    continue
-                shown += 1
-                if rows[y][x] > 0:
-                    ratios.append(rows[y][x] / z)
-        self.assertGreater(len(ratios), 0.65 * shown)
-        ratios.sort()
-        self.assertAlmostEqual(ratios[len(ratios) // 2], 1, delta=0.002)
-        self.assertGreater(ratios[len(ratios) // 10], 0.98)
-        self.assertLess(ratios[len(ratios) * 9 // 10], 1.02)
+from pinhole_scene import VIEWS, Exports, Reader, image_size
+from programs import contents, files_below, main, read, run, write
 
 
 class Files(Exports):
@@ -238,9 +30,9 @@ class Files(Exports):
 
     def test_are_the_same_for_any_number_of_threads(self):
         work = self.copy("work")
-        self.assertEqual(self.contents(self.export(work, "--max-threads", "1")),
+        self.assertEqual(contents(self.export(work, "--max-threads", "1")),
                          {name: data.replace(self.at("work").encode(), work.encode())
-                          for name, data in self.contents(self.at("work", "pinholes")).items()})
+                          for name, data in contents(self.at("work", "pinholes")).items()})
 
     def test_the_option_changes_no_other_output(self):
         work = self.copy("work", leave_out=("depth*", "scene_dense*"))
@@ -255,17 +47,17 @@ class Files(Exports):
         write(os.path.join(work, "pinholes", "scene.ply"), "old\n")
         write(os.path.join(work, "pinholes", "scene_mesh.ply"), "mine\n")
         self.export(work)
-        contents = self.contents(os.path.join(work, "pinholes"))
-        self.assertEqual(contents.pop("scene_mesh.ply"), b"mine\n")
-        self.assertEqual(contents["scene.ply"], read(self.at("work", "scene_dense.ply")))
-        self.assertEqual(set(contents), files_below(self.at("work", "pinholes")))
+        found = contents(os.path.join(work, "pinholes"))
+        self.assertEqual(found.pop("scene_mesh.ply"), b"mine\n")
+        self.assertEqual(found["scene.ply"], read(self.at("work", "scene_dense.ply")))
+        self.assertEqual(set(found), files_below(self.at("work", "pinholes")))
 
     def test_what_an_earlier_export_alone_had_goes(self):
         work = self.copy("work")
         offset = '{ "version": 1, "geo_offset": [534000, 3378500, 30] }\n'
         write(os.path.join(work, "scene.geo.json"), offset)
         folder = self.export(work, "--fusion-mode", "-1")
-        first = self.contents(folder)
+        first = contents(folder)
         self.assertIn("scene.geo.json", first)
         write(os.path.join(folder, "images", "notes.txt"), "mine\n")
         write(os.path.join(folder, "depth0009.dmap"), "of another program\n")
@@ -276,17 +68,17 @@ class Files(Exports):
             os.remove(os.path.join(work, name + ".json"))
 
         command = self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1")
-        before = self.contents(folder)
+        before = contents(folder)
         self.assertEqual(run(*command, file_size_limit=20000).returncode, 1)
-        self.assertEqual(self.contents(folder), before)  # the earlier export survives
+        self.assertEqual(contents(folder), before)  # the earlier export survives
         said = self.succeeds(*command).stdout
         self.assertEqual(said.count("depth0003.dmap: was changed after the earlier export"), 1)
-        found = self.contents(folder)
+        found = contents(folder)
         self.assertEqual(found.pop("images/notes.txt"), b"mine\n")
         for name in ("depth0009.dmap", "depth0003.dmap"):
             self.assertEqual(found.pop(name), b"of another program\n")
         shutil.rmtree(folder)
-        self.assertEqual(found, self.contents(self.export(work, "--fusion-mode", "-1")))
+        self.assertEqual(found, contents(self.export(work, "--fusion-mode", "-1")))
         self.assertEqual(set(first) - set(found),
                          {"scene.geo.json"} | {name for i in ("0001", "0003") for name in (
                              f"images/{i}.jpg", f"images/{i}.mask.png", f"depth{i}.dmap",
@@ -365,9 +157,9 @@ class Files(Exports):
 
 class Refusals(Exports):
     def refused(self, expected, folder, *arguments):
-        before = self.contents(folder)
+        before = contents(folder)
         self.refuses(expected, *self.command(folder, *arguments))
-        self.assertEqual(self.contents(folder), before)
+        self.assertEqual(contents(folder), before)
 
     def test_scenes_of_pinholes(self):
         dry = self.copy("work", leave_out=("*.housing.json",))
@@ -412,7 +204,7 @@ class Refusals(Exports):
 
     def test_a_full_disk_leaves_nothing(self):
         work = self.copy("work")
-        before = self.contents(work)
+        before = contents(work)
         largest = max(len(data) for name, data in before.items() if not name.endswith(".ply"))
         result = run(*self.command(work, "--pinhole-export", "pinholes", "--fusion-mode", "-1"),
                      file_size_limit=10000)

@@ -55,6 +55,11 @@ def write(path, data):
         file.write(data)
 
 
+def contents(folder):
+    """The bytes of all files below a folder, by name."""
+    return {name: read(os.path.join(folder, name)) for name in files_below(folder)}
+
+
 def grey_png(rows):
     """The bytes of an 8-bit grey PNG; `rows` are bytes of equal length."""
     def chunk(kind, data):

@@ -8,7 +8,7 @@ import random
 import struct
 import zlib
 
-from programs import write
+from programs import ProgramTest, contents, write
 
 WIDTH, HEIGHT, FOCAL = 96, 72, 90.0
 DISTANCE = 1.0  # from the cameras to the wall [m]
@@ -133,3 +133,26 @@ def mvs(image_paths, *, k=None, size=(WIDTH, HEIGHT), rotation=IDENTITY, centres
 
 
 NAN = math.nan
+
+
+DENSIFY = ("DensifyPointCloud", "--max-threads", "1", "--resolution-level", "0", "--iters", "1",
+           "--geometric-iters", "0", "--number-views-fuse", "2")
+
+
+class TinyScene(ProgramTest):
+    """Writes colmap/{images,sparse} and work/scene.mvs."""
+
+    def setUp(self):
+        super().setUp()
+        write_colmap(self.path("colmap"))
+        self.work, self.scene = self.path("work"), self.path("work", "scene.mvs")
+        self.images = [self.path("colmap", "images", name) for name in names()]
+        write(self.scene, mvs(self.images))
+
+    def densify(self, *arguments):
+        return (*DENSIFY, "-i", self.scene, "-w", self.work, *arguments)
+
+    def refuses_and_keeps(self, expected, *command, **options):
+        before = contents(self.folder)
+        self.refuses(expected, *command, **options)
+        self.assertEqual(contents(self.folder), before, command)

@@ -4,54 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstring>
 #include <map>
-#include <thread>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "support/analytic_scene.h"
+#include "cloud/fusion_fixture.h"
 
 namespace axial::cloud {
 namespace {
-
-using test::AnalyticScene;
-
-struct Fixture {
-  Scene scene;
-  std::vector<FusionView> views;
-  std::vector<DepthMap> maps;
-  std::map<std::size_t, int> loads;
-
-  FusionProviders providers() {
-    return {[this](std::size_t i) {
-              ++loads[i];
-              return maps[i];
-            },
-            {}};
-  }
-};
-
-Fixture make_fixture(const AnalyticScene& world, const CameraModel& model, std::size_t count = 5) {
-  Fixture fixture;
-  fixture.scene = test::scene_of(model, test::circle_of_poses(count));
-  for (std::uint32_t i = 0; i < count; ++i) {
-    fixture.maps.push_back(exact_map(world, model, fixture.scene.images[i].pose));
-    FusionView view;
-    view.image = i;
-    for (std::uint32_t k = 1; k < count; ++k) {
-      view.neighbours.push_back((i + k) % static_cast<std::uint32_t>(count));
-    }
-    view.rank = count - 1;
-    fixture.views.push_back(view);
-  }
-  return fixture;
-}
-
-PointCloud run(Fixture& fixture, const FuseOptions& options = {}) {
-  return fuse(fixture.scene, fixture.views, fixture.providers(), options);
-}
 
 std::size_t valid_pixels(const std::vector<DepthMap>& maps) {
   std::size_t count = 0;
@@ -66,26 +26,6 @@ double worst_distance(const PointCloud& cloud, const AnalyticScene& world) {
   }
   return worst;
 }
-
-bool same_bytes(const PointCloud& a, const PointCloud& b) {
-  const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() &&
-           (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
-  };
-  return same(a.positions, b.positions) && same(a.normals, b.normals) && same(a.colors, b.colors) &&
-         same(a.view_begin, b.view_begin) && same(a.view_images, b.view_images) &&
-         same(a.view_weights, b.view_weights) && same(a.errors, b.errors) &&
-         same(a.confidences, b.confidences);
-}
-
-class FuseWithCamera : public testing::TestWithParam<bool> {
- protected:
-  static CameraModel model() {
-    return GetParam() ? test::behind_port(test::dry_camera()) : test::dry_camera();
-  }
-};
-INSTANTIATE_TEST_SUITE_P(Cameras, FuseWithCamera, testing::Values(false, true),
-                         [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
 
 TEST_P(FuseWithCamera, PutsPointsOnThePlane) {
   const AnalyticScene world;
@@ -212,24 +152,6 @@ TEST_P(FuseWithCamera, DeletesWhatLooksThroughASurface) {
   EXPECT_LT(with_witnesses, 0.35 * without_witnesses);
 }
 
-TEST_P(FuseWithCamera, GivesTheSameBytesForAnyNumberOfThreads) {
-  AnalyticScene world;
-  world.sphere_centre = {0, 0, 0.75};
-  world.sphere_radius = 0.12;
-  Fixture fixture = make_fixture(world, model());
-  PointCloud one, two;
-  {
-    const ThreadLimit limit(1);
-    one = run(fixture);
-  }
-  {
-    const ThreadLimit limit(2);
-    two = run(fixture);
-  }
-  EXPECT_GT(one.size(), 1000u);
-  EXPECT_TRUE(same_bytes(one, two));
-}
-
 // Estimating errors changes no other attribute, with or without normals.
 TEST_P(FuseWithCamera, EstimatesErrors) {
   Fixture fixture = make_fixture({}, model());
@@ -320,81 +242,6 @@ TEST(Fuse, AveragesColoursByWeight) {
     EXPECT_EQ(cloud.colors[i][0], 200);
     EXPECT_EQ(cloud.colors[i][1], 7);
     EXPECT_NEAR(cloud.colors[i][2], sum / total, 0.51);
-  }
-}
-
-TEST(Fuse, LoadsEachMapOnce) {
-  Fixture fixture = make_fixture({}, test::dry_camera());
-  fixture.views.pop_back();  // is a neighbour of the other views, but has no map
-  run(fixture);
-  EXPECT_EQ(fixture.loads.size(), 4u);
-  for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
-}
-
-// Views in a ring with two neighbours each. Three maps are needed at the same time, and most maps
-// are needed again later.
-Fixture make_ring(const CameraModel& model) {
-  AnalyticScene world;
-  world.sphere_centre = {0, 0, 0.75};
-  world.sphere_radius = 0.12;
-  Fixture fixture = make_fixture(world, model, 8);
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    fixture.views[i].neighbours = {(i + 3) % 8, (i + 5) % 8};
-    fixture.views[i].rank = (i * 5) % 8;
-  }
-  return fixture;
-}
-
-TEST_P(FuseWithCamera, GivesTheSameCloudWhenMapsMustLeaveAndReturn) {
-  Fixture fixture = make_ring(model());
-  FuseOptions options;
-  options.min_views = 2;
-  const PointCloud all = run(fixture, options);
-  for (const auto& [image, loads] : fixture.loads) EXPECT_EQ(loads, 1) << image;
-  EXPECT_GT(all.size(), 1000u);
-  fixture.loads.clear();
-  options.max_maps = 1;  // fewer than one view needs: the store keeps as few as possible
-  const PointCloud few = run(fixture, options);
-  int loads = 0;
-  for (const auto& [image, count] : fixture.loads) loads += count;
-  EXPECT_GT(loads, 8);      // some maps were evicted
-  EXPECT_LE(loads, 8 * 3);  // each step loads no more maps than it needs
-  EXPECT_TRUE(same_bytes(all, few));
-}
-
-TEST_P(FuseWithCamera, HandsOnTheCloudInPortions) {
-  Fixture fixture = make_fixture({}, model());
-  PointCloud cloud;
-  cloud.view_begin.push_back(0);
-  int portions = 0;
-  fuse(fixture.scene, fixture.views, fixture.providers(), {}, [&](const PointCloud& portion) {
-    EXPECT_GT(portion.size(), 0u);
-    append(cloud, portion);
-    ++portions;
-  });
-  EXPECT_GT(portions, 1);
-  EXPECT_TRUE(same_bytes(cloud, run(fixture)));
-}
-
-TEST(Fuse, LoadsSeveralMapsAtATime) {
-  Fixture fixture = make_ring(test::dry_camera());
-  FuseOptions options;
-  options.min_views = 2;
-  const PointCloud expected = run(fixture, options);
-  std::atomic<int> loading = 0, most = 0;
-  FusionProviders providers;
-  providers.load_map = [&](std::size_t i) {
-    most = std::max<int>(most, ++loading);
-    std::this_thread::yield();
-    --loading;
-    return fixture.maps[i];
-  };
-  for (const std::size_t loads : {1u, 2u}) {
-    options.max_loads = loads;
-    options.max_maps = 3;
-    most = 0;
-    EXPECT_TRUE(same_bytes(fuse(fixture.scene, fixture.views, providers, options), expected));
-    EXPECT_LE(most, static_cast<int>(loads));
   }
 }
 

@@ -3,121 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "support/textured_scene.h"
+#include "depth/matching_survey.h"
 
 namespace axial::depth {
 namespace {
-
-struct Survey {
-  std::vector<MatchImage> views;
-  std::vector<cv::Mat1f> truth;
-  std::vector<Eigen::Vector3f> points;
-
-  // The input for matching view `index` with all other views as sources.
-  MatchInput input(std::size_t index, std::vector<const MatchImage*>& sources) const {
-    sources.clear();
-    for (std::size_t i = 0; i < views.size(); ++i)
-      if (i != index) sources.push_back(&views[i]);
-    return {&views[index], sources, points, nullptr, ProjectionMethod::exact};
-  }
-};
-
-CameraModel small_camera() {
-  CameraModel camera;
-  camera.width = 160;
-  camera.height = 120;
-  camera.lens = {150, 150, 79.5, 59.5};
-  return camera;
-}
-
-enum class Kind {
-  pinhole,
-  flat_port,
-  dome_port,
-  flat_ports_and_domes,
-  fisheye_behind_flat_port,
-  folding_lens
-};
-
-refractive::DomePort<double> dome() {
-  return {{0.004, -0.003, -0.006}, 0.05, 0.008, 1, 1.49, 1.333};
-}
-
-refractive::FlatPort<double> thick_port() {
-  refractive::FlatPort<double> port;
-  port.normal =
-      Eigen::AngleAxisd(0.05, Eigen::Vector3d(1, 2, 0).normalized()) * Eigen::Vector3d::UnitZ();
-  port.distance = 0.03;
-  port.thickness = 0.018;
-  port.n_glass = 1.49;
-  port.n_water = 1.333;
-  return port;
-}
-
-Survey make_survey(Kind kind, const test::TexturedScene& scene = {}) {
-  Survey survey;
-  for (int i = 0; i < 4; ++i) {
-    MatchImage view;
-    view.id = static_cast<std::uint32_t>(10 + i);
-    view.camera = small_camera();
-    if (kind == Kind::flat_port) view.camera.port = thick_port();
-    if (kind == Kind::dome_port) view.camera.port = dome();
-    if (kind == Kind::flat_ports_and_domes && i % 2) view.camera.port = dome();
-    if (kind == Kind::flat_ports_and_domes && i % 2 == 0) view.camera.port = thick_port();
-    if (kind == Kind::fisheye_behind_flat_port) {
-      view.camera.port = thick_port();
-      view.camera.distortion.emplace();
-      view.camera.distortion->fisheye = 1;
-      view.camera.distortion->above[1] = -0.02;
-    }
-    if (kind == Kind::folding_lens) view.camera.distortion.emplace().above[1] = -1;
-    const double x = 0.25 * (i % 2) - 0.12;
-    const double y = 0.2 * (i / 2) - 0.1;
-    view.pose.centre = {x, y, 0.05 * i};
-    view.pose.rotation = Eigen::AngleAxisd(0.1 * x, Eigen::Vector3d::UnitY()).toRotationMatrix();
-    const test::RenderedView rendered = test::render(scene, view.camera, view.pose);
-    view.grey = rendered.image;
-    survey.views.push_back(view);
-    survey.truth.push_back(rendered.depth);
-  }
-  for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector3d direction(0.06 * (i % 10) - 0.27, 0.09 * (i / 10) - 0.22, 1);
-    const Eigen::Vector3d unit = direction.normalized();
-    survey.points.push_back(
-        (unit * scene.depth_without_bar(Eigen::Vector3d::Zero(), unit)).cast<float>());
-  }
-  return survey;
-}
-
-struct Errors {
-  double median_relative = 0;
-  double valid_fraction = 0;
-};
-
-// The errors of the pixels whose distance to the image's border is in [least, most) [px].
-Errors compare_ring(const DepthMap& map, const cv::Mat1f& truth, int least, int most) {
-  std::vector<double> errors;
-  int pixels = 0;
-  for (int y = 0; y < map.height(); ++y)
-    for (int x = 0; x < map.width(); ++x) {
-      const int from_border = std::min({x, y, map.width() - 1 - x, map.height() - 1 - y});
-      if (from_border < least || from_border >= most) continue;
-      ++pixels;
-      if (map.depth(y, x) > 0)
-        errors.push_back(std::abs(map.depth(y, x) - truth(y, x)) / truth(y, x));
-    }
-  Errors result;
-  result.valid_fraction = static_cast<double>(errors.size()) / pixels;
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
-                   errors.end());
-  result.median_relative = errors.empty() ? 1 : errors[errors.size() / 2];
-  return result;
-}
 
 bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   if (a.size() != b.size() || a.type() != b.type()) return false;
@@ -127,10 +20,6 @@ bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
 bool same_maps(const DepthMap& a, const DepthMap& b) {
   return same_bytes(a.depth, b.depth) && same_bytes(a.normal, b.normal) &&
          same_bytes(a.confidence, b.confidence);
-}
-
-Errors compare(const DepthMap& map, const cv::Mat1f& truth) {
-  return compare_ring(map, truth, 8, map.width());
 }
 
 class PatchMatchOn : public testing::TestWithParam<Kind> {};
@@ -238,86 +127,6 @@ TEST_P(PatchMatchOn, FindsAThinBarBeforeTheFloor) {
   without_search.search_planes = 0;
   EXPECT_GT(found({}), 0.6);
   EXPECT_GT(found({}), found(without_search) + 0.3);
-}
-
-// The survey in haze: the contrast is multiplied by `contrast`, then camera noise is added.
-Survey hazy(Survey survey, double contrast) {
-  cv::RNG random(5);
-  for (MatchImage& view : survey.views) {
-    cv::Mat1f grey, noise(view.grey.size());
-    view.grey.convertTo(grey, CV_32F, contrast, 110);
-    random.fill(noise, cv::RNG::NORMAL, 0, 1);
-    cv::Mat1f(grey + noise).convertTo(view.grey, CV_8U);
-  }
-  return survey;
-}
-
-TEST(PatchMatch, CoarserLevelsCostNoAccuracyInHaze) {
-  const Survey survey = hazy(make_survey(Kind::flat_port), 1.0 / 7);
-  PatchMatchOptions options;
-  options.coarsest_side = 30;
-  // Means over all views, because different paths of the random search change the errors of one
-  // view by a tenth.
-  const auto errors_on = [&](int levels) {
-    options.sub_resolution_levels = levels;
-    Errors sum;
-    for (std::size_t i = 0; i < survey.views.size(); ++i) {
-      std::vector<const MatchImage*> sources;
-      const MatchInput input = survey.input(i, sources);
-      const Errors errors = compare(estimate_depth_map(input, options), survey.truth[i]);
-      sum.median_relative += errors.median_relative;
-      sum.valid_fraction += errors.valid_fraction;
-    }
-    return sum;
-  };
-  const Errors none = errors_on(0);
-  for (const int levels : {1, 2}) {
-    const Errors more = errors_on(levels);
-    // With a strong prior, the errors were 1.4 times (one level) and 3 times (two levels) as large.
-    EXPECT_LT(more.median_relative, 1.2 * none.median_relative) << levels;
-    EXPECT_GT(more.valid_fraction, 0.99 * none.valid_fraction) << levels;
-  }
-}
-
-// Smooth texture about as strong as the noise, whose standard deviation is one grey level.
-Survey weakly_textured() {
-  Survey smooth = make_survey(Kind::flat_port);
-  for (MatchImage& view : smooth.views) cv::GaussianBlur(view.grey, view.grey, {}, 3);
-  return hazy(smooth, 0.3);
-}
-
-TEST(PatchMatch, CoarserLevelsHoldWhatHasHardlyMoreTextureThanNoise) {
-  const Survey survey = weakly_textured();
-  std::vector<const MatchImage*> sources;
-  const MatchInput input = survey.input(0, sources);
-  PatchMatchOptions options;
-  options.coarsest_side = 30;
-  options.min_texture = 4e-4f;  // with less texture, only the coarser level can give a depth
-  const auto errors = [&] { return compare(estimate_depth_map(input, options), survey.truth[0]); };
-  const Errors held = errors();
-  options.prior_texture = 1e-9f;
-  const Errors free = errors();
-  options.sub_resolution_levels = 0;
-  const Errors none = errors();
-  // The windows of a coarser level cover twice the width, and its noise is half as strong.
-  // Measured: 0.7 times the error, and depths for 12 % more of the pixels.
-  EXPECT_LT(held.median_relative, 0.85 * free.median_relative);
-  EXPECT_GT(held.valid_fraction, none.valid_fraction + 0.05);
-}
-
-// With OpenMVS's threshold, pixels whose depths are as accurate as others are lost.
-TEST(PatchMatch, KeepsWhatHasHardlyMoreTextureThanNoise) {
-  const Survey survey = weakly_textured();
-  std::vector<const MatchImage*> sources;
-  const MatchInput input = survey.input(0, sources);
-  PatchMatchOptions options;
-  options.sub_resolution_levels = 0;
-  const Errors all = compare(estimate_depth_map(input, options), survey.truth[0]);
-  options.min_texture = 4e-4f;
-  const Errors strong = compare(estimate_depth_map(input, options), survey.truth[0]);
-  EXPECT_GT(all.valid_fraction, 0.99);
-  EXPECT_LT(strong.valid_fraction, 0.95);
-  EXPECT_LT(all.median_relative, 1.1 * strong.median_relative);  // measured: 1.01
 }
 
 TEST(PatchMatch, ThePinholeModelIsWrongUnderWater) {

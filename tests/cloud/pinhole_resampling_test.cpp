@@ -1,100 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares photographs and depth maps resampled to a pinhole with surfaces known in closed form.
+#include "cloud/pinhole_resampling.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "base/parallel.h"
-#include "cloud/pinhole_resampling.h"
+#include "cloud/pinhole_cameras.h"
 #include "cloud/pinhole_view.h"
-#include "support/analytic_scene.h"
 #include "support/error_of.h"
 #include "support/textured_scene.h"
 
 namespace axial::cloud {
 namespace {
-
-using test::AnalyticScene;
-
-constexpr double kNear = 0.5, kFar = 1.6;
-
-// 240 x 180 pixels, 65 degrees wide.
-CameraModel lens_in_air() {
-  CameraModel model = test::dry_camera();
-  return model.resized(240, 180);
-}
-
-CameraModel flat(double distance, const Eigen::Vector3d& normal) {
-  CameraModel model = lens_in_air();
-  refractive::FlatPort<double> port;
-  port.normal = normal.normalized();
-  port.distance = distance;
-  port.thickness = 0.014;
-  port.n_glass = 1.52;
-  port.n_water = 1.333;
-  model.port = port;
-  return model;
-}
-
-CameraModel dome(const Eigen::Vector3d& centre) {
-  CameraModel model = lens_in_air();
-  refractive::DomePort<double> port;
-  port.centre = centre;
-  port.inner_radius = 0.05;
-  port.thickness = 0.007;
-  port.n_glass = 1.49;
-  port.n_water = 1.333;
-  model.port = port;
-  return model;
-}
-
-CameraModel distorted(CameraModel model) {
-  refractive::LensDistortion<double> distortion;
-  distortion.above[1] = -0.12;
-  distortion.above[2] = 0.02;
-  model.distortion = distortion;
-  return model;
-}
-
-CameraModel above_water(double height) {
-  CameraModel model = flat(height, {0.02, 0.03, 1});
-  auto& port = std::get<refractive::FlatPort<double>>(*model.port);
-  port.thickness = 0;
-  port.n_glass = port.n_water;
-  return model;
-}
-
-struct NamedCamera {
-  const char* name;
-  CameraModel model;
-};
-
-std::vector<NamedCamera> cameras() {
-  return {{"Flat", flat(0.02, {0, 0, 1})},
-          {"FarFlat", flat(0.08, {0, 0, 1})},
-          {"Tilted", flat(0.03, {0.1, -0.2, 1})},
-          {"Dome", dome({0, 0, 0.002})},
-          {"OffCentreDome", dome({0.004, -0.003, -0.006})},
-          {"DistortedBehindPort", distorted(flat(0.03, {0.05, 0.05, 1}))},
-          {"DistortedInAir", distorted(lens_in_air())},
-          {"AboveWater", above_water(0.3)},
-          {"InAir", lens_in_air()}};
-}
-
-AnalyticScene plane() {
-  return {};
-}
-
-AnalyticScene sphere_before_plane() {
-  AnalyticScene scene;
-  scene.sphere_radius = 0.15;
-  return scene;
-}
-
-Pose tilted_pose() {
-  return test::circle_of_poses(5)[1];
-}
 
 // The point [world] of the surface that a pinhole with this camera and pose sees at `pixel`.
 std::optional<Eigen::Vector3d> surface_at(const AnalyticScene& scene, const CameraModel& pinhole,
@@ -145,10 +63,7 @@ Errors lookup_errors(const AnalyticScene& scene, const CameraModel& photograph, 
   return errors;
 }
 
-class Resampling : public testing::TestWithParam<NamedCamera> {
- protected:
-  static CameraModel model() { return GetParam().model; }
-};
+class Resampling : public EachCamera {};
 INSTANTIATE_TEST_SUITE_P(Cameras, Resampling, testing::ValuesIn(cameras()),
                          [](const auto& parameter) { return parameter.param.name; });
 
@@ -299,71 +214,6 @@ TEST_P(Resampling, GivesTheSameForAnyNumberOfThreads) {
   }
   EXPECT_EQ(cv::norm(images[0].color, images[1].color, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(images[0].label, images[1].label, cv::NORM_INF), 0);
-}
-
-class View : public Resampling {};
-INSTANTIATE_TEST_SUITE_P(Cameras, View, testing::ValuesIn(cameras()),
-                         [](const auto& parameter) { return parameter.param.name; });
-
-TEST_P(View, ShowsAllAtTheResolutionOfTheCentre) {
-  const PinholeView view = pinhole_for(model(), kNear, kFar);
-  EXPECT_TRUE(view.whole);
-  EXPECT_FALSE(view.camera.port.has_value());
-  EXPECT_FALSE(view.camera.distortion.has_value());
-  EXPECT_NEAR(view.camera.lens.fx / view.camera.lens.fy, model().lens.fx / model().lens.fy, 1e-9);
-  const double middle = 2 / (1 / kNear + 1 / kFar);
-  std::visit(
-      [&](const auto& camera) {
-        for (int i = 0; i <= 40; ++i)
-          for (const Eigen::Vector2d& at :
-               {Eigen::Vector2d(i / 40.0, 0), {i / 40.0, 1}, {0, i / 40.0}, {1, i / 40.0}})
-            for (const double depth : {kNear, middle, kFar}) {
-              const Eigen::Vector2d pixel(at.x() * model().width - 0.5,
-                                          at.y() * model().height - 0.5);
-              const Eigen::Vector2d seen =
-                  view.camera.lens.pixel(camera.ray(pixel).at(depth) - view.centre);
-              // Between the sampled rays a curved edge may reach a little farther.
-              EXPECT_GT(seen.minCoeff(), -0.6);
-              EXPECT_LT(seen.x(), view.camera.width - 0.4);
-              EXPECT_LT(seen.y(), view.camera.height - 0.4);
-            }
-        const Eigen::Vector2d centre((model().width - 1) / 2.0, (model().height - 1) / 2.0);
-        Eigen::Matrix2d size;
-        for (int k = 0; k < 2; ++k) {
-          const Eigen::Vector2d step = 0.5 * Eigen::Vector2d::Unit(k);
-          size.col(k) = view.camera.lens.pixel(camera.ray(centre + step).at(middle) - view.centre) -
-                        view.camera.lens.pixel(camera.ray(centre - step).at(middle) - view.centre);
-        }
-        EXPECT_NEAR(size.determinant(), 1, 1e-3);
-      },
-      make_camera<double>(model()));
-}
-
-TEST(PinholeView, IsItselfOfAPinhole) {
-  const CameraModel model = lens_in_air();
-  const PinholeView view = pinhole_for(model, kNear, kFar);
-  EXPECT_EQ(view.centre, Eigen::Vector3d::Zero());
-  EXPECT_EQ(view.camera.width, model.width);
-  EXPECT_EQ(view.camera.lens.cx, model.lens.cx);
-  // The photograph does not change by a single byte.
-  DepthMap map = exact_map(sphere_before_plane(), model, tilted_pose());
-  cv::Mat3b photograph(model.height, model.width);
-  cv::randu(photograph, 0, 255);
-  const cv::Mat1f surface = render_surface(map, view);
-  const PinholeImage image = resampled(photograph, {}, model, view, surface, filled(surface, 1.0f));
-  EXPECT_EQ(cv::norm(image.color, photograph, cv::NORM_INF), 0);
-}
-
-TEST(PinholeView, OfAFisheyeIsCutAndSaysSo) {
-  CameraModel model = lens_in_air();
-  model.lens = {80, 80, 119.5, 89.5};
-  refractive::LensDistortion<double> fisheye;
-  fisheye.fisheye = 1;
-  model.distortion = fisheye;
-  const PinholeView view = pinhole_for(model, kNear, kFar);
-  EXPECT_FALSE(view.whole);
-  EXPECT_LE(view.camera.width, 1.4 * model.width + 1);
-  EXPECT_LE(view.camera.height, 1.4 * model.height + 1);
 }
 
 // A near square in front of a far plane. Both are perpendicular to the camera's axis.

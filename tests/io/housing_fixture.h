@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Housing files, for the tests of reading and writing such files and of attaching ports to images.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "io/cameras/housing.h"
+#include "io/wrong_input.h"
+
+namespace axial::io {
+
+inline const std::string kExample = R"({ "version": 1,
+  "ports": {
+    "main": { "type": "flat", "distance_m": 0.020, "thickness_m": 0.014, "normal": [0, 0, 1],
+              "n_air": 1.0, "n_glass": 1.52, "n_water": 1.333 },
+    "tilted": { "type": "flat", "distance_m": 0, "thickness_m": 0.5, "normal": [0.3, 0, 1],
+                "n_glass": 1.33, "n_water": 1.49 } },
+  "default": "main",
+  "cameras": { "2": "tilted" },
+  "images": { "dry_0001.jpg": "none", "left/a.jpg": "tilted" } }
+)";
+
+inline constexpr const char* kLake = R"({ "version": 1, "default": "lake", "ports": { "lake":
+  { "type": "water-surface", "normal": [0, 0, -1], "point_m": [7, 8, 1.5], "n_water": 1.34 } },
+  "images": { "dry.jpg": "none" } })";
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+inline auto& flat(auto& port) {
+  return std::get<refractive::FlatPort<double>>(port);
+}
+
+class HousingTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test::empty_folder();
+    file_ = folder_ / "scene.housing.json";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Housing read(const std::string& text) {
+    test::put(file_, text);
+    return read_housing(file_);
+  }
+  // The error for the example with `from` replaced by `to`.
+  std::string error(const std::string& from, const std::string& to) {
+    const std::string message = test::error_of([&] { read(replaced(kExample, from, to)); });
+    EXPECT_THAT(message, testing::HasSubstr(file_.string()));
+    return message;
+  }
+
+  std::filesystem::path folder_, file_;
+};
+
+}  // namespace axial::io
