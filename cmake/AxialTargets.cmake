@@ -77,6 +77,17 @@ function(axial_source_options)
   endforeach()
 endfunction()
 
+# Unity builds: the compiler gets several source files of a target as one. Headers and templates are
+# then compiled once for all of them, which halves the compile time. Names in unnamed namespaces
+# must differ between the files of a target. Files that share such names, and files whose speed
+# depends on how the compiler sees them, are declared in APART and are compiled alone.
+# -DAXIAL_UNITY=OFF compiles every file alone, for an editor and for work on a few files.
+option(AXIAL_UNITY "Compile several source files as one" ON)
+function(axial_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${AXIAL_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # For files that instantiate the sweep for all cameras. With its default limits of growth for one
 # file, the compiler would not even inline Eigen's products in the innermost loop.
 if(NOT AXIAL_SANITIZE)
@@ -84,8 +95,8 @@ if(NOT AXIAL_SANITIZE)
     --param=max-inline-insns-single=400)
 endif()
 
-# add_axial_library(io SOURCES ply/ply_read.cpp LINK scene opencv_core) adds libs/io as the library
-# axial_io. In LINK, the project's own libraries are written without the prefix axial_. Headers in
+# add_axial_library(io SOURCES ply/ply_read.cpp [APART json.cpp] LINK scene opencv_core) adds libs/io
+# as the library axial_io. In LINK, the project's own libraries are written without the prefix axial_. Headers in
 # libs/io/private are for this library alone: they are included as "private/ply/ply_header.h", which
 # only its own files find.
 function(axial_link target)
@@ -101,8 +112,9 @@ function(axial_link target)
 endfunction()
 
 function(add_axial_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  add_library(axial_${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK" ${ARGN})
+  add_library(axial_${name} STATIC ${ARG_SOURCES} ${ARG_APART})
+  axial_unity(axial_${name} ${ARG_APART})
   target_include_directories(axial_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/libs>)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/private)
     target_include_directories(axial_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
@@ -116,6 +128,7 @@ endfunction()
 function(add_axial_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  axial_unity(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/libs)
   target_link_libraries(${name} PRIVATE axial_flags axial_version)
   target_precompile_headers(${name} REUSE_FROM axial_parsed)
@@ -127,49 +140,79 @@ endfunction()
 # sanitizers. The unit tests of the other folders are numeric and are built in release.
 set(AXIAL_SANITIZED_FOLDERS base lens io scene picture cloud)
 
-# add_axial_test(io/dmap_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
+# add_axial_tests(io TESTS dmap_test ply_test [APART json_test] LINK io)
+# adds tests/io/dmap_test.cpp, ... as one program, and their tests as the CTest cases
+# "io/Suite.Test", or with the sanitizers "sanitized/io/Suite.Test". APART: see "Unity builds" above.
+#
+# add_axial_test(io/ply_test LINK io [SOURCES extra.cpp] [PROGRAMS InterfaceCOLMAP] [LABELS unit]
 #                [BUILD release] [TIMEOUT 300] [PRIVATE_OF io])
-# adds tests/io/dmap_test.cpp as the CTest cases "io/dmap_test/...", or with the sanitizers
-# "sanitized/io/dmap_test/...". PROGRAMS are the programs that the test runs; they are built first. A
-# test of LABELS unit (the default) is built in the build of its folder (see above), or in the build
-# that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds. Tests with other
-# labels are only built in release. PRIVATE_OF names the library whose private headers the test may
-# include.
+# adds tests/io/ply_test.cpp as a program of its own, for a test that needs one of the options. Its
+# CTest cases are "io/ply_test/Suite.Test". PROGRAMS are the programs that the test runs; they are
+# built first. A test of LABELS unit (the default) is built in the build of its folder (see above),
+# or in the build that BUILD names (release or sanitized); with AXIAL_EVERY_TEST in both builds.
+# Tests with other labels are only built in release. PRIVATE_OF names the library whose private
+# headers the test may include.
 add_custom_target(axial_tests)
+function(add_axial_tests folder)
+  cmake_parse_arguments(ARG "" "" "TESTS;APART;LINK" ${ARGN})
+  axial_builds_test(here ${folder} unit)
+  if(NOT here)
+    return()
+  endif()
+  list(TRANSFORM ARG_TESTS APPEND .cpp)
+  list(TRANSFORM ARG_APART APPEND .cpp)
+  axial_add_test_program(${folder}_tests SOURCES ${ARG_TESTS} ${ARG_APART} LINK ${ARG_LINK})
+  axial_unity(${folder}_tests ${ARG_APART})
+  axial_discover_tests(${folder}_tests ${folder} LABELS unit)
+endfunction()
+
 function(add_axial_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT;BUILD;PRIVATE_OF" "SOURCES;LINK;PROGRAMS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
+  string(REGEX REPLACE "/.*" "" folder ${name})
+  axial_builds_test(here ${folder} "${ARG_LABELS}" ${ARG_BUILD})
+  if(NOT here)
+    return()
+  endif()
+  string(REPLACE "/" "_" target ${name})
+  axial_add_test_program(${target} SOURCES ${PROJECT_SOURCE_DIR}/tests/${name}.cpp ${ARG_SOURCES}
+    LINK ${ARG_LINK})
+  if(ARG_PRIVATE_OF)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs/${ARG_PRIVATE_OF})
+  endif()
+  if(ARG_PROGRAMS)
+    add_dependencies(${target} ${ARG_PROGRAMS})
+  endif()
+  axial_discover_tests(${target} ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT})
+endfunction()
+
+# Sets `result` to true if this build has the tests of `folder` with these labels. The optional
+# argument is the build that the test names.
+function(axial_builds_test result folder labels)
   set(build release)
-  if("unit" IN_LIST ARG_LABELS)
-    string(REGEX REPLACE "/.*" "" folder ${name})
+  if("unit" IN_LIST labels)
     if(AXIAL_EVERY_TEST)
       set(build both)
-    elseif(ARG_BUILD)
-      set(build ${ARG_BUILD})
+    elseif(ARGN)
+      set(build ${ARGN})
     elseif(folder IN_LIST AXIAL_SANITIZED_FOLDERS)
       set(build sanitized)
     endif()
   endif()
-  if(AXIAL_SANITIZE AND build STREQUAL "release")
-    return()
-  elseif(NOT AXIAL_SANITIZE AND build STREQUAL "sanitized")
-    return()
+  if(build STREQUAL "both" OR (AXIAL_SANITIZE AND build STREQUAL "sanitized") OR
+     (NOT AXIAL_SANITIZE AND build STREQUAL "release"))
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
   endif()
-  set(prefix "")
-  if(AXIAL_SANITIZE)
-    set(prefix "sanitized/")
-  endif()
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
-  endif()
-  string(REPLACE "/" "_" target ${name})
-  add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${name}.cpp ${ARG_SOURCES})
+endfunction()
+
+function(axial_add_test_program target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${target} ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs ${PROJECT_SOURCE_DIR}/tests)
-  if(ARG_PRIVATE_OF)
-    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs/${ARG_PRIVATE_OF})
-  endif()
   target_compile_definitions(${target} PRIVATE AXIAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_libraries(${target} PRIVATE axial_test_flags ${AXIAL_PARSED_LIBRARIES} rapidcheck GTest::gmock
@@ -177,10 +220,18 @@ function(add_axial_test name)
   target_precompile_headers(${target} REUSE_FROM axial_parsed_for_tests)
   axial_link(${target} ${ARG_LINK})
   add_dependencies(axial_tests ${target})
-  if(ARG_PROGRAMS)
-    add_dependencies(${target} ${ARG_PROGRAMS})
+endfunction()
+
+# The CTest cases are "`name`/Suite.Test".
+function(axial_discover_tests target name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  if(AXIAL_SANITIZE)
+    string(PREPEND name "sanitized/")
   endif()
   # With a sanitizer, on a busy machine, listing the cases can take longer than the default of 5 s.
-  gtest_discover_tests(${target} TEST_PREFIX "${prefix}${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${target} TEST_PREFIX "${name}/" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

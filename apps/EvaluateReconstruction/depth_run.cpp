@@ -13,7 +13,7 @@
 namespace axial::apps {
 namespace {
 
-void check(const Options& options) {
+void check_depth_run(const Options& options) {
   if (options.align != "none")
     fail("--align {}: a depth map has the coordinates of its own camera and cannot be aligned",
          options.align);
@@ -29,7 +29,7 @@ void check(const Options& options) {
 }  // namespace
 
 nlohmann::ordered_json run_depth_map(const Options& options) {
-  check(options);
+  check_depth_run(options);
   const DepthMap map = io::read_dmap(options.input).map;
   const cv::Mat1f truth = io::read_float_tiff(options.truth);
   if (truth.size() != map.depth.size())

@@ -18,6 +18,9 @@ namespace axial {
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
+// `grain` for items as short as the work on one point or one pixel.
+inline constexpr std::size_t kPointGrain = 1024;
+
 // Calls body(i) for every i in [0, count). Items begin in the order of i, and at most `in_flight`
 // of them (at least 1) run at the same time. For items that need much memory. The items may use
 // parallel loops themselves.

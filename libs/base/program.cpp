@@ -194,8 +194,9 @@ void apply(CommonOptions& common) {
   common.archive_type = -1;
   if (common.max_threads > 1024) fail("--max-threads {}: must be at most 1024", common.max_threads);
   if (common.process_priority < 0) ::setpriority(PRIO_PROCESS, 0, 10);
-  constexpr std::array kLevels{LogLevel::warning, LogLevel::info, LogLevel::debug, LogLevel::trace};
-  set_log_level(kLevels[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);
+  constexpr std::array kLevelOfVerbosity{LogLevel::warning, LogLevel::info, LogLevel::debug,
+                                         LogLevel::trace};
+  set_log_level(kLevelOfVerbosity[static_cast<std::size_t>(std::clamp(common.verbosity, 0, 3))]);
 }
 
 bool given_in(const po::variables_map& values, const std::string& name) {

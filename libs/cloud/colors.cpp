@@ -65,7 +65,6 @@ void estimate_colors(PointCloud& cloud, const Scene& scene,
     const Pose& pose = scene.images[i].pose;
     std::visit(
         [&](const auto& camera) {
-          constexpr std::size_t kGrain = 1024;
           parallel_for(
               points.size(),
               [&](std::size_t k) {
@@ -73,7 +72,7 @@ void estimate_colors(PointCloud& cloud, const Scene& scene,
                     camera.project(pose.to_camera(cloud.positions[points[k]].cast<double>()));
                 if (seen.visible) cloud.colors[points[k]] = sample(image, seen.pixel);
               },
-              kGrain);
+              kPointGrain);
         },
         make_camera<double>(scene.images[i].camera.resized(image.cols, image.rows)));
   }

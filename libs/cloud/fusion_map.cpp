@@ -10,8 +10,6 @@
 namespace axial::cloud {
 namespace {
 
-constexpr std::size_t kGrain = 1024;
-
 void check(const DepthMap& map, const cv::Mat3b& color) {
   const cv::Size size = map.depth.size();
   const auto agrees = [&](const cv::Mat& image) { return image.empty() || image.size() == size; };
@@ -136,7 +134,7 @@ void back_project(const FusionMap& view, PixelPoints& where) {
               const auto depth = static_cast<double>(view.depth_at(pixel));
               where.points[i] = view.pose.to_world(ray.at(depth)).template cast<float>();
             },
-            kGrain);
+            kPointGrain);
       },
       make_camera<double>(view.camera));
 }
@@ -149,7 +147,8 @@ void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
         const Neighbour ask(reference, neighbour, camera, options);
         parallel_for(
             answers.size(),
-            [&](std::size_t i) { answers[i] = ask(asking.pixels[i], asking.points[i]); }, kGrain);
+            [&](std::size_t i) { answers[i] = ask(asking.pixels[i], asking.points[i]); },
+            kPointGrain);
       },
       make_camera<float>(neighbour.camera));
 }

@@ -69,7 +69,6 @@ void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbo
   const Tree tree(3, positions, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   const std::size_t count = std::min(std::max<std::size_t>(neighbours, 3), cloud.size());
   const Eigen::Vector3d middle = mean_camera(scene);
-  constexpr std::size_t kGrain = 1024;
   parallel_for(
       cloud.size(),
       [&](std::size_t i) {
@@ -88,7 +87,7 @@ void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbo
         }
         cloud.normals[i] = normal.cast<float>();
       },
-      kGrain);
+      kPointGrain);
 }
 
 }  // namespace axial::cloud

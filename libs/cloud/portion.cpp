@@ -11,7 +11,6 @@ namespace {
 
 // Pixels of a portion: few enough for the answers to stay in the processor's cache.
 constexpr std::size_t kPixels = std::size_t{1} << 16;
-constexpr std::size_t kGrain = 1024;
 
 // The weighted mean of the pixels that support one point.
 class Mean {
@@ -102,7 +101,7 @@ void Portion::find_proved_by_two(const FuseOptions& options) {
         proved_by_two_[i] = n && pieces[0].around(where_[0].pixels[i]) &&
                             pieces[*n + 1].around(answers_[*n][i].pixel());
       },
-      kGrain);
+      kPointGrain);
 }
 
 // The only serial pass: if two points need the same pixel, the first one gets it.
@@ -146,7 +145,7 @@ PointCloud Portion::points(const FuseOptions& options) const {
   cloud.view_images.resize(supports_.size());
   cloud.view_weights.resize(supports_.size());
   parallel_for(
-      size(), [&](std::size_t i) { average(i, cloud); }, kGrain);
+      size(), [&](std::size_t i) { average(i, cloud); }, kPointGrain);
   if (options.errors) estimate_errors(cloud);
   if (!options.normals) cloud.normals.clear();
   return cloud;
@@ -190,7 +189,7 @@ void Portion::estimate_errors(PointCloud& cloud) const {
         cloud.errors[i] = error.error;
         cloud.confidences[i] = error.confidence;
       },
-      kGrain);
+      kPointGrain);
 }
 
 }  // namespace axial::cloud

@@ -6,7 +6,7 @@
 namespace axial::cloud {
 namespace {
 
-constexpr int kReach = 2;
+constexpr int kNeighbourReach = 2;
 constexpr int kLeastOnPlane = 4;
 constexpr int kMostOffPlane = 3;
 
@@ -48,8 +48,8 @@ bool SurfacePieces::enough_on_plane(const Camera& camera, int x, int y,
   };
   const float here = height(x, y), max_distance = max_distance_ * map_.depth(y, x);
   int on = 0, off = 0;
-  for (int v = y - kReach; v <= y + kReach; v += kReach)
-    for (int u = x - kReach; u <= x + kReach; u += kReach) {
+  for (int v = y - kNeighbourReach; v <= y + kNeighbourReach; v += kNeighbourReach)
+    for (int u = x - kNeighbourReach; u <= x + kNeighbourReach; u += kNeighbourReach) {
       if ((u == x && v == y) || u < 0 || v < 0 || u >= map_.depth.cols || v >= map_.depth.rows)
         continue;
       if (!(map_.depth(v, u) > 0)) continue;

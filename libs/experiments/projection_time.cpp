@@ -33,7 +33,7 @@ void keep(const refractive::Projection<float>& projection) {
   asm volatile("" : : "g"(&projection) : "memory");
 }
 
-struct Method {
+struct TimedMethod {
   std::string name;
   std::size_t points;
   // Seconds for the first `points` samples.
@@ -42,7 +42,7 @@ struct Method {
 };
 
 template <class Project>
-Method make_method(const std::string& name, std::size_t points, Project project) {
+TimedMethod make_method(const std::string& name, std::size_t points, Project project) {
   const auto run = [project](std::span<const Sample> samples) {
     const double begin = thread_seconds();
     for (const Sample& sample : samples) keep(project(sample.point));
@@ -52,20 +52,20 @@ Method make_method(const std::string& name, std::size_t points, Project project)
 }
 
 template <class Camera>
-Method camera_method(const std::string& name, std::size_t points, Camera camera) {
+TimedMethod camera_method(const std::string& name, std::size_t points, Camera camera) {
   const auto shared = std::make_shared<const Camera>(std::move(camera));
   return make_method(name, points,
                      [shared](const Vector3<float>& X) { return shared->project(X); });
 }
 
-std::vector<Method> make_methods(const CameraSetup& setup, int width, int height,
+std::vector<TimedMethod> make_methods(const CameraSetup& setup, int width, int height,
                                  const TimingOptions& options) {
   const PinholeLens<float> lens = make_lens(setup, width, height).cast<float>();
   const FlatPort<float> port = make_port(setup).cast<float>();
   const FlatPortCamera<float> exact(lens, port, width, height);
   const auto points = static_cast<std::size_t>(options.points);
   const auto analytic_points = static_cast<std::size_t>(options.analytic_points);
-  std::vector<Method> methods;
+  std::vector<TimedMethod> methods;
   methods.push_back(camera_method("exact", points, exact));
   methods.push_back(camera_method("line_search_plain", points,
                                   TableSearch<float, PlainCell<float>>(exact, width, height)));
@@ -102,7 +102,7 @@ std::vector<Sample> make_samples(const CameraSetup& setup, int width, int height
   return samples;
 }
 
-void measure_errors(const Method& method, std::span<const Sample> samples, MethodTime& result) {
+void measure_errors(const TimedMethod& method, std::span<const Sample> samples, MethodTime& result) {
   double sum = 0;
   for (const Sample& sample : samples) {
     const refractive::Projection<float> image = method.project(sample.point);
@@ -119,9 +119,9 @@ void measure_errors(const Method& method, std::span<const Sample> samples, Metho
 
 std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, int height,
                                          Order order, const TimingOptions& options) {
-  const std::vector<Method> methods = make_methods(setup, width, height, options);
+  const std::vector<TimedMethod> methods = make_methods(setup, width, height, options);
   const std::vector<Sample> samples = make_samples(setup, width, height, order, options.points);
-  const auto own = [&](const Method& method) {
+  const auto own = [&](const TimedMethod& method) {
     return std::span(samples).first(std::min(method.points, samples.size()));
   };
   // All methods in turn, so that a slower phase of the machine affects all methods alike.

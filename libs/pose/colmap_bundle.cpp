@@ -58,9 +58,10 @@ refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
 }
 
 // Makes the bundle's cameras: one for each pair of lens and port that occurs.
-class Cameras {
+class CameraMaker {
  public:
-  Cameras(ColmapBundle& result, const io::Housing& housing) : result_(result), housing_(housing) {}
+  CameraMaker(ColmapBundle& result, const io::Housing& housing)
+      : result_(result), housing_(housing) {}
 
   std::size_t index(const io::ColmapCamera& lens, const std::string& port) {
     const auto [found, added] =
@@ -130,7 +131,7 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
                        const io::Housing& housing) {
   ColmapBundle result;
   Bundle& bundle = result.bundle;
-  Cameras cameras(result, housing);
+  CameraMaker cameras(result, housing);
   const auto camera_indices = indices_by_id(model.cameras);
   for (const io::ColmapImage& image : model.images) {
     const io::ColmapCamera& camera = model.cameras[camera_indices.at(image.camera)];

@@ -3,14 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
 
 namespace axial::simulate {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
 
 struct PortPath {
   Eigen::Vector3d exit;  // on the outer plane

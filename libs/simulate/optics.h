@@ -5,9 +5,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <optional>
 
 namespace axial::simulate {
+
+inline constexpr double kRadians = std::numbers::pi / 180;  // in a degree
 
 // The distortion of a lens, as OpenCV defines it for perspective lenses (k1 k2 p1 p2) and for
 // fisheyes (k1 k2 k3 k4).

@@ -7,7 +7,7 @@
 namespace axial::simulate {
 namespace {
 
-constexpr double kHeight = 2.90;  // as in "reef"
+constexpr double kCameraHeight = 2.90;  // as in "reef"
 
 // The length of ground, along the image's height, that a view at `height` sees through the port.
 double length_seen(const Preset& preset, double height) {
@@ -30,7 +30,7 @@ void make_sand(Preset& preset, std::uint32_t seed, int views) {
   terrain.half_width = 4.4;
   terrain.half_height = 3.6;
   terrain.skirt = 12;
-  add_two_rows(preset, views, kHeight, draw);
+  add_two_rows(preset, views, kCameraHeight, draw);
 }
 
 void make_transect(Preset& preset, std::uint32_t seed, int views) {
@@ -38,9 +38,9 @@ void make_transect(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed + 6000u, 1.0};
   Draw draw(seed + 6000u);
-  const double step = (1 - kOverlap) * length_seen(preset, kHeight);
+  const double step = (1 - kOverlap) * length_seen(preset, kCameraHeight);
   // Fields of view are wider in air, and images in air are rendered too.
-  const double pixel_in_air = kHeight / preset.lens.focal;
+  const double pixel_in_air = kCameraHeight / preset.lens.focal;
   Terrain& terrain = preset.terrain;
   terrain.floor = {draw.seed(), 2.2, 0.22, 1, 2, 0};
   terrain.cell = 0.012;
@@ -51,7 +51,7 @@ void make_transect(Preset& preset, std::uint32_t seed, int views) {
   for (int i = 0; i < views; ++i) {
     const Eigen::Vector3d centre(draw.between(-0.03, 0.03),
                                  step * (i - 0.5 * (views - 1)) + draw.between(-0.03, 0.03),
-                                 kHeight + draw.between(-0.04, 0.04));
+                                 kCameraHeight + draw.between(-0.04, 0.04));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
     shake(view, 1, draw);
     preset.views.push_back(view);

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 
+#include "simulate/optics.h"
 #include "simulate/presets.h"
 
 namespace axial::simulate {
-
-inline constexpr double kRadians = std::numbers::pi / 180;
 
 // A sequence of uniform random numbers, the same for the same seed.
 class Draw {

@@ -14,13 +14,6 @@
 namespace axial::simulate {
 namespace {
 
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
-using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
-
 RTCRay make_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
                 double far) {
   RTCRay ray{};
@@ -39,8 +32,12 @@ RTCRay make_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
 }  // namespace
 
 struct RayScene::State {
-  Device device;
-  EmbreeScene scene;
+  struct Release {
+    void operator()(RTCDevice embree_device) const { rtcReleaseDevice(embree_device); }
+    void operator()(RTCScene embree_scene) const { rtcReleaseScene(embree_scene); }
+  };
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device;
+  std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene;
   std::vector<Eigen::Vector3f> vertices;  // and a spare one: Embree reads 16 bytes at a time
   std::vector<Face> faces;
 };

@@ -21,7 +21,7 @@ struct Detail {
 
 constexpr int kCoarseOctaves = 5;
 
-Detail detail(const Eigen::Vector3d& p, double footprint, const TextureOptions& options) {
+Detail detail_at(const Eigen::Vector3d& p, double footprint, const TextureOptions& options) {
   Detail d;
   double wavelength = 0.5 * options.largest;
   Eigen::Vector3d q = p / wavelength;
@@ -114,7 +114,7 @@ Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
                              gradient_noise(r, options.seed + 13u));
   // Detail is warped much less; otherwise it would smear along the flow.
   const Eigen::Vector3d q = p + 0.03 * options.largest * bend;
-  const Detail d = detail(q, footprint, options);
+  const Detail d = detail_at(q, footprint, options);
   const Material m = material(p + 0.2 * options.largest * bend, d.coarse, options);
   const float tone = 1.0f + 0.45f * d.coarse + m.roughness * d.fine + 0.28f * speckles(q, options);
   // The slow warp fields also tint the materials.

@@ -27,6 +27,9 @@ double worst_distance(const PointCloud& cloud, const AnalyticScene& world) {
   return worst;
 }
 
+INSTANTIATE_TEST_SUITE_P(Cameras, FuseWithCamera, testing::Values(false, true),
+                         [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
+
 TEST_P(FuseWithCamera, PutsPointsOnThePlane) {
   const AnalyticScene world;
   Fixture fixture = make_fixture(world, model());

@@ -68,7 +68,5 @@ class FuseWithCamera : public testing::TestWithParam<bool> {
     return GetParam() ? test::behind_port(test::dry_camera()) : test::dry_camera();
   }
 };
-INSTANTIATE_TEST_SUITE_P(Cameras, FuseWithCamera, testing::Values(false, true),
-                         [](const auto& parameter) { return parameter.param ? "Port" : "Dry"; });
 
 }  // namespace axial::cloud

@@ -11,16 +11,16 @@
 namespace axial::io {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 // Remembers the keys of every open object. The parser itself silently keeps the last of two values
 // with the same key.
 class DuplicateKeys {
  public:
-  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
-    if (event == json::parse_event_t::object_start) open_.emplace_back();
-    if (event == json::parse_event_t::object_end) open_.pop_back();
-    if (event == json::parse_event_t::key && !open_.back().insert(parsed).second)
+  bool operator()(int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) open_.emplace_back();
+    if (event == Json::parse_event_t::object_end) open_.pop_back();
+    if (event == Json::parse_event_t::key && !open_.back().insert(parsed).second)
       fail("key {} occurs twice", parsed.dump());
     return true;
   }
@@ -31,26 +31,26 @@ class DuplicateKeys {
 
 }  // namespace
 
-json read_json(const std::filesystem::path& path) {
+Json read_json(const std::filesystem::path& path) {
   constexpr std::uintmax_t kLargest = 256u << 20;
   const std::string bytes = read_file(path, kLargest);
   try {
-    return json::parse(bytes, DuplicateKeys());
+    return Json::parse(bytes, DuplicateKeys());
   } catch (const std::exception& error) {
     fail("{}: malformed JSON: {}", path.string(), error.what());
   }
 }
 
-void write_json(const std::filesystem::path& path, const json& value) {
+void write_json(const std::filesystem::path& path, const Json& value) {
   // JSON cannot hold names in another encoding than UTF-8 exactly. Fail rather than change them.
   try {
     write_atomically(path, value.dump(2) + "\n");
-  } catch (const json::exception& error) {
+  } catch (const Json::exception& error) {
     fail("{}: cannot be written: {}", path.string(), error.what());
   }
 }
 
-std::string to_text(const json& value) {
+std::string to_text(const Json& value) {
   return value.dump();
 }
 

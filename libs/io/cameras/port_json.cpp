@@ -11,7 +11,7 @@
 namespace axial::io {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 void require_index(double n, const char* key, const std::string& where) {
   // No material of a port is denser than 3 (diamond: 2.4).
@@ -29,9 +29,9 @@ void require_unit(const Eigen::Vector3d& normal, const std::string& where) {
 }
 
 Eigen::Vector3d vector(const JsonPlace& place) {
-  const json& v = place.json;
+  const Json& v = place.json;
   if (!v.is_array() || v.size() != 3 ||
-      !std::ranges::all_of(v, [](const json& number) { return number.is_number(); }))
+      !std::ranges::all_of(v, [](const Json& number) { return number.is_number(); }))
     fail("{} is {}, expected three numbers", place.where, to_text(v));
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
@@ -40,7 +40,7 @@ Eigen::Vector3d unit_normal(const JsonPlace& place) {
   return io::unit_normal(vector(place), place.where);
 }
 
-json to_json(const Eigen::Vector3d& v) {
+Json to_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -55,7 +55,7 @@ void read_glass(const JsonPlace& place, Port& port) {
 }
 
 template <class Port>
-void write_glass(const Port& port, json& object) {
+void write_glass(const Port& port, Json& object) {
   object["thickness_m"] = port.thickness;
   object["n_air"] = port.n_air;
   object["n_glass"] = port.n_glass;
@@ -93,14 +93,14 @@ refractive::DomePort<double> dome_from_json(const JsonPlace& place) {
   return port;
 }
 
-json as_json(const refractive::FlatPort<double>& port) {
-  json object{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
+Json as_json(const refractive::FlatPort<double>& port) {
+  Json object{{"type", "flat"}, {"distance_m", port.distance}, {"normal", to_json(port.normal)}};
   write_glass(port, object);
   return object;
 }
 
-json as_json(const refractive::DomePort<double>& port) {
-  json object{
+Json as_json(const refractive::DomePort<double>& port) {
+  Json object{
       {"type", "dome"}, {"center_m", to_json(port.centre)}, {"inner_radius_m", port.inner_radius}};
   write_glass(port, object);
   return object;
@@ -185,7 +185,7 @@ refractive::Port<double> port_from_json(const JsonPlace& place, double longest_g
   return port;
 }
 
-json port_to_json(const refractive::Port<double>& port) {
+Json port_to_json(const refractive::Port<double>& port) {
   return std::visit([](const auto& kind) { return as_json(kind); }, port);
 }
 
@@ -208,7 +208,7 @@ WaterSurface water_surface_from_json(const JsonPlace& place) {
   return surface;
 }
 
-json water_surface_to_json(const WaterSurface& surface) {
+Json water_surface_to_json(const WaterSurface& surface) {
   return {{"type", "water-surface"},
           {"normal", to_json(surface.normal)},
           {"point_m", to_json(surface.point)},

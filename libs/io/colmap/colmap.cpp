@@ -19,11 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 template <class T>
 std::vector<T> read_part(const fs::path& folder, const std::string& name, ModelForm form,
                          std::vector<T> (*text)(const fs::path&),
@@ -32,8 +27,8 @@ std::vector<T> read_part(const fs::path& folder, const std::string& name, ModelF
 }
 
 bool has_cameras(const fs::path& folder) {
-  return is_file(part_file(folder, "cameras", ModelForm::text)) ||
-         is_file(part_file(folder, "cameras", ModelForm::binary));
+  return has_part(folder, "cameras", ModelForm::text) ||
+         has_part(folder, "cameras", ModelForm::binary);
 }
 
 bool holds_any_model(const fs::path& folder) {

@@ -17,11 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 3> kParts{"cameras", "images", "points3D"};
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 ModelForm other_than(ModelForm form) {
   return form == ModelForm::text ? ModelForm::binary : ModelForm::text;
 }
@@ -29,8 +24,8 @@ ModelForm other_than(ModelForm form) {
 std::string missing_parts(const fs::path& folder, ModelForm form) {
   std::vector<std::string> missing;
   for (const char* part : kParts)
-    if (const fs::path file = part_file(folder, part, form); !is_file(file))
-      missing.push_back(file.filename().string());
+    if (!has_part(folder, part, form))
+      missing.push_back(part_file(folder, part, form).filename().string());
   return fmt::format("{}", fmt::join(missing, ", "));
 }
 
@@ -86,11 +81,10 @@ bool same_part(const std::vector<T>& a, const std::vector<T>& b) {
                             [](const T* x, const T* y) { return x->id == y->id && same(*x, *y); });
 }
 
-// True if `file` exists and differs from `part` of the model.
+// True if `file` differs from `part` of the model.
 template <class T>
-bool is_rival(const fs::path& file, ModelForm form, const std::vector<T>& part,
-              std::vector<T> (*text)(const fs::path&), std::vector<T> (*binary)(const fs::path&)) {
-  if (!is_file(file)) return false;
+bool differs(const fs::path& file, ModelForm form, const std::vector<T>& part,
+             std::vector<T> (*text)(const fs::path&), std::vector<T> (*binary)(const fs::path&)) {
   try {
     return !same_part((form == ModelForm::text ? text : binary)(file), part);
   } catch (const Error&) {
@@ -109,7 +103,7 @@ struct Rivals {
            std::vector<T> (*binary)(const fs::path&)) {
     const ModelForm other = other_than(read);
     const fs::path file = part_file(folder, name, other);
-    if (!is_rival(file, other, part, text, binary)) return;
+    if (!has_part(folder, name, other) || !differs(file, other, part, text, binary)) return;
     taken.push_back(part_file(folder, name, read).filename().string());
     passed_over.push_back(file.filename().string());
   }
@@ -129,9 +123,14 @@ fs::path part_file(const fs::path& folder, const std::string& part, ModelForm fo
   return folder / (part + (form == ModelForm::text ? ".txt" : ".bin"));
 }
 
+bool has_part(const fs::path& folder, const std::string& part, ModelForm form) {
+  std::error_code ignored;
+  return fs::is_regular_file(part_file(folder, part, form), ignored);
+}
+
 bool holds_model(const fs::path& folder, ModelForm form) {
-  return std::ranges::all_of(
-      kParts, [&](const char* part) { return is_file(part_file(folder, part, form)); });
+  return std::ranges::all_of(kParts,
+                             [&](const char* part) { return has_part(folder, part, form); });
 }
 
 ModelForm model_form(const fs::path& folder) {
@@ -146,7 +145,7 @@ ModelForm cameras_form(const fs::path& folder) {
   for (const ModelForm form : {ModelForm::binary, ModelForm::text})
     if (holds_model(folder, form)) return form;
   for (const ModelForm form : {ModelForm::binary, ModelForm::text})
-    if (is_file(part_file(folder, "cameras", form))) return form;
+    if (has_part(folder, "cameras", form)) return form;
   fail("{}: has neither cameras.txt nor cameras.bin", folder.string());
 }
 

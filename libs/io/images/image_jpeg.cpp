@@ -16,10 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-unsigned byte_at(std::string_view bytes, std::size_t i) {
-  return static_cast<unsigned char>(bytes[i]);
-}
-
 unsigned two_bytes(std::string_view bytes, std::size_t i) {
   return byte_at(bytes, i) << 8 | byte_at(bytes, i + 1);
 }

@@ -14,10 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-unsigned byte_at(std::string_view bytes, std::size_t i) {
-  return static_cast<unsigned char>(bytes[i]);
-}
-
 std::size_t four_bytes(std::string_view bytes, std::size_t i) {
   return std::size_t{byte_at(bytes, i)} << 24 | byte_at(bytes, i + 1) << 16 |
          byte_at(bytes, i + 2) << 8 | byte_at(bytes, i + 3);

@@ -49,7 +49,7 @@ CameraModel read_camera(ByteReader& in, cv::Size image_size) {
   return camera;
 }
 
-Pose read_pose(ByteReader& in) {
+Pose read_map_pose(ByteReader& in) {
   RowMajor r;
   Pose pose;
   in.read(std::span(r.data(), 9), "R");
@@ -127,7 +127,7 @@ DmapHeader parse_dmap_header(ByteReader& in) {
   in.read(std::span(map.ids), "ids");
   map.camera = read_camera(in, image_size);
   if (image_size != size) map.camera = map.camera.resized(size.width, size.height);
-  map.pose = read_pose(in);
+  map.pose = read_map_pose(in);
   return header;
 }
 

@@ -73,41 +73,40 @@ class Skimmer {
   bool good_ = true;
 };
 
-constexpr std::uint64_t kString = 8, kView = 8, kScore = 24, kVector = 12, kColor = 3;
-constexpr std::uint64_t kPose = 12 * 8, kCamera = 9 * 8 + kPose;
+constexpr std::uint64_t kCamera = 9 * 8 + mvs_bytes::kPose;
 
 void count_platforms(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
-  const std::uint64_t platforms = in.count(3 * kString);
+  const std::uint64_t platforms = in.count(3 * mvs_bytes::kLength);
   for (std::uint64_t i = 0; i < platforms && in.good(); ++i) {
     in.array(1);
-    const std::uint64_t cameras = in.count(kString + kCamera);
+    const std::uint64_t cameras = in.count(mvs_bytes::kLength + kCamera);
     for (std::uint64_t k = 0; k < cameras && in.good(); ++k) {
       in.array(1);
       if (version >= 4) in.array(1);
       in.skip(kCamera + (version >= 1 ? 8 : 0));
     }
     counts.cameras += cameras;
-    counts.poses += in.array(kPose);
+    counts.poses += in.array(mvs_bytes::kPose);
   }
 }
 
 void count_images(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
-  counts.images = in.count(kString + 12);
+  counts.images = in.count(mvs_bytes::kLength + 12);
   for (std::uint64_t i = 0; i < counts.images && in.good(); ++i) {
     counts.name_bytes += in.array(1);
     if (version >= 5) counts.name_bytes += in.array(1);
     in.skip(version >= 3 ? 16 : 12);
     if (version < 7) continue;
     in.skip(12);
-    counts.view_scores += in.array(kScore);
+    counts.view_scores += in.array(mvs_bytes::kViewScore);
   }
 }
 
 void count_points(Skimmer& in, MvsCounts& counts) {
-  counts.points = in.count(kVector + 8);
+  counts.points = in.count(mvs_bytes::kVector3f + 8);
   for (std::uint64_t i = 0; i < counts.points && in.good(); ++i) {
-    in.skip(kVector);
-    const std::uint64_t views = in.array(kView);
+    in.skip(mvs_bytes::kVector3f);
+    const std::uint64_t views = in.array(mvs_bytes::kView);
     counts.observations += views;
     counts.pairs += views > 0 ? views * (views - 1) : 0;
     counts.view_list_bytes += heap_bytes(views * sizeof(SparseView));
@@ -127,15 +126,16 @@ std::optional<MvsCounts> count_mvs(const std::filesystem::path& path) {
   count_platforms(in, version, counts);
   count_images(in, version, counts);
   count_points(in, counts);
-  counts.normals = in.array(kVector);
-  counts.colors = in.array(kColor);
+  counts.normals = in.array(mvs_bytes::kVector3f);
+  counts.colors = in.array(mvs_bytes::kColor);
   if (!in.good()) return {};
   return counts;
 }
 
 MvsCounts count_scene(const Scene& scene) {
-  constexpr std::uint64_t kPlatform = 3 * kString + 2 * kString + 8 + kCamera + kPose;
-  constexpr std::uint64_t kImage = 3 * kString + 4 * 4 + 3 * 4;
+  constexpr std::uint64_t kPlatform =
+      3 * mvs_bytes::kLength + 2 * mvs_bytes::kLength + 8 + kCamera + mvs_bytes::kPose;
+  constexpr std::uint64_t kImage = 3 * mvs_bytes::kLength + 4 * 4 + 3 * 4;
   MvsCounts counts;
   counts.cameras = counts.poses = counts.images = scene.images.size();
   counts.points = scene.points.size();
@@ -149,22 +149,24 @@ MvsCounts count_scene(const Scene& scene) {
     counts.observations += point.views.size();
     counts.view_list_bytes += heap_bytes(point.views.size() * sizeof(SparseView));
   }
-  counts.file_bytes = counts.images * (kPlatform + kImage) + counts.name_bytes +
-                      counts.view_scores * kScore + counts.points * (kVector + 8) +
-                      counts.observations * kView + counts.normals * kVector +
-                      counts.colors * kColor + 1000;
+  counts.file_bytes =
+      counts.images * (kPlatform + kImage) + counts.name_bytes +
+      counts.view_scores * mvs_bytes::kViewScore + counts.points * (mvs_bytes::kVector3f + 8) +
+      counts.observations * mvs_bytes::kView + counts.normals * mvs_bytes::kVector3f +
+      counts.colors * mvs_bytes::kColor + 1000;
   return counts;
 }
 
 void MvsCounts::set_view_scores(std::uint64_t number) {
-  file_bytes = file_bytes - kScore * view_scores + kScore * number;
+  file_bytes = file_bytes - mvs_bytes::kViewScore * view_scores + mvs_bytes::kViewScore * number;
   view_scores = number;
 }
 
 std::uint64_t MvsCounts::scene_bytes() const {
   constexpr std::uint64_t kPath = 128;  // working folder before a name, and heap overhead
   return images * (sizeof(SceneImage) + 2 * kPath) + name_bytes + view_scores * sizeof(ViewScore) +
-         points * sizeof(SparsePoint) + view_list_bytes + normals * kVector + colors * kColor;
+         points * sizeof(SparsePoint) + view_list_bytes + normals * mvs_bytes::kVector3f +
+         colors * mvs_bytes::kColor;
 }
 
 // Counts the bytes of the file, and its records in addition to the scene made from them. A list of

@@ -13,17 +13,11 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr std::size_t kString = 8, kCount = 8;
-constexpr std::size_t kPose = 12 * 8;
-constexpr std::size_t kMinCamera = kString + 21 * 8;
-constexpr std::size_t kMinPlatform = kString + 2 * kCount;
-constexpr std::size_t kMinImage = kString + 3 * 4;
-constexpr std::size_t kMinVertex = 3 * 4 + kCount;
-constexpr std::size_t kMinLine = 6 * 4 + kCount;
-constexpr std::size_t kView = 4 + 4;
-constexpr std::size_t kViewScore = 6 * 4;
-constexpr std::size_t kVector3f = 3 * 4;
-constexpr std::size_t kColor = 3;
+constexpr std::size_t kLeastCamera = mvs_bytes::kLength + 21 * 8;
+constexpr std::size_t kLeastPlatform = mvs_bytes::kLength + 2 * mvs_bytes::kLength;
+constexpr std::size_t kLeastImage = mvs_bytes::kLength + 3 * 4;
+constexpr std::size_t kLeastVertex = 3 * 4 + mvs_bytes::kLength;
+constexpr std::size_t kLeastLine = 6 * 4 + mvs_bytes::kLength;
 constexpr std::size_t kTransform = 16 * 8;
 
 Eigen::Matrix3d read_matrix(ByteReader& in, std::string_view field) {
@@ -67,9 +61,9 @@ MvsCamera read_camera(ByteReader& in, std::uint32_t version) {
 MvsPlatform read_platform(ByteReader& in, std::uint32_t version) {
   MvsPlatform platform;
   in.string("platform name");
-  platform.cameras.resize(in.count(kMinCamera, "platform cameras"));
+  platform.cameras.resize(in.count(kLeastCamera, "platform cameras"));
   for (MvsCamera& camera : platform.cameras) camera = read_camera(in, version);
-  platform.poses.resize(in.count(kPose, "platform poses"));
+  platform.poses.resize(in.count(mvs_bytes::kPose, "platform poses"));
   for (MvsPose& pose : platform.poses) pose = read_pose(in);
   return platform;
 }
@@ -97,14 +91,14 @@ MvsImage read_image(ByteReader& in, std::uint32_t version) {
     image.min_depth = in.read<float>("image minDepth");
     image.average_depth = in.read<float>("image avgDepth");
     image.max_depth = in.read<float>("image maxDepth");
-    image.view_scores.resize(in.count(kViewScore, "image viewScores"));
+    image.view_scores.resize(in.count(mvs_bytes::kViewScore, "image viewScores"));
     for (ViewScore& score : image.view_scores) score = read_view_score(in);
   }
   return image;
 }
 
 std::vector<SparseView> read_views(ByteReader& in) {
-  std::vector<SparseView> views(in.count(kView, "views"));
+  std::vector<SparseView> views(in.count(mvs_bytes::kView, "views"));
   for (SparseView& view : views) {
     view.image = in.read<std::uint32_t>("view imageID");
     view.confidence = in.read<float>("view confidence");
@@ -120,13 +114,13 @@ SparsePoint read_vertex(ByteReader& in) {
 }
 
 std::vector<Eigen::Vector3f> read_normals(ByteReader& in, std::string_view field) {
-  std::vector<Eigen::Vector3f> normals(in.count(kVector3f, field));
+  std::vector<Eigen::Vector3f> normals(in.count(mvs_bytes::kVector3f, field));
   for (Eigen::Vector3f& normal : normals) normal = read_vector3f(in, field);
   return normals;
 }
 
 std::vector<Rgb> read_colors(ByteReader& in, std::string_view field) {
-  std::vector<Rgb> colors(in.count(kColor, field));
+  std::vector<Rgb> colors(in.count(mvs_bytes::kColor, field));
   for (Rgb& color : colors) {
     in.read(std::span(color), field);
     std::swap(color[0], color[2]);  // stored blue, green, red
@@ -135,9 +129,9 @@ std::vector<Rgb> read_colors(ByteReader& in, std::string_view field) {
 }
 
 void skip_lines(ByteReader& in) {
-  const std::size_t lines = in.count(kMinLine, "lines");
+  const std::size_t lines = in.count(kLeastLine, "lines");
   for (std::size_t i = 0; i < lines; ++i) {
-    in.take(2 * kVector3f, "line");
+    in.take(2 * mvs_bytes::kVector3f, "line");
     read_views(in);
   }
   read_normals(in, "linesNormal");
@@ -146,11 +140,11 @@ void skip_lines(ByteReader& in) {
 
 MvsFile read_body(ByteReader& in, std::uint32_t version) {
   MvsFile mvs;
-  mvs.platforms.resize(in.count(kMinPlatform, "platforms"));
+  mvs.platforms.resize(in.count(kLeastPlatform, "platforms"));
   for (MvsPlatform& platform : mvs.platforms) platform = read_platform(in, version);
-  mvs.images.resize(in.count(kMinImage, "images"));
+  mvs.images.resize(in.count(kLeastImage, "images"));
   for (MvsImage& image : mvs.images) image = read_image(in, version);
-  mvs.points.resize(in.count(kMinVertex, "vertices"));
+  mvs.points.resize(in.count(kLeastVertex, "vertices"));
   for (SparsePoint& point : mvs.points) point = read_vertex(in);
   mvs.normals = read_normals(in, "verticesNormal");
   mvs.colors = read_colors(in, "verticesColor");

@@ -16,7 +16,8 @@ constexpr const char* kStart = "ply\nformat binary_little_endian 1.0\n";
 constexpr const char* kPosition = "property float32 x\nproperty float32 y\nproperty float32 z\n";
 constexpr const char* kWorldPosition =
     "property float64 x\nproperty float64 y\nproperty float64 z\n";
-constexpr const char* kColor = "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
+constexpr const char* kColorProperties =
+    "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n";
 constexpr const char* kNormal = "property float32 nx\nproperty float32 ny\nproperty float32 nz\n";
 
 void require_length(std::size_t length, std::size_t points, const char* field,
@@ -64,7 +65,7 @@ std::string cloud_header(const CloudLayout& layout, const PlyPlacement& placemen
   std::string header = fmt::format("{}comment AxialMVS{}\n{}element vertex {}\n{}", kStart,
                                    std::string(kMostDigits - count.size(), ' '),
                                    geo_comment(placement), count, position_properties(placement));
-  if (layout.colors) header += kColor;
+  if (layout.colors) header += kColorProperties;
   if (layout.normals) header += kNormal;
   if (layout.views) header += "property list uint8 uint32 view_indices\n";
   if (layout.view_weights) header += "property list uint8 float32 view_weights\n";
@@ -183,7 +184,7 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const Verte
   ByteWriter out;
   out.text(fmt::format("{}{}element vertex {}\n{}", kStart, geo_comment(placement),
                        mesh.vertices.size(), position_properties(placement)));
-  if (!mesh.colors.empty()) out.text(kColor);
+  if (!mesh.colors.empty()) out.text(kColorProperties);
   if (property) out.text(fmt::format("property float32 {}\n", property->name));
   out.text(fmt::format("element face {}\nproperty list uint8 uint32 vertex_indices\nend_header\n",
                        mesh.faces.size()));

@@ -17,6 +17,9 @@ enum class ModelForm { text, binary };
 std::filesystem::path part_file(const std::filesystem::path& folder, const std::string& part,
                                 ModelForm form);
 
+// True if the part's file exists in `form` and is a regular file.
+bool has_part(const std::filesystem::path& folder, const std::string& part, ModelForm form);
+
 // True if the folder holds all three parts in `form`.
 bool holds_model(const std::filesystem::path& folder, ModelForm form);
 

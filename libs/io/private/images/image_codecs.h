@@ -14,6 +14,10 @@
 
 namespace axial::io {
 
+inline unsigned byte_at(std::string_view bytes, std::size_t i) {
+  return static_cast<unsigned char>(bytes[i]);
+}
+
 bool is_jpeg(std::string_view bytes);
 bool is_png(std::string_view bytes);
 bool is_tiff(std::string_view bytes);

@@ -17,6 +17,14 @@ namespace axial::io {
 
 inline constexpr std::uint32_t kMvsVersion = 7;  // the newest known; the one written
 
+// Sizes in the file [bytes]. A string or a list starts with its length.
+namespace mvs_bytes {
+inline constexpr std::size_t kLength = 8, kVector3f = 3 * 4, kColor = 3;
+inline constexpr std::size_t kPose = 12 * 8;      // rotation and centre
+inline constexpr std::size_t kView = 4 + 4;       // of a point: image and confidence
+inline constexpr std::size_t kViewScore = 6 * 4;  // of an image
+}  // namespace mvs_bytes
+
 struct MvsPose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
