@@ -16,8 +16,8 @@ namespace axial::depth {
 // test through a water surface (tests/apps/end_to_end_test.py).
 inline constexpr int kBorderWidth = 3 * kPatchRadius;
 
-// Pixels of a block of kBorderBlock x kBorderBlock pixels share one projection into the source views,
-// which takes most of the time.
+// Pixels of a block of kBorderBlock x kBorderBlock pixels share one projection into the source
+// views, which takes most of the time.
 inline constexpr int kBorderBlock = 4;
 
 // Returns 255 for pixels near borders, 0 elsewhere. A pixel with a depth is near a border if it

@@ -59,7 +59,7 @@ TimedMethod camera_method(const std::string& name, std::size_t points, Camera ca
 }
 
 std::vector<TimedMethod> make_methods(const CameraSetup& setup, int width, int height,
-                                 const TimingOptions& options) {
+                                      const TimingOptions& options) {
   const PinholeLens<float> lens = make_lens(setup, width, height).cast<float>();
   const FlatPort<float> port = make_port(setup).cast<float>();
   const FlatPortCamera<float> exact(lens, port, width, height);
@@ -102,7 +102,8 @@ std::vector<Sample> make_samples(const CameraSetup& setup, int width, int height
   return samples;
 }
 
-void measure_errors(const TimedMethod& method, std::span<const Sample> samples, MethodTime& result) {
+void measure_errors(const TimedMethod& method, std::span<const Sample> samples,
+                    MethodTime& result) {
   double sum = 0;
   for (const Sample& sample : samples) {
     const refractive::Projection<float> image = method.project(sample.point);

@@ -106,8 +106,7 @@ TEST_P(Borders, OneSourceViewAwayFromItsBorderIsEnough) {
       // Near the limit, the first pixel of the block decides.
       const int distance = distance_to_border(x, y, border);
       if (std::abs(distance - kBorderWidth) < kBorderBlock) continue;
-      EXPECT_EQ(border(y, x) != 0, distance < kBorderWidth)
-          << x << " " << y;
+      EXPECT_EQ(border(y, x) != 0, distance < kBorderWidth) << x << " " << y;
     }
 }
 
