@@ -10,7 +10,7 @@ packages=(
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libxxhash-dev libboost-dev libboost-program-options-dev
   # to test
-  clang-format dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
+  clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
   # to run the pipeline
   colmap python3
 )

@@ -102,5 +102,36 @@ class Messages(unittest.TestCase):
                 self.assertIn(part.strip(" :"), source, message)
 
 
+class Headers(unittest.TestCase):
+    """The reference of the headers is made without warnings (docs/Doxyfile)."""
+
+    def made(self, folder, **settings):
+        settings = {"OUTPUT_DIRECTORY": folder, **settings}
+        text = (ROOT / "docs" / "Doxyfile").read_text(encoding="utf-8")
+        text += "".join(f"{name} = {value}\n" for name, value in settings.items())
+        return subprocess.run(["doxygen", "-"], input=text, cwd=ROOT, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def test_every_header_has_a_page_with_its_comments(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = self.made(folder)
+            self.assertEqual((result.returncode, result.stdout), (0, ""))
+            pages = pathlib.Path(folder) / "html"
+            for part in ("refractive", "libs/densify"):
+                for header in (ROOT / part).glob("*.h"):
+                    page = pages / (header.name.replace("_", "__").replace(".", "_8") + ".html")
+                    self.assertTrue(page.is_file(), header)
+            ray = (pages / "structaxial_1_1refractive_1_1AxialRay.html").read_text(encoding="utf-8")
+            self.assertIn("The direction has unit length.", ray)
+
+    def test_a_warning_is_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "page.md"
+            page.write_text("# Page\n\nSee \\ref missing.\n", encoding="utf-8")
+            result = self.made(folder, INPUT=page, USE_MDFILE_AS_MAINPAGE=page)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("missing", result.stdout)
+
+
 if __name__ == "__main__":
     main()
