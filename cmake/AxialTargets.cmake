@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Compiler flags, precompiled headers, and the functions add_axial_library(), add_axial_app() and
-# add_axial_test(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
+# Compiler flags, precompiled headers, and the functions add_axial_library(), add_axial_app(),
+# add_axial_tests() and add_axial_test(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
 
 add_library(axial_flags INTERFACE)
 target_compile_features(axial_flags INTERFACE cxx_std_20)
@@ -78,9 +78,10 @@ function(axial_source_options)
 endfunction()
 
 # Unity builds: the compiler gets several source files of a target as one. Headers and templates are
-# then compiled once for all of them, which halves the compile time. Names in unnamed namespaces
-# must differ between the files of a target. Files that share such names, and files whose speed
-# depends on how the compiler sees them, are declared in APART and are compiled alone.
+# then compiled once for all of them, which halves the compile time. Types and constants in unnamed
+# namespaces must differ between the files of a target; functions may be overloads. Files that share
+# such names, and files whose speed is important, are declared in APART and are compiled alone.
+# Files with compile options of their own (axial_source_options) are compiled alone, too.
 # -DAXIAL_UNITY=OFF compiles every file alone, for an editor and for work on a few files.
 option(AXIAL_UNITY "Compile several source files as one" ON)
 function(axial_unity target)
@@ -96,9 +97,9 @@ if(NOT AXIAL_SANITIZE)
 endif()
 
 # add_axial_library(io SOURCES ply/ply_read.cpp [APART json.cpp] LINK scene opencv_core) adds libs/io
-# as the library axial_io. In LINK, the project's own libraries are written without the prefix axial_. Headers in
-# libs/io/private are for this library alone: they are included as "private/ply/ply_header.h", which
-# only its own files find.
+# as the library axial_io. In LINK, the project's own libraries are written without the prefix
+# axial_. Headers in libs/io/private are for this library alone: they are included as
+# "private/ply/ply_header.h", which only its own files find.
 function(axial_link target)
   foreach(item IN LISTS ARGN)
     if(TARGET axial_${item})
@@ -126,9 +127,9 @@ function(add_axial_library name)
 endfunction()
 
 function(add_axial_app name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
-  axial_unity(${name})
+  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} ${ARG_APART})
+  axial_unity(${name} ${ARG_APART})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/libs)
   target_link_libraries(${name} PRIVATE axial_flags axial_version)
   target_precompile_headers(${name} REUSE_FROM axial_parsed)

@@ -46,13 +46,13 @@ void throw_where_nothing_may(const std::function<void()>& thrower) noexcept {
 
 TEST(OutOfMemoryDeathTest, EndsTheProgramWithOneLineFromEveryThread) {
   const auto ended = testing::ExitedWithCode(1);
-  constexpr const char* kLine = "^[^\n]*out_of_memory_t[^\n]*: out of memory\n$";
-  EXPECT_EXIT(throw_in_a_thread(std::bad_alloc()), ended, kLine);
-  EXPECT_EXIT(throw_in_a_thread(std::runtime_error(kOfOpenCv)), ended, kLine);
+  const std::string line = std::string("^") + program_invocation_short_name + ": out of memory\n$";
+  EXPECT_EXIT(throw_in_a_thread(std::bad_alloc()), ended, line);
+  EXPECT_EXIT(throw_in_a_thread(std::runtime_error(kOfOpenCv)), ended, line);
   EXPECT_EXIT(throw_in_a_thread(std::runtime_error("two\nlines")), ended, ": two lines\n$");
   EXPECT_EXIT(throw_in_a_thread(7), ended, "unknown type\n$");
   report_uncaught_exceptions();
-  EXPECT_EXIT(throw_where_nothing_may([] { throw std::bad_alloc(); }), ended, kLine);
+  EXPECT_EXIT(throw_where_nothing_may([] { throw std::bad_alloc(); }), ended, line);
 }
 
 TEST(OutOfMemory, IsWhatTheProgramSaysWhereverItHappens) {

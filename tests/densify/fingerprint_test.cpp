@@ -2,6 +2,7 @@
 // What the fingerprint of the depth maps depends on.
 #include "densify/fingerprint.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -204,6 +205,16 @@ std::vector<double> numbers(Settings settings) {
   std::vector<double> all;
   each_number(settings, [&](const auto& number) { all.push_back(static_cast<double>(number)); });
   return all;
+}
+
+// A fingerprint contains only the numbers that differ from their defaults. If this test fails,
+// raise the version in fingerprint(), so that maps made with the earlier defaults are not used.
+TEST(FingerprintOfSettings, DefaultsAreThoseOfTheVersion) {
+  const std::vector<double> defaults{
+      1,    2,    64,       0.1,    3,     3.6e-5, 0.002, 4,     2,    2,   0,    0.65,
+      3,    2,    0.488692, 0.594,  0.81,  0.99,   4,     2,     0.15, 1.2, 0.25, 4,
+      0.02, 0.07, 0.226893, 0.0672, 0.007, 100,    7,     0.025, 2,    3,   -1};
+  EXPECT_THAT(numbers({}), testing::Pointwise(testing::DoubleNear(1e-6), defaults));
 }
 
 TEST(FingerprintOfSettings, ChangesWithEachNumber) {

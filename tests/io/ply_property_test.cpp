@@ -5,17 +5,16 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "support/empty_folder.h"
 
 namespace axial::io {
 namespace {
 
 class VertexProperties : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / "axial_ply_property_test";
+  const std::filesystem::path folder_ = test::empty_folder();
   const Mesh mesh_{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}};
 };
 

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kHalf = 0.5;  // COLMAP's pixel centres
 
-std::vector<double> numbers_of(const refractive::FlatPort<double>& port) {
+std::vector<double> parameters_of(const refractive::FlatPort<double>& port) {
   return {port.normal.x(), port.normal.y(), port.normal.z(), port.distance,
           port.thickness,  port.n_air,      port.n_glass,    port.n_water};
 }
 
-std::vector<double> numbers_of(const refractive::DomePort<double>& port) {
+std::vector<double> parameters_of(const refractive::DomePort<double>& port) {
   return {port.centre.x(), port.centre.y(), port.centre.z(), port.inner_radius,
           port.thickness,  port.n_air,      port.n_glass,    port.n_water};
 }
@@ -37,7 +37,7 @@ std::vector<double> key_of(const CameraModel& camera) {
   if (!camera.port) return key;
   key.push_back(static_cast<double>(camera.port->index()));
   const std::vector<double> port =
-      std::visit([](const auto& p) { return numbers_of(p); }, *camera.port);
+      std::visit([](const auto& p) { return parameters_of(p); }, *camera.port);
   key.insert(key.end(), port.begin(), port.end());
   return key;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <jpeglib.h>
+
+#include <cstdio>
 // jerror.h needs jpeglib.h, so it comes second.
 #include <jerror.h>
 
