@@ -64,7 +64,7 @@ double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v)
 }
 
 // The position of a pixel of one map in a source view.
-struct Seen {
+struct SourcePosition {
   double phase;  // fractional part of the true position
   double shift;  // estimated minus true position [px]
 };
@@ -73,8 +73,9 @@ using Ray = refractive::AxialRay<double>;
 
 // Appends the open pixels of row v to `all`. `rays`: the rays of that row.
 template <class Source>
-void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const DepthMap& source_map,
-              const Source& source, std::vector<Seen>& all) {
+void add_source_positions(const PlacedMap& placed, int v, std::span<const Ray> rays,
+                          const DepthMap& source_map, const Source& source,
+                          std::vector<SourcePosition>& all) {
   const Pose &pose = placed.map->pose, &source_pose = source_map.pose;
   const Eigen::Vector2d last(source_map.camera.width - 1, source_map.camera.height - 1);
   for (int u = 0; u < placed.places.width; ++u) {
@@ -97,7 +98,8 @@ void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const D
 }
 
 // Works row by row, so that no code is needed for each pair of camera types.
-void add_seen(const PlacedMap& placed, const DepthMap& source, std::vector<Seen>& all) {
+void add_source_positions(const PlacedMap& placed, const DepthMap& source,
+                          std::vector<SourcePosition>& all) {
   const auto from = make_camera<double>(placed.map->camera),
              to = make_camera<double>(source.camera);
   std::vector<Ray> rays(static_cast<std::size_t>(placed.places.width));
@@ -108,7 +110,9 @@ void add_seen(const PlacedMap& placed, const DepthMap& source, std::vector<Seen>
             rays[static_cast<std::size_t>(u)] = camera.ray({u, v});
         },
         from);
-    std::visit([&](const auto& camera) { add_seen(placed, v, rays, source, camera, all); }, to);
+    std::visit(
+        [&](const auto& camera) { add_source_positions(placed, v, rays, source, camera, all); },
+        to);
   }
 }
 
@@ -180,15 +184,15 @@ std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
 }
 
 std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins) {
-  std::vector<Seen> seen;
+  std::vector<SourcePosition> positions;
   for (const PlacedMap& placed : maps) {
     const DepthMap* source = first_source(placed, maps);
     if (!source) continue;
-    add_seen(placed, *source, seen);
+    add_source_positions(placed, *source, positions);
   }
   const auto count = static_cast<double>(bins);
   std::vector<std::vector<float>> shifts(bins);
-  for (const Seen& pixel : seen)
+  for (const SourcePosition& pixel : positions)
     shifts[std::min(bins - 1, static_cast<std::size_t>(pixel.phase * count))].push_back(
         static_cast<float>(pixel.shift));
   std::vector<PhaseErrors> result(bins);
