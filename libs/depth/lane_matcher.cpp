@@ -158,7 +158,7 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
                                 std::span<const PlaneHypothesis> planes,
                                 std::span<const ScorePair> pairs,
                                 std::span<const SurfacePoint> neighbours,
-                                std::span<ViewScore> scores) const {
+                                std::span<PlaneScore> scores) const {
   const lanes::LanePixel lane = lane_pixel(pixel);
   const lanes::LanePlanes all = lane_planes(planes);
   for (std::size_t g = 0; g < groups_.size(); ++g) {

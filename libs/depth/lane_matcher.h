@@ -35,7 +35,7 @@ class LaneMatcher {
   // See Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
-             std::span<ViewScore> scores) const;
+             std::span<PlaneScore> scores) const;
 
  private:
   // Up to lanes::kLanes source views of one kind of camera.

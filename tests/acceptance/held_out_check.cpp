@@ -123,7 +123,7 @@ int run(char** argv) {
     if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b) < -0.2f)) continue;
     const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
     constexpr std::array<depth::ScorePair, 1> kPair{{{0, 0}}};
-    std::array<depth::ViewScore, 1> score;
+    std::array<depth::PlaneScore, 1> score;
     matcher.score(pixel, {&plane, 1}, kPair, {}, score);
     angles.push_back(std::acos(std::clamp(from_a.dot(from_b), -1.0f, 1.0f)) * 180.0f /
                      std::numbers::pi_v<float>);
