@@ -97,7 +97,7 @@ class FlatPortCamera {
   // The projector, and the frame in which it takes points: transform points with this frame first.
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
-  Frame<T> projector_frame() const {
+  RigidTransform<T> projector_frame() const {
     return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 

@@ -172,7 +172,7 @@ class LensCamera {
 
   using Projector = LensProjector<T, typename Inner::Projector>;
   Projector projector() const { return {lens_, inner_.projector()}; }
-  Frame<T> projector_frame() const { return inner_.projector_frame(); }
+  RigidTransform<T> projector_frame() const { return inner_.projector_frame(); }
 
   // As project() of the inner camera. In addition, a point beyond the lens's field or outside the
   // widened image of the lens is not visible.

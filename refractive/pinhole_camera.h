@@ -92,7 +92,7 @@ class PinholeCamera {
   // The projector and its frame: the camera itself and the camera frame.
   using Projector = PinholeCamera;
   const Projector& projector() const { return *this; }
-  Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
+  RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
   // The image of X [camera frame]. If X is not visible, the result is finite but meaningless.
   PinholeImage<T> image(const Vector3<T>& X) const {

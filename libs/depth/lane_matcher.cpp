@@ -33,11 +33,11 @@ template <class Camera>
 void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
               bool with_depths) {
   const lanes::CameraFields fields = projector_of(source.camera);
-  const refractive::Frame<float> frame =
+  const refractive::RigidTransform<float> to_projector =
       visit_kind(source.camera, [](const auto& kind) { return kind.projector_frame(); });
-  const Eigen::Matrix3f rotation = frame.rotation * source.from_reference.rotation;
+  const Eigen::Matrix3f rotation = to_projector.rotation * source.from_reference.rotation;
   const Eigen::Vector3f translation =
-      frame.rotation * source.from_reference.translation + frame.translation;
+      to_projector.rotation * source.from_reference.translation + to_projector.translation;
   for (std::size_t k = 0; k < fields.value.size(); ++k) tables.projector[k][view] = fields.value[k];
   tables.steps = std::max(tables.steps, fields.steps);
   for (std::size_t k = 0; k < 9; ++k)
