@@ -109,7 +109,7 @@ class DomePortCamera {
                         Vector3<T>* origin = nullptr) const {
     const DomePortImage<T> image = projector_.image(X);
     if (jacobian)
-      for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(Vector3<T>::Unit(k));
+      for (int k = 0; k < 3; ++k) jacobian->col(k) = image.pixel_motion(Vector3<T>::Unit(k));
     if (origin) *origin = image.origin();
     return image.projection;
   }

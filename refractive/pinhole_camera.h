@@ -40,7 +40,7 @@ struct PinholeImage {
   Vector3<T> origin() const { return {T(0), T(0), T(0)}; }
 
   // First-order motion of the pixel [px] when the point moves by `step` [m].
-  Vector2<T> moved(const Vector3<T>& step) const {
+  Vector2<T> pixel_motion(const Vector3<T>& step) const {
     return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
 

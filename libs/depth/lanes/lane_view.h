@@ -72,7 +72,7 @@ class LaneView {
         refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal);
     const Image image = views.projector->image(point);
     for (int k = 0; k < 2; ++k) {
-      const refractive::Vector2<T> column = image.moved(slide.col(k));
+      const refractive::Vector2<T> column = image.pixel_motion(slide.col(k));
       for (int i = 0; i < 2; ++i)
         column(i).store(projected.warp[static_cast<std::size_t>(2 * i + k)].data() + first);
     }
@@ -85,7 +85,7 @@ class LaneView {
       term =
           inconsistency(pixel, ray, planes.depth, pairs.view.data() + first, views, point, image);
     term.store(projected.inconsistency.data() + first);
-    const refractive::Vector2<T> motion = image.moved(views.rotation * ray.direction);
+    const refractive::Vector2<T> motion = image.pixel_motion(views.rotation * ray.direction);
     select(image.projection.visible, sqrt(motion.dot(motion)), T(0))
         .store(scores.motion.data() + first);
   }
