@@ -251,7 +251,7 @@ void write_ports(const Options& options, const Input& input, const io::ColmapImp
            scene.images.size());
 }
 
-void write_lenses(const Options& options, const io::Lenses& lenses, const Scene& scene,
+void write_lenses(const Options& options, const io::SceneLenses& lenses, const Scene& scene,
                   bool behind_ports) {
   io::write_lenses_beside(options.scene_file, lenses, behind_ports);
   if (const std::size_t distorted = count_distorted(scene))
@@ -285,7 +285,7 @@ int import_model(const Options& options) {
                                 undistort};
   Scene scene = io::import_colmap_scene(input.model, import, console_progress("Undistorted images"),
                                         progress_of_many("Prepared cameras"));
-  const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
+  const io::SceneLenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing is written first: a scene without its housing would be read as dry.
   write_ports(options, input, import, scene);
   write_lenses(options, lenses, scene, behind_ports);
