@@ -16,7 +16,7 @@
 #include "evaluate/sampling.h"
 #include "evaluate/strip.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/colmap/colmap_scene.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"

@@ -13,7 +13,7 @@
 #include "base/unused_input.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
 #include "options.h"
