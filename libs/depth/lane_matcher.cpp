@@ -141,8 +141,8 @@ LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
     for (std::size_t first = 0; first < views.size(); first += kLanes) {
       std::vector<const SourceView<Camera>*> members;
       for (std::size_t k = first; k < std::min(first + kLanes, views.size()); ++k) {
-        places_.at(views[k]) = {static_cast<std::uint8_t>(groups_.size()),
-                                static_cast<std::uint8_t>(k - first)};
+        lane_of_view_.at(views[k]) = {static_cast<std::uint8_t>(groups_.size()),
+                                      static_cast<std::uint8_t>(k - first)};
         members.push_back(&sources[views[k]]);
       }
       Group group;
@@ -177,10 +177,10 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
         scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
     };
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Place place = places_[pairs[i].view];
-      if (place.group != g) continue;
+      const LaneOfView of_view = lane_of_view_[pairs[i].view];
+      if (of_view.group != g) continue;
       batch.plane[count] = pairs[i].plane;
-      batch.view[count] = place.lane;
+      batch.view[count] = of_view.lane;
       target[count++] = i;
       if (count == kLanes) run();
     }

@@ -46,8 +46,8 @@ Json evaluated(const Chain& chain, const std::filesystem::path& dense, const Sim
 // "within", the share of pixels within the tolerance; "completeness", the share of pixels with a
 // truth. "rings" around the image centre have "inner", "outer", "count" and the "median" of the
 // signed error as a fraction of the true distance. "places" have "place", "truths", "pixels",
-// "gross", "mean" and "median"; "phases" have "begin", "end", "count" and "shift" (depth_places.h).
-// Error if a map, its truth or its photograph cannot be read.
+// "gross", "mean" and "median"; "phases" have "begin", "end", "count" and "shift"
+// (pixel_classes.h). Error if a map, its truth or its photograph cannot be read.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);
 
