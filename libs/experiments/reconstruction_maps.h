@@ -24,7 +24,8 @@ std::string maps_table(const Json& results, const Seeds& seeds);
 // Errors by the class of a pixel (pixel_classes.h).
 std::string places_table(const Json& results, const Seeds& seeds);
 
-// Shifts in the source view by the true image's position within its pixel.
+// Shifts of points' images in a source view (PhaseErrors), by the fractional part of their true
+// position [px].
 std::string phases_table(const Json& results, const Seeds& seeds);
 
 // Signed errors in rings around the image centre.
