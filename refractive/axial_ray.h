@@ -10,11 +10,11 @@
 //
 // The SIMD code also needs
 //
-//     void             each_field(visit)            calls visit(number) for all numbers of the
+//     void               each_field(visit)          calls visit(number) for all numbers of the
 //                                                   camera in a fixed order
-//     Projector        projector()                  has each_field(visit), too
-//     Frame<T>         projector_frame()            from the camera frame to the projector's frame
-//     Image            projector().image(X)         of a point X in the projector's frame: its
+//     Projector          projector()                has each_field(visit), too
+//     RigidTransform<T>  projector_frame()          from the camera frame to the projector's frame
+//     Image              projector().image(X)       of a point X in the projector's frame: its
 //                                                   projection, the derivative of the pixel by X,
 //                                                   and the origin of the ray through X
 //
@@ -60,7 +60,7 @@ struct AxialRayJacobian {
 
 // x' = rotation * x + translation.
 template <class T>
-struct Frame {
+struct RigidTransform {
   Matrix3<T> rotation;
   Vector3<T> translation;
 };

@@ -99,7 +99,7 @@ class DomePortCamera {
   // The projector, and the frame in which it takes points: the camera frame.
   using Projector = DomePortProjector<T>;
   const Projector& projector() const { return projector_; }
-  Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
+  RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
   // Exact forward projection of X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of
   // the ray through X, which is its virtual centre C_v. X is not visible if it is inside the dome,
@@ -109,7 +109,7 @@ class DomePortCamera {
                         Vector3<T>* origin = nullptr) const {
     const DomePortImage<T> image = projector_.image(X);
     if (jacobian)
-      for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(Vector3<T>::Unit(k));
+      for (int k = 0; k < 3; ++k) jacobian->col(k) = image.pixel_motion(Vector3<T>::Unit(k));
     if (origin) *origin = image.origin();
     return image.projection;
   }

@@ -30,11 +30,11 @@ struct DomePortImage {
   Vector3<T> origin() const { return origin_share * centre; }
 
   // First-order motion of the pixel [px] when the point moves by `step` [m].
-  Vector2<T> moved(const Vector3<T>& step) const {
+  Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T along = towards.dot(step);
     const Vector3<T> turn = inv_range * (step - along * towards);
     const T zeta = zeta_by_cosine * centre.dot(turn) - zeta_by_inv_range * along;
-    return in_air.moved(turn - zeta * centre);
+    return in_air.pixel_motion(turn - zeta * centre);
   }
 
   Vector3<T> towards, centre;  // d and C

@@ -97,7 +97,7 @@ class FlatPortCamera {
   // The projector, and the frame in which it takes points: transform points with this frame first.
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
-  Frame<T> projector_frame() const {
+  RigidTransform<T> projector_frame() const {
     return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 
@@ -172,7 +172,7 @@ Projection<T> FlatPortCamera<T>::project(const Vector3<T>& X, Matrix23<T>* jacob
   in_port.z() -= optics_.outer();
   const FlatPortImage<T> image = projector_.image(in_port);
   if (jacobian)
-    for (int k = 0; k < 3; ++k) jacobian->col(k) = image.moved(rotation_to_axis_.col(k));
+    for (int k = 0; k < 3; ++k) jacobian->col(k) = image.pixel_motion(rotation_to_axis_.col(k));
   if (origin) *origin = (image.origin_height + optics_.outer()) * port_.normal;
   return image.projection;
 }

@@ -60,7 +60,7 @@ struct FlatPortImage {
   // is (x t/rho, y t/rho, 1). A motion of the point across the radius changes the direction by
   // t/rho times the motion, a motion along the radius by dt/d(rho) times the motion, and a motion
   // upwards turns it towards the axis.
-  Vector2<T> moved(const Vector3<T>& step) const {
+  Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();
     const T outwards = stretch * radial - sink * step.z();
     return lens *

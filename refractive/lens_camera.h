@@ -22,7 +22,9 @@ struct LensImage {
   Vector3<T> origin() const { return inner.origin(); }
 
   // First-order motion of the pixel [px] when the point moves by `step` [m].
-  Vector2<T> moved(const Vector3<T>& step) const { return by_tangents * inner.moved(step); }
+  Vector2<T> pixel_motion(const Vector3<T>& step) const {
+    return by_tangents * inner.pixel_motion(step);
+  }
 
   InnerImage inner;        // the inner camera's image, in tangents
   Matrix2<T> by_tangents;  // d(pixel)/d(tangents)
@@ -172,7 +174,7 @@ class LensCamera {
 
   using Projector = LensProjector<T, typename Inner::Projector>;
   Projector projector() const { return {lens_, inner_.projector()}; }
-  Frame<T> projector_frame() const { return inner_.projector_frame(); }
+  RigidTransform<T> projector_frame() const { return inner_.projector_frame(); }
 
   // As project() of the inner camera. In addition, a point beyond the lens's field or outside the
   // widened image of the lens is not visible.

@@ -40,7 +40,7 @@ struct PinholeImage {
   Vector3<T> origin() const { return {T(0), T(0), T(0)}; }
 
   // First-order motion of the pixel [px] when the point moves by `step` [m].
-  Vector2<T> moved(const Vector3<T>& step) const {
+  Vector2<T> pixel_motion(const Vector3<T>& step) const {
     return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
 
@@ -92,7 +92,7 @@ class PinholeCamera {
   // The projector and its frame: the camera itself and the camera frame.
   using Projector = PinholeCamera;
   const Projector& projector() const { return *this; }
-  Frame<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
+  RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
   // The image of X [camera frame]. If X is not visible, the result is finite but meaningless.
   PinholeImage<T> image(const Vector3<T>& X) const {

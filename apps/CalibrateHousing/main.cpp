@@ -8,7 +8,7 @@
 #include "calibrate/photographs.h"
 #include "io/cameras/calibmar.h"
 #include "io/cameras/housing.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "options.h"
 #include "report.h"
 

@@ -42,7 +42,7 @@ std::string export_that_is_made(const Settings& settings) {
   return settings.export_number_views != 0 ? "export-number-views" : "estimate-scale";
 }
 
-void warn_of_rival_exports(const Options& options) {
+void warn_of_options_an_export_ignores(const Options& options) {
   const std::string made = export_that_is_made(options.settings);
   const std::string with = "with --" + made + ", which writes existing points";
   if (made == "filter-point-cloud")
@@ -58,7 +58,7 @@ void warn_of_options_without_effect(const Options& options) {
   const Settings& settings = options.settings;
   if (settings.camera == densify::CameraChoice::pinhole)
     warn_of(options, {"housing"}, "with --camera-model pinhole");
-  if (only_exports(settings)) return warn_of_rival_exports(options);
+  if (only_exports(settings)) return warn_of_options_an_export_ignores(options);
   if (!settings.neighbour_lists_output.empty()) {
     for (const Names& names : {kMatching, kFusion})
       warn_of(options, names, "with --output-view-neighbors-file, which matches no images");

@@ -29,14 +29,15 @@ Json told(const Part& part) {
 
 }  // namespace
 
-evaluate::PointWorth read_worth(const std::filesystem::path& path, const PointCloud& cloud) {
-  evaluate::PointWorth worth;
-  worth.error = io::read_vertex_property(path, "error");
-  worth.confidence = io::read_vertex_property(path, "confidence");
+evaluate::PointUncertainty read_uncertainty(const std::filesystem::path& path,
+                                            const PointCloud& cloud) {
+  evaluate::PointUncertainty uncertainty;
+  uncertainty.error = io::read_vertex_property(path, "error");
+  uncertainty.confidence = io::read_vertex_property(path, "confidence");
   if (!cloud.view_begin.empty())
     for (std::size_t i = 0; i < cloud.size(); ++i)
-      worth.views.push_back(static_cast<std::uint32_t>(cloud.views_of(i).size()));
-  return worth;
+      uncertainty.views.push_back(static_cast<std::uint32_t>(cloud.views_of(i).size()));
+  return uncertainty;
 }
 
 Json report_parts(const Options& options, const Evaluated& e) {
@@ -49,11 +50,12 @@ Json report_parts(const Options& options, const Evaluated& e) {
                                         e.truth, e.surface, thickness, e.views),
           options.tolerances);
   }
-  if (!e.worth.views.empty())
-    report["points_by_views"] = told(evaluate::errors_by_views(e.worth.views, e.whole.distances,
-                                                               options.tolerances, e.whole.gross),
-                                     options.tolerances);
-  if (const auto calibration = evaluate::calibration_of(e.worth, e.whole.distances))
+  if (!e.uncertainty.views.empty())
+    report["points_by_views"] =
+        told(evaluate::errors_by_views(e.uncertainty.views, e.whole.distances, options.tolerances,
+                                       e.whole.gross),
+             options.tolerances);
+  if (const auto calibration = evaluate::calibration_of(e.uncertainty, e.whole.distances))
     report["calibration"] = told(*calibration);
   if (options.strip)
     report["strip"] = told(evaluate::density_along_strip(e.points, e.whole.places, e.views));

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "evaluate/cloud_evaluation.h"
-#include "evaluate/point_worth.h"
+#include "evaluate/point_uncertainty.h"
 #include "options.h"
 #include "scene/point_cloud.h"
 
@@ -13,11 +13,12 @@ namespace axial::apps {
 
 // The properties of the points of the cloud in `path`: numbers of views from its view lists, and
 // the vertex properties `error` and `confidence`.
-evaluate::PointWorth read_worth(const std::filesystem::path& path, const PointCloud& cloud);
+evaluate::PointUncertainty read_uncertainty(const std::filesystem::path& path,
+                                            const PointCloud& cloud);
 
 struct Evaluated {
   std::span<const Eigen::Vector3f> points;
-  const evaluate::PointWorth& worth;  // of these points
+  const evaluate::PointUncertainty& uncertainty;  // of these points
   const Mesh& truth;
   const evaluate::Surface& surface;
   std::span<const evaluate::View> views;

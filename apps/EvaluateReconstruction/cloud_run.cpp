@@ -16,7 +16,7 @@
 #include "evaluate/sampling.h"
 #include "evaluate/strip.h"
 #include "io/cameras/geo_offset.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/colmap/colmap_scene.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
@@ -41,7 +41,7 @@ auto naming(const fs::path& file, Action action) {
 // The reconstruction: a mesh if the file has faces, else a cloud.
 struct Input {
   PointCloud cloud;
-  evaluate::PointWorth worth;  // of the cloud's points
+  evaluate::PointUncertainty uncertainty;  // of the cloud's points
   std::optional<Mesh> mesh;
 
   std::span<const Eigen::Vector3f> positions() const {
@@ -103,7 +103,7 @@ Input read_input(const fs::path& path, const LocalFrame& frame) {
     input.mesh = io::read_mesh_ply(path, frame);
   else
     input.cloud = io::read_cloud_ply(path, frame);
-  if (!input.mesh) input.worth = read_worth(path, input.cloud);
+  if (!input.mesh) input.uncertainty = read_uncertainty(path, input.cloud);
   if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
   return input;
 }
@@ -217,9 +217,9 @@ PointCloud counted_points(const Options& options, Input& input,
     keep.push_back(frames >= options.least_views);
   keep_only(counted.positions, keep);
   keep_only(counted.normals, keep);
-  keep_only(input.worth.views, keep);
-  keep_only(input.worth.error, keep);
-  keep_only(input.worth.confidence, keep);
+  keep_only(input.uncertainty.views, keep);
+  keep_only(input.uncertainty.error, keep);
+  keep_only(input.uncertainty.confidence, keep);
   if (counted.positions.empty())
     fail("{}: no point lies in enough of the images", options.input.string());
   return counted;
@@ -295,7 +295,8 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
   report.update(naming(options.input, [&] {
-    return report_parts(options, {colored.positions, input.worth, truth, surface, views, result});
+    return report_parts(options,
+                        {colored.positions, input.uncertainty, truth, surface, views, result});
   }));
   return report;
 }

@@ -13,7 +13,7 @@
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_export.h"
 #include "io/colmap/colmap_scene.h"
@@ -94,12 +94,13 @@ void check_outputs(const Options& options, const fs::path& model_folder,
 void say_image_folder(const Options& options, const io::ColmapModel& model) {
   std::error_code error;
   const fs::path& other = options.other_image_folder;
-  const bool rival = !other.empty() && !model.images.empty() &&
-                     fs::exists(other / model.images.front().name, error) &&
-                     !fs::equivalent(other, options.image_folder, error);
-  log_info(
-      "Images in {}{}", options.image_folder.string(),
-      rival ? ", not in " + other.string() + ", which also contains images with these names" : "");
+  const bool other_has_images = !other.empty() && !model.images.empty() &&
+                                fs::exists(other / model.images.front().name, error) &&
+                                !fs::equivalent(other, options.image_folder, error);
+  log_info("Images in {}{}", options.image_folder.string(),
+           other_has_images
+               ? ", not in " + other.string() + ", which also contains images with these names"
+               : "");
 }
 
 // Few cameras take no time: shows no progress for them.
@@ -251,7 +252,7 @@ void write_ports(const Options& options, const Input& input, const io::ColmapImp
            scene.images.size());
 }
 
-void write_lenses(const Options& options, const io::Lenses& lenses, const Scene& scene,
+void write_lenses(const Options& options, const io::SceneLenses& lenses, const Scene& scene,
                   bool behind_ports) {
   io::write_lenses_beside(options.scene_file, lenses, behind_ports);
   if (const std::size_t distorted = count_distorted(scene))
@@ -285,7 +286,7 @@ int import_model(const Options& options) {
                                 undistort};
   Scene scene = io::import_colmap_scene(input.model, import, console_progress("Undistorted images"),
                                         progress_of_many("Prepared cameras"));
-  const io::Lenses lenses = io::lenses_of(scene, options.scene_file);
+  const io::SceneLenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing is written first: a scene without its housing would be read as dry.
   write_ports(options, input, import, scene);
   write_lenses(options, lenses, scene, behind_ports);

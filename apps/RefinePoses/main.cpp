@@ -13,7 +13,7 @@
 #include "base/unused_input.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/colmap/colmap.h"
 #include "io/colmap/colmap_scene.h"
 #include "options.h"
@@ -29,20 +29,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Lenses = std::vector<io::ColmapCamera>;
+using LensesInAir = std::vector<io::ColmapCamera>;
 
 // The lenses in air: from the file, or from the model if its cameras carry ports.
-Lenses load_lenses(const Options& options, const io::ColmapModel& model) {
+LensesInAir load_lenses(const Options& options, const io::ColmapModel& model) {
   if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
     fail("--lens is missing: the lens calibrated in air");
-  const Lenses lenses =
+  const LensesInAir lenses =
       options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
   if (lenses.empty()) fail("{}: no camera", options.lens.string());
   return lenses;
 }
 
-pose::ColmapBundle load(const Options& options, const io::ColmapModel& model, const Lenses& lenses,
-                        const io::Housing& housing) {
+pose::ColmapBundle load(const Options& options, const io::ColmapModel& model,
+                        const LensesInAir& lenses, const io::Housing& housing) {
   try {
     return pose::to_bundle(model, lenses, housing);
   } catch (const Error& error) {
@@ -51,7 +51,7 @@ pose::ColmapBundle load(const Options& options, const io::ColmapModel& model, co
 }
 
 // The ports of the lenses' file, and of the model's cameras where the lenses have none.
-io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) {
+io::Housing carried_housing(const io::ColmapModel& model, const LensesInAir& lenses) {
   // A single lens applies to all cameras, whatever its id.
   if (lenses.size() == 1 && lenses.front().port)
     return io::housing_with(io::to_housing_port(*lenses.front().port));
@@ -65,7 +65,7 @@ io::Housing carried_housing(const io::ColmapModel& model, const Lenses& lenses) 
 // The housing file, or the carried ports without one. Warns if carried ports that are not used
 // differ.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
-                         const Lenses& lenses) {
+                         const LensesInAir& lenses) {
   const io::Housing carried = carried_housing(model, lenses);
   const std::string of_model = "the model in " + options.model.string();
   const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
@@ -112,7 +112,7 @@ bool same_lens(const io::ColmapCamera& a, const io::ColmapCamera& b) {
 // A model's camera with a port has its lens in air, too. Warns if that lens is not used and
 // differs.
 void warn_of_other_lenses(const Options& options, const io::ColmapModel& model,
-                          const Lenses& lenses) {
+                          const LensesInAir& lenses) {
   for (const io::ColmapCamera& camera : model.cameras) {
     const auto lens = std::ranges::find_if(lenses, [&](const io::ColmapCamera& candidate) {
       return lenses.size() == 1 || candidate.id == camera.id;
@@ -238,7 +238,7 @@ struct Input {
   fs::path folder;  // of the model
   io::ColmapModel model;
   LocalFrame frame;  // of the model
-  Lenses lenses;
+  LensesInAir lenses;
   io::Housing housing;
 };
 

@@ -17,8 +17,8 @@ namespace axial::apps {
 //     positions:FILE            camera centres, a file of io::read_positions; at least three, and
 //                               not all on one line
 //
-// A NAME with commas must be in double quotes, with "" for a quote, unless the model's names leave
-// only one way to read the list.
+// A NAME that contains a comma must be written in double quotes, and a double quote in it as "".
+// The quotes may be left out if the list can be read in only one way, given the names of the model.
 //
 // Error that names the option or file, and the mistake. Input that is valid but cannot be used with
 // this model (no such image or point, both ends in one place, too few positions, or all on one

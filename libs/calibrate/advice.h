@@ -21,14 +21,14 @@ struct Limits {
   double thickness = 0.002;  // [m]
 };
 
-// What the photographs lack, in words: corners near each edge of the image, a tilted board, boards
-// at two distances. Empty if nothing is missing.
+// The gaps of the photographs, as texts that continue "no photograph shows": corners near an edge
+// of the image, a tilted board, a second distance. Empty without gaps.
 std::vector<std::string> gaps(const Calibration& calibration);
 
 // The most useful next photograph: of placed_boards(), the one with which the largest ratio of a
-// standard deviation to its limit is smallest. Boards are at least four fifths as far away as the
-// nearest board so far, since nearer boards may be out of focus. Empty if no board fits into the
-// image.
+// standard deviation to its limit is smallest. No board is closer than 0.8 times the distance
+// of the nearest board in the photographs, since closer boards may be out of focus. Empty if no
+// board fits into the image.
 struct NextPhotograph {
   PlacedBoard board;
   pose::HousingChange<double> sigmas;  // standard deviations with this photograph added
@@ -36,7 +36,7 @@ struct NextPhotograph {
 std::optional<NextPhotograph> next_photograph(const Calibration& calibration, const Limits& limits);
 
 // Error if a number has a standard deviation above its limit. The message names the number, its
-// standard deviation, what the photographs lack, and the next photograph to take.
+// standard deviation, the gaps of the photographs, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
 // The place of the board in one image.

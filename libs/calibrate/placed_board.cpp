@@ -25,9 +25,9 @@ Box box_of(std::span<const Corner> corners) {
 }
 
 // Places the board in front of the camera of a bundle.
-class Photographer {
+class BoardPlacer {
  public:
-  Photographer(const pose::ColmapBundle& bundle, std::span<const Eigen::Vector3d> corners)
+  BoardPlacer(const pose::ColmapBundle& bundle, std::span<const Eigen::Vector3d> corners)
       : bundle_(bundle), corners_(corners), camera_(bundle.bundle.cameras[0].now()) {
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& corner : corners) box.extend(corner);
@@ -117,7 +117,7 @@ std::string side_of(const PlacedBoard& placed) {
 std::vector<PlacedBoard> placed_boards(const pose::ColmapBundle& bundle,
                                        std::span<const Eigen::Vector3d> corners,
                                        double least_distance) {
-  const Photographer photographer(bundle, corners);
+  const BoardPlacer placer(bundle, corners);
   constexpr std::array<std::pair<int, int>, 5> kTurns{{{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   std::vector<PlacedBoard> boards;
   for (const double share : {0.8, 0.4})
@@ -125,8 +125,8 @@ std::vector<PlacedBoard> placed_boards(const pose::ColmapBundle& bundle,
       for (int row = -1; row <= 1; ++row)
         for (int column = -1; column <= 1; ++column) {
           PlacedBoard placed{column, row, 0, turned, tipped, {}, {}};
-          placed.distance = std::max(least_distance, photographer.distance_for(share));
-          if (photographer.place(placed)) boards.push_back(std::move(placed));
+          placed.distance = std::max(least_distance, placer.distance_for(share));
+          if (placer.place(placed)) boards.push_back(std::move(placed));
         }
   return boards;
 }

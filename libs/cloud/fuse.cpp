@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "cloud/fusion_map.h"
 #include "cloud/map_store.h"
-#include "cloud/portion.h"
+#include "cloud/view_fusion.h"
 
 namespace axial::cloud {
 namespace {
@@ -132,12 +132,12 @@ void Fusion::fuse_view(std::size_t reference, const MapStore& store, const Cloud
                              static_cast<double>(store.map(slot).depth.cols);
     views.push_back({slots_[slot].image, &store.map(slot), &slots_[slot].taken, reduction});
   }
-  Portion portion(views);
+  ViewFusion fusion(views);
   for (std::size_t pixel = 0; pixel < store.map(reference).pixels();) {
-    pixel = portion.collect(pixel);
-    portion.ask(options_);
-    portion.accept(min_views_);
-    if (portion.size() > 0) sink(portion.points(options_));
+    pixel = fusion.collect(pixel);
+    fusion.compare(options_);
+    fusion.accept(min_views_);
+    if (fusion.size() > 0) sink(fusion.points(options_));
   }
 }
 

@@ -49,13 +49,13 @@ struct Surroundings {
   // It is large where there is little texture. 0: unknown.
   double noise = 0;
 };
-// Measures them around `pixel`. `reduction`: the width of the photograph divided by the width of
-// the map. The noise is unknown for a map without colours.
+// Measures the surroundings of `pixel`. `reduction`: the width of the photograph divided by the
+// width of the map. The noise is unknown for a map without colours.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
-// Standard deviation [m per px] along the unit vector `normal` of the point triangulated from the
-// supports' pixels, if both coordinates of each pixel have independent errors of 1 px. For parallel
-// rays the result is bounded by the mean depth.
+// The standard deviation of a triangulated point along the unit vector `normal` [m per px]. The
+// point is triangulated from the supports' pixels; both coordinates of each pixel have independent
+// errors of 1 px. The result is at most the mean depth, also for parallel rays.
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
 struct PointError {

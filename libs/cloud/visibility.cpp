@@ -10,19 +10,19 @@
 namespace axial::cloud {
 namespace {
 
-// A point in one image.
-struct Seen {
+// The projection of a point into one image.
+struct ProjectedPoint {
   std::uint32_t point = 0;
   double u = 0, v = 0;  // [px]
   double depth = 0;     // along its ray
   bool asks = false;    // the image is one of the point's views
 };
 
-// All points inside the image, sorted by pixel. The points of cell c are seen[i] for i in
+// All points inside the image, sorted by pixel. The points of cell c are points[i] for i in
 // [first[c], first[c + 1]).
 struct Cells {
   int width = 0, height = 0;
-  std::vector<Seen> seen;
+  std::vector<ProjectedPoint> points;
   std::vector<std::size_t> first;
 
   std::size_t cell(int x, int y) const {
@@ -36,15 +36,17 @@ int nearest(double x) {
 }
 
 // Sorts the points into cells of one pixel. Within a cell they keep their order.
-Cells sorted_into_cells(std::vector<Seen> seen, int width, int height) {
+Cells sorted_into_cells(std::vector<ProjectedPoint> points, int width, int height) {
   Cells cells{width, height, {}, {}};
-  const auto cell_of = [&](const Seen& s) { return cells.cell(nearest(s.u), nearest(s.v)); };
+  const auto cell_of = [&](const ProjectedPoint& p) {
+    return cells.cell(nearest(p.u), nearest(p.v));
+  };
   cells.first.assign(cells.cell(0, height) + 1, 0);
-  for (const Seen& s : seen) ++cells.first[cell_of(s) + 1];
+  for (const ProjectedPoint& p : points) ++cells.first[cell_of(p) + 1];
   for (std::size_t c = 1; c < cells.first.size(); ++c) cells.first[c] += cells.first[c - 1];
-  cells.seen.resize(seen.size());
+  cells.points.resize(points.size());
   std::vector<std::size_t> next(cells.first.begin(), cells.first.end() - 1);
-  for (const Seen& s : seen) cells.seen[next[cell_of(s)]++] = s;
+  for (const ProjectedPoint& p : points) cells.points[next[cell_of(p)]++] = p;
   return cells;
 }
 
@@ -67,7 +69,7 @@ Cells project_all(const Scene& scene, const SceneImage& image,
                   const std::vector<std::uint32_t>& own) {
   std::vector<bool> asks(scene.points.size(), false);
   for (const std::uint32_t point : own) asks[point] = true;
-  std::vector<Seen> seen;
+  std::vector<ProjectedPoint> points;
   const int width = image.camera.width, height = image.camera.height;
   std::visit(
       [&](const auto& camera) {
@@ -79,11 +81,11 @@ Cells project_all(const Scene& scene, const SceneImage& image,
           if (!(u > -0.5 && v > -0.5 && u < width - 0.5 && v < height - 0.5)) continue;
           const auto ray = camera.ray(projection.pixel);
           const double depth = (X - ray.origin).dot(ray.direction);
-          seen.push_back({static_cast<std::uint32_t>(i), u, v, depth, asks[i]});
+          points.push_back({static_cast<std::uint32_t>(i), u, v, depth, asks[i]});
         }
       },
       make_camera<double>(image.camera));
-  return sorted_into_cells(std::move(seen), width, height);
+  return sorted_into_cells(std::move(points), width, height);
 }
 
 // Calls visit(p, q) for every point p that has a view in this image, and every other point q in the
@@ -91,14 +93,14 @@ Cells project_all(const Scene& scene, const SceneImage& image,
 template <class Visit>
 void for_each_in_cone(const Cells& cells, const Visit& visit) {
   constexpr double kHalfPixel = 0.5;
-  for (const Seen& p : cells.seen) {
+  for (const ProjectedPoint& p : cells.points) {
     if (!p.asks) continue;
     const int x = nearest(p.u), y = nearest(p.v);
     for (int cy = std::max(y - 1, 0); cy <= std::min(y + 1, cells.height - 1); ++cy)
       for (int cx = std::max(x - 1, 0); cx <= std::min(x + 1, cells.width - 1); ++cx)
         for (std::size_t k = cells.first[cells.cell(cx, cy)];
              k < cells.first[cells.cell(cx, cy) + 1]; ++k) {
-          const Seen& q = cells.seen[k];
+          const ProjectedPoint& q = cells.points[k];
           if (q.point != p.point && std::hypot(q.u - p.u, q.v - p.v) <= kHalfPixel) visit(p, q);
         }
   }
@@ -109,14 +111,14 @@ void for_each_in_cone(const Cells& cells, const Visit& visit) {
 std::vector<long> visibility_of_points(const Scene& scene) {
   constexpr double kSame = 0.01;
   std::vector<long> visibility(scene.points.size(), 0);
-  const auto views = [&](const Seen& s) {
-    return static_cast<long>(scene.points[s.point].views.size());
+  const auto views = [&](const ProjectedPoint& p) {
+    return static_cast<long>(scene.points[p.point].views.size());
   };
   const auto points = points_of_images(scene);
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     if (!scene.images[i].calibrated || points[i].empty()) continue;
     for_each_in_cone(project_all(scene, scene.images[i], points[i]),
-                     [&](const Seen& p, const Seen& q) {
+                     [&](const ProjectedPoint& p, const ProjectedPoint& q) {
                        if (q.depth > p.depth * (1 + kSame)) visibility[q.point] += views(q);
                        if (q.depth < p.depth * (1 - kSame)) visibility[q.point] -= views(p);
                      });

@@ -45,14 +45,16 @@ struct Stage {
   // Makes the map of an image; called for several images at a time. The first stage has no previous
   // maps and must not ask for any.
   std::function<DepthMap(std::size_t image, PreviousMaps& previous)> make;
-  bool whole_maps = false;  // PreviousMaps::get() gives whole maps, of which many are held
+  // PreviousMaps::get() gives maps with normals and confidences, and StageRun::cached_maps limits
+  // its cache instead of cached_depths.
+  bool whole_maps = false;
 };
 
-// What a round over the images needs to know, for all stages.
+// The arguments that all stages share.
 struct StageRun {
   std::span<const std::size_t> images;  // that get maps, in this order
-  // The file of an image's final map. Files of earlier stages are called alike, with the stage's
-  // name before the extension.
+  // The file of an image's final map. The map of an earlier stage is in a file with the same name,
+  // but with the stage's name before the extension.
   std::function<std::filesystem::path(std::size_t image)> final_file;
   std::string fingerprint;  // of all input of the maps
   // The final files as they were before the run; indexed by image.

@@ -27,16 +27,16 @@ void tell_of_unused(const Project& project, const Settings& settings) {
              settings.input.string(), named);
 }
 
-void tell_of_rivals(const Project& project, const Settings& settings,
-                    const std::vector<io::FoundMask>& masks) {
+void warn_of_ignored_masks(const Project& project, const Settings& settings,
+                           const std::vector<io::FoundMask>& masks) {
   const std::size_t named = settings.mask_folder.empty() ? 0 : masks_of_scene(project.scene);
   if (named > 0)
     log_warning("--mask-path {}: is used instead of the masks that {} names for {} images",
                 settings.mask_folder.string(), settings.input.string(), named);
-  const io::RivalMasks rivals = io::rival_masks(masks);
-  if (rivals.count > 0)
+  const io::IgnoredMasks ignored = io::ignored_masks(masks);
+  if (ignored.count > 0)
     log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
-                rivals.used.string(), rivals.other.string(), rivals.count);
+                ignored.used.string(), ignored.other.string(), ignored.count);
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void choose_masks(Project& project, const Settings& settings) {
            requests[k].image.string(), masks[k].looked_for);
     log_warning("{}: no mask: looked for {}", requests[k].image.string(), masks[k].looked_for);
   }
-  tell_of_rivals(project, settings, masks);
+  warn_of_ignored_masks(project, settings, masks);
 }
 
 void LabelCheck::add(const cv::Mat1w& labels) {

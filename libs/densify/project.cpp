@@ -16,7 +16,7 @@
 #include "densify/scene_memory.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs.h"

@@ -38,7 +38,7 @@ struct Project {
   Scene scene;                         // in `frame`, with ports and neighbour scores
   LocalFrame frame;                    // the frame of the scene's coordinates
   std::optional<io::Housing> housing;  // the source of the ports; in world coordinates
-  io::Lenses lenses;                   // to write beside the output
+  io::SceneLenses lenses;              // to write beside the output
   std::vector<ViewPreparation> preparations;
   std::vector<View> views;                         // one for each image of the scene
   std::vector<std::vector<ViewScore>> neighbours;  // filtered

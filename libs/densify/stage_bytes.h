@@ -10,12 +10,13 @@
 
 namespace axial::densify {
 
-// The lengths of the longest lists, each including the image itself.
+// Numbers of images. `references` get depth maps. The other numbers are the largest numbers of
+// images that a stage needs for one of them, including the image itself.
 struct ListLengths {
   std::size_t references = 0;
-  std::size_t matched = 0;   // with its source views
-  std::size_t adjusted = 0;  // with the neighbours of the adjust filter; 0: no such filter
-  std::size_t fused = 0;     // with its neighbours that have maps
+  std::size_t matched = 0;   // and its source views
+  std::size_t adjusted = 0;  // and the neighbours of the adjust filter; 0: no such filter
+  std::size_t fused = 0;     // and its neighbours that have maps
 };
 
 ListLengths longest_lists(const Project& project, const Settings& settings);

@@ -19,9 +19,9 @@ using Ray = refractive::AxialRay<double>;
 using Pixel = Eigen::Vector2d;
 
 // A map with its camera: projections, rays and values at the nearest pixel.
-class SeenMap {
+class MapWithCamera {
  public:
-  explicit SeenMap(const DepthMap& map)
+  explicit MapWithCamera(const DepthMap& map)
       : map_(map), camera_(make_camera<double>(map.camera)), size_(map.depth.size()) {}
 
   int width() const { return size_.width; }
@@ -65,7 +65,7 @@ class SeenMap {
   cv::Size size_;
 };
 
-int cell_of(const SeenMap& map, const Pixel& pixel) {
+int cell_of(const MapWithCamera& map, const Pixel& pixel) {
   const auto along = [](double at, int length) {
     return std::min(kCellsAcross - 1, static_cast<int>(kCellsAcross * at / length));
   };
@@ -75,20 +75,20 @@ int cell_of(const SeenMap& map, const Pixel& pixel) {
 // The distance [px] between the images of two points in the first neighbour that shows both; -1 if
 // no neighbour does.
 double pixels_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                      std::span<const SeenMap> neighbours) {
+                      std::span<const MapWithCamera> neighbours) {
   Pixel seen_a, seen_b;
-  for (const SeenMap& neighbour : neighbours)
+  for (const MapWithCamera& neighbour : neighbours)
     if (neighbour.shows(a, seen_a) && neighbour.shows(b, seen_b)) return (seen_a - seen_b).norm();
   return -1;
 }
 
 // Tests whether the neighbours' depths are consistent with the surface point `x` of a pixel of
 // `map`, and counts the result.
-void ask(const SeenMap& map, const Pixel& pixel, const Eigen::Vector3d& x,
-         std::span<const SeenMap> neighbours, MapAgreement& result) {
+void ask(const MapWithCamera& map, const Pixel& pixel, const Eigen::Vector3d& x,
+         std::span<const MapWithCamera> neighbours, MapAgreement& result) {
   int asked = 0;
   bool consistent = false;
-  for (const SeenMap& neighbour : neighbours) {
+  for (const MapWithCamera& neighbour : neighbours) {
     Pixel there, back;
     if (!neighbour.shows(x, there)) continue;
     const double depth = neighbour.depth_at(there);
@@ -102,8 +102,8 @@ void ask(const SeenMap& map, const Pixel& pixel, const Eigen::Vector3d& x,
   result.consistent += consistent ? 1 : 0;
 }
 
-void compare_point(const SeenMap& map, const Eigen::Vector3d& point,
-                   std::span<const SeenMap> neighbours, MapAgreement& result) {
+void compare_point(const MapWithCamera& map, const Eigen::Vector3d& point,
+                   std::span<const MapWithCamera> neighbours, MapAgreement& result) {
   Pixel pixel;
   if (!point.allFinite() || !map.shows(point, pixel)) return;
   const double depth = map.depth_at(pixel);
@@ -157,13 +157,13 @@ MapAgreement compare_map(const DepthMap& map, std::span<const DepthMap* const> n
                          std::span<const Eigen::Vector3f> points, std::size_t most) {
   MapAgreement result;
   if (map.depth.empty()) return result;
-  const SeenMap seen(map);
-  std::vector<SeenMap> others;
+  const MapWithCamera asked(map);
+  std::vector<MapWithCamera> others;
   for (const DepthMap* const neighbour : neighbours)
     if (neighbour && !neighbour->depth.empty()) others.emplace_back(*neighbour);
   const std::size_t taken = std::min(most, points.size());
   for (std::size_t i = 0; i < taken; ++i)
-    compare_point(seen, points[i * points.size() / taken].cast<double>(), others, result);
+    compare_point(asked, points[i * points.size() / taken].cast<double>(), others, result);
   return result;
 }
 

@@ -33,11 +33,11 @@ template <class Camera>
 void add_view(lanes::SceneTables& tables, const SourceView<Camera>& source, std::size_t view,
               bool with_depths) {
   const lanes::CameraFields fields = projector_of(source.camera);
-  const refractive::Frame<float> frame =
+  const refractive::RigidTransform<float> to_projector =
       visit_kind(source.camera, [](const auto& kind) { return kind.projector_frame(); });
-  const Eigen::Matrix3f rotation = frame.rotation * source.from_reference.rotation;
+  const Eigen::Matrix3f rotation = to_projector.rotation * source.from_reference.rotation;
   const Eigen::Vector3f translation =
-      frame.rotation * source.from_reference.translation + frame.translation;
+      to_projector.rotation * source.from_reference.translation + to_projector.translation;
   for (std::size_t k = 0; k < fields.value.size(); ++k) tables.projector[k][view] = fields.value[k];
   tables.steps = std::max(tables.steps, fields.steps);
   for (std::size_t k = 0; k < 9; ++k)
@@ -141,8 +141,8 @@ LaneMatcher<Camera>::LaneMatcher(const cv::Mat1b& image, Camera camera,
     for (std::size_t first = 0; first < views.size(); first += kLanes) {
       std::vector<const SourceView<Camera>*> members;
       for (std::size_t k = first; k < std::min(first + kLanes, views.size()); ++k) {
-        places_.at(views[k]) = {static_cast<std::uint8_t>(groups_.size()),
-                                static_cast<std::uint8_t>(k - first)};
+        lane_of_view_.at(views[k]) = {static_cast<std::uint8_t>(groups_.size()),
+                                      static_cast<std::uint8_t>(k - first)};
         members.push_back(&sources[views[k]]);
       }
       Group group;
@@ -158,7 +158,7 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
                                 std::span<const PlaneHypothesis> planes,
                                 std::span<const ScorePair> pairs,
                                 std::span<const SurfacePoint> neighbours,
-                                std::span<ViewScore> scores) const {
+                                std::span<PlaneScore> scores) const {
   const lanes::LanePixel lane = lane_pixel(pixel);
   const lanes::LanePlanes all = lane_planes(planes);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -177,10 +177,10 @@ void LaneMatcher<Camera>::score(const ReferencePixel& pixel,
         scores[target[k]] = {result.cost[k], result.motion[k], result.smoothness[k]};
     };
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Place place = places_[pairs[i].view];
-      if (place.group != g) continue;
+      const LaneOfView of_view = lane_of_view_[pairs[i].view];
+      if (of_view.group != g) continue;
       batch.plane[count] = pairs[i].plane;
-      batch.view[count] = place.lane;
+      batch.view[count] = of_view.lane;
       target[count++] = i;
       if (count == kLanes) run();
     }

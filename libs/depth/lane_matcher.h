@@ -35,7 +35,7 @@ class LaneMatcher {
   // See Matcher::score. Precondition: at most lanes::kLanes planes.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
-             std::span<ViewScore> scores) const;
+             std::span<PlaneScore> scores) const;
 
  private:
   // Up to lanes::kLanes source views of one kind of camera.
@@ -45,7 +45,7 @@ class LaneMatcher {
   };
 
   // The group of a source view and its index in this group.
-  struct Place {
+  struct LaneOfView {
     std::uint8_t group, lane;
   };
 
@@ -53,7 +53,7 @@ class LaneMatcher {
   RayCaster<Camera> caster_;
   std::size_t views_;
   std::vector<Group> groups_;
-  std::array<Place, kMaxSources> places_{};  // of the source views
+  std::array<LaneOfView, kMaxSources> lane_of_view_{};  // of the source views
 };
 
 }  // namespace axial::depth

@@ -35,7 +35,8 @@ struct ScorePair {
   std::uint8_t plane, view;
 };
 
-struct ViewScore {
+// The score of one plane hypothesis in one source view.
+struct PlaneScore {
   // 1 - ZNCC (kOutsideCost without a correlation), plus the geometric term, blended with the prior;
   // 0 to kMaxCost.
   float cost;
@@ -66,7 +67,7 @@ class Matcher {
   // Preconditions: all indices are valid; `scores` has at least the size of `pairs`.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
-             std::span<ViewScore> scores) const {
+             std::span<PlaneScore> scores) const {
     PatchDerivative patch;
     float smoothness = 1;
     for (std::size_t i = 0; i < pairs.size(); ++i) {

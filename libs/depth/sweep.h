@@ -276,7 +276,7 @@ class Sweep {
 
   // Scores the candidates. Sets `best` to the best candidate if its cost is lower.
   void keep_best(const Visit& at, const Candidates& candidates, BestPlane& best) const {
-    std::array<ViewScore, kMaxCandidates * kMaxSources> scores;
+    std::array<PlaneScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
     matcher_.score(at.pixel, candidates.all(), pairs, at.around.all(), scores);
     at.scores += pairs.size();

@@ -50,12 +50,12 @@ double median_distance(const std::vector<Pair>& pairs) {
   return *middle;
 }
 
-struct Frame {
+struct Extent {
   Eigen::Vector3d centre;
-  double radius;
+  double radius;  // root mean square of the distances to the centre [m]
 };
 
-Frame frame_of(std::span<const Eigen::Vector3f> points) {
+Extent extent_of(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const auto& x : points) centre += x.cast<double>();
   centre /= static_cast<double>(points.size());
@@ -94,18 +94,18 @@ IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& s
   if (points.size() < 6)
     fail("{} points are too few to align a cloud, at least 6 are needed", points.size());
   const auto sampled = subsample(points, options.samples, options.seed);
-  const Frame frame = frame_of(sampled);
-  if (!std::isfinite(frame.radius) || !(frame.radius > 0))
+  const Extent extent = extent_of(sampled);
+  if (!std::isfinite(extent.radius) || !(extent.radius > 0))
     fail("the cloud has no extent to align by");
 
   IcpResult result;
   std::vector<Pair> pairs = find_pairs(sampled, surface, result.transform);
   result.median_before = median_distance(pairs);
   while (result.iterations < options.max_iterations && !result.converged) {
-    const double limit = std::max(options.trim * median_distance(pairs), 1e-9 * frame.radius);
-    const Eigen::Vector3d centre = result.transform(frame.centre);
-    const Vector6d step = solve_step(pairs, centre, frame.radius, limit);
-    const Eigen::Vector3d turn = step.head<3>() / frame.radius;
+    const double limit = std::max(options.trim * median_distance(pairs), 1e-9 * extent.radius);
+    const Eigen::Vector3d centre = result.transform(extent.centre);
+    const Vector6d step = solve_step(pairs, centre, extent.radius, limit);
+    const Eigen::Vector3d turn = step.head<3>() / extent.radius;
     Similarity move;
     if (turn.norm() > 0)
       move.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
@@ -113,7 +113,7 @@ IcpResult refine_rigid(std::span<const Eigen::Vector3f> points, const Surface& s
     result.transform = move.after(result.transform);
     pairs = find_pairs(sampled, surface, result.transform);
     ++result.iterations;
-    result.converged = step.norm() < options.stop * frame.radius;
+    result.converged = step.norm() < options.stop * extent.radius;
   }
   result.median_after = median_distance(pairs);
   return result;

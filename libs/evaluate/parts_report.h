@@ -8,7 +8,7 @@
 #include <string>
 
 #include "evaluate/places.h"
-#include "evaluate/point_worth.h"
+#include "evaluate/point_uncertainty.h"
 #include "evaluate/strip.h"
 
 namespace axial::evaluate {

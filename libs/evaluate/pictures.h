@@ -32,8 +32,8 @@ struct Viewpoint {
 Viewpoint viewpoint_of(const View& view, int width);
 
 // An orthographic viewpoint along the direction in which the points extend least, against their
-// normals if there are any. All points fill the picture, except the outermost hundredth on each
-// side.
+// normals if there are any. The points fill 95 % of the picture's width or height, without the
+// outermost hundredth of the points at each end.
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height);
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "evaluate/depth_evaluation.h"
-#include "evaluate/depth_places.h"
+#include "evaluate/pixel_classes.h"
 #include "evaluate/statistics.h"
 #include "experiments/steps.h"
 #include "io/images/image.h"
@@ -60,23 +60,23 @@ cv::Mat1b grey_of(const SimulatedScene& scene, const std::string& medium, const 
   return grey;
 }
 
-std::string title_of(evaluate::Place place) {
-  switch (place) {
-    case evaluate::Place::edge:
+std::string title_of(evaluate::PixelClass pixel_class) {
+  switch (pixel_class) {
+    case evaluate::PixelClass::edge:
       return "a depth edge within the window";
-    case evaluate::Place::plain:
+    case evaluate::PixelClass::plain:
       return "no texture";
-    case evaluate::Place::steep:
-      return fmt::format("steeper than {:g} degrees", evaluate::PlaceOptions{}.steep_degrees);
+    case evaluate::PixelClass::steep:
+      return fmt::format("steeper than {:g} degrees", evaluate::PixelClassOptions{}.steep_degrees);
     default:
       return "all else";
   }
 }
 
-Json places_of(std::span<const evaluate::PlacedMap> maps) {
+Json places_of(std::span<const evaluate::ClassifiedMap> maps) {
   Json places = Json::array();
-  for (const evaluate::PlaceErrors& errors : evaluate::errors_by_place(maps))
-    places.push_back({{"place", title_of(errors.place)},
+  for (const evaluate::ClassErrors& errors : evaluate::errors_by_class(maps))
+    places.push_back({{"place", title_of(errors.pixel_class)},
                       {"truths", errors.truth_pixels},
                       {"pixels", errors.compared_pixels},
                       {"gross", errors.gross_pixels},
@@ -85,7 +85,7 @@ Json places_of(std::span<const evaluate::PlacedMap> maps) {
   return places;
 }
 
-Json phases_of(std::span<const evaluate::PlacedMap> maps) {
+Json phases_of(std::span<const evaluate::ClassifiedMap> maps) {
   constexpr std::size_t kBins = 8;
   Json phases = Json::array();
   for (const evaluate::PhaseErrors& errors : evaluate::errors_by_phase(maps, kBins))
@@ -184,19 +184,19 @@ Json depth_errors(const fs::path& dense, const SimulatedScene& scene, const std:
   std::vector<DepthMap> maps;
   for (const fs::path& file : files) maps.push_back(io::read_dmap(file).map);
   std::vector<evaluate::DepthEvaluation> evaluations;
-  std::vector<evaluate::PlacedMap> placed;
+  std::vector<evaluate::ClassifiedMap> classified;
   for (const DepthMap& map : maps) {
     const cv::Mat1f truth = io::read_float_tiff(truth_of(scene, medium, map.image_path));
     evaluations.push_back(evaluate::evaluate_depth(map.depth, truth, {}));
     const evaluate::DepthEvaluation& evaluation = evaluations.back();
-    placed.push_back(
+    classified.push_back(
         {&map, evaluation,
-         evaluate::places_of(evaluation.truth, map.camera, grey_of(scene, medium, map))});
+         evaluate::classes_of(evaluation.truth, map.camera, grey_of(scene, medium, map))});
   }
   Json result = errors_of(evaluations, tolerance);
   result["rings"] = rings_of(evaluations);
-  result["places"] = places_of(placed);
-  result["phases"] = phases_of(placed);
+  result["places"] = places_of(classified);
+  result["phases"] = phases_of(classified);
   return result;
 }
 

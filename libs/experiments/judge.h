@@ -29,25 +29,26 @@ struct EvaluationOptions {
   double color_max = 0.010;  // [m], error of the last colour in pictures
   bool or_nothing = false;   // a cloud with nothing to measure is a result, not an error
 };
-// The options that the inputs of a part name. `icp` and `or_nothing` are no inputs: a part measures
-// with both values or always with the same one.
+// The options as inputs of a part (Part::inputs). Without `icp` and `or_nothing`: a part measures
+// with both values of such an option, or always with the same value.
 Json to_json(const EvaluationOptions& options);
 
-// Distance statistics of the cloud of the folder `dense` in the field of view under water: points
-// inside the images of at least `min_views` underwater cameras, for clouds of either medium. Also
-// completeness of the surface that at least so many of these cameras see. Fields: "points", "mean",
-// "median", "variance", "recall" and "f_score" at the tolerance, and "picture" (PNG in base64).
-// Lengths in metres. Null if there is nothing to measure.
+// Distance statistics of the cloud of the folder `dense`, and its completeness. Both are limited to
+// the field of view under water, for clouds from images in either medium: the statistics to points
+// inside the images of at least `min_views` underwater cameras, the completeness to the surface
+// that at least `min_views` of these cameras see. Fields: "points", "mean", "median", "variance",
+// "recall" and "f_score" at the tolerance, and "picture" (PNG in base64). Lengths in metres. Null
+// if there is nothing to measure.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 
 // Errors of all depth maps of a folder together. Fields: "pixels"; "median" of |estimate - truth|
 // [m]; "gross", the share of pixels with gross errors (is_gross()); "mean" of the other errors;
-// "within", the share of pixels within the tolerance; "completeness", the share of pixels with a
-// truth. "rings" around the image centre have "inner", "outer", "count" and the "median" of the
-// signed error as a fraction of the true distance. "places" have "place", "truths", "pixels",
-// "gross", "mean" and "median"; "phases" have "begin", "end", "count" and "shift" (depth_places.h).
-// Error if a map, its truth or its photograph cannot be read.
+// "within", the share of pixels within the tolerance; "completeness", the share of the pixels with
+// a truth that also have an estimate. "rings" around the image centre have "inner", "outer",
+// "count" and the "median" of the signed error as a fraction of the true distance. "places" have
+// "place", "truths", "pixels", "gross", "mean" and "median"; "phases" have "begin", "end", "count"
+// and "shift" (pixel_classes.h). Error if a map, its truth or its photograph cannot be read.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);
 

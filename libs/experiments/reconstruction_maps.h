@@ -21,10 +21,11 @@ std::string joined(const Seeds& seeds, const std::function<std::string(int seed)
 // Errors of all pixels of all maps.
 std::string maps_table(const Json& results, const Seeds& seeds);
 
-// Errors by the kind of place of a pixel (depth_places.h).
+// Errors by the class of a pixel (pixel_classes.h).
 std::string places_table(const Json& results, const Seeds& seeds);
 
-// Shifts in the source view by the true image's position within its pixel.
+// Shifts of points' images in a source view (PhaseErrors), by the fractional part of their true
+// position [px].
 std::string phases_table(const Json& results, const Seeds& seeds);
 
 // Signed errors in rings around the image centre.

@@ -205,7 +205,7 @@ std::vector<double*> AdjustProblem::point_blocks() {
 
 void AdjustProblem::write_back(Bundle& bundle) const {
   for (std::size_t i = 0; i < poses_.size(); ++i)
-    bundle.images[i].pose = moved(bundle_.images[i].pose, poses_[i]);
+    bundle.images[i].pose = pose_with(bundle_.images[i].pose, poses_[i]);
   for (std::size_t i = 0; i < points_.size(); ++i) bundle.points[i].position = points_[i];
   for (std::size_t i = 0; i < changes_.size(); ++i) bundle.cameras[i].change = changes_[i];
 }

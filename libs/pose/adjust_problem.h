@@ -23,9 +23,10 @@ class AdjustProblem {
   ceres::Problem& problem() { return *problem_; }
 
   // The parameter blocks under adjustment. Blocks that stay constant are left out. A point has 3
-  // numbers.
+  // numbers. Points with a known distance are among the camera blocks, because they depend on each
+  // other: the solver eliminates the point blocks, which must be independent.
   std::vector<double*> camera_blocks();  // images, changes of cameras, points with a known distance
-  std::vector<double*> point_blocks();   // all other points: independent of each other
+  std::vector<double*> point_blocks();   // all other points
 
   // The first image with observations. Its pose stays constant.
   std::size_t anchor() const;

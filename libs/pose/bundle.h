@@ -20,7 +20,7 @@ struct BundleCamera {
   HousingChange<double> change = HousingChange<double>::Zero();
 
   // The camera with the change applied.
-  CameraModel now() const { return moved(measured, change); }
+  CameraModel now() const { return with_change(measured, change); }
 };
 
 struct BundleImage {

@@ -22,25 +22,26 @@ refractive::DomePortCamera<Jet> camera_behind(const refractive::DomePort<Jet>& p
 
 refractive::AxialRay<Jet> ray(const CameraModel& measured, const HousingChange<Jet>& change,
                               const Eigen::Vector2d& pixel) {
-  const refractive::PinholeLens<Jet> lens = moved(measured.lens, change);
+  const refractive::PinholeLens<Jet> lens = with_change(measured.lens, change);
   const refractive::Vector2<Jet> at = pixel.cast<Jet>();
   if (!measured.port) return refractive::PinholeCamera<Jet>(lens).ray(at);
   return std::visit(
       [&](const auto& port) {
-        return camera_behind(moved(port, change), lens, measured.width, measured.height).ray(at);
+        return camera_behind(with_change(port, change), lens, measured.width, measured.height)
+            .ray(at);
       },
       *measured.port);
 }
 
 }  // namespace
 
-CameraModel moved(const CameraModel& measured, const HousingChange<double>& change) {
+CameraModel with_change(const CameraModel& measured, const HousingChange<double>& change) {
   CameraModel camera = measured;
-  camera.lens = moved(measured.lens, change);
+  camera.lens = with_change(measured.lens, change);
   if (measured.port)
-    camera.port =
-        std::visit([&](const auto& port) { return refractive::Port<double>(moved(port, change)); },
-                   *measured.port);
+    camera.port = std::visit(
+        [&](const auto& port) { return refractive::Port<double>(with_change(port, change)); },
+        *measured.port);
   return camera;
 }
 

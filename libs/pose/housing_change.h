@@ -24,8 +24,8 @@ using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
 // The measured port or lens changed by `change`. T is double or an automatic-differentiation
 // scalar.
 template <class T>
-refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
-                              const HousingChange<T>& change) {
+refractive::FlatPort<T> with_change(const refractive::FlatPort<double>& measured,
+                                    const HousingChange<T>& change) {
   refractive::FlatPort<T> port = measured.cast<T>();
   const Eigen::Matrix3d axis = refractive::axis_from_camera(measured.normal);
   port.normal +=
@@ -38,8 +38,8 @@ refractive::FlatPort<T> moved(const refractive::FlatPort<double>& measured,
 }
 
 template <class T>
-refractive::DomePort<T> moved(const refractive::DomePort<double>& measured,
-                              const HousingChange<T>& change) {
+refractive::DomePort<T> with_change(const refractive::DomePort<double>& measured,
+                                    const HousingChange<T>& change) {
   refractive::DomePort<T> port = measured.cast<T>();
   port.centre += change.template head<3>();
   port.n_water += change(kIndexNumber);
@@ -48,8 +48,8 @@ refractive::DomePort<T> moved(const refractive::DomePort<double>& measured,
 }
 
 template <class T>
-refractive::PinholeLens<T> moved(const refractive::PinholeLens<double>& measured,
-                                 const HousingChange<T>& change) {
+refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& measured,
+                                       const HousingChange<T>& change) {
   using std::exp;
   refractive::PinholeLens<T> lens = measured.cast<T>();
   lens.fx *= exp(change(kFocalNumber));
@@ -58,7 +58,7 @@ refractive::PinholeLens<T> moved(const refractive::PinholeLens<double>& measured
 }
 
 // The camera with `change` applied to lens and port.
-CameraModel moved(const CameraModel& measured, const HousingChange<double>& change);
+CameraModel with_change(const CameraModel& measured, const HousingChange<double>& change);
 
 // The derivative by the change of the point at `lambda` [m] on the ray of `pixel`, in the camera
 // frame. The image of a point is the pixel whose ray meets the point, so the derivative of the

@@ -36,7 +36,7 @@ PoseNumbers numbers_of(const Pose& start) {
   return {0, 0, 0, start.centre.x(), start.centre.y(), start.centre.z()};
 }
 
-Pose moved(const Pose& start, const PoseNumbers& numbers) {
+Pose pose_with(const Pose& start, const PoseNumbers& numbers) {
   return {rotation_of(Eigen::Map<const Eigen::Vector3d>(numbers.data())) * start.rotation,
           Eigen::Map<const Eigen::Vector3d>(numbers.data() + 3)};
 }
@@ -60,14 +60,14 @@ void CurrentCameras::PrepareForEvaluation(bool, bool new_evaluation_point) {
   if (!new_evaluation_point) return;
   cameras_.resize(measured_.size());
   for (std::size_t i = 0; i < cameras_.size(); ++i)
-    cameras_[i] = make_camera<double>(moved(measured_[i].measured, changes_[i]));
+    cameras_[i] = make_camera<double>(with_change(measured_[i].measured, changes_[i]));
 }
 
 bool ObservationCost::Evaluate(double const* const* parameters, double* residuals,
                                double** jacobians) const {
   PoseNumbers numbers;
   std::copy_n(parameters[0], numbers.size(), numbers.begin());
-  const Pose pose = moved(start_, numbers);
+  const Pose pose = pose_with(start_, numbers);
   const Eigen::Vector3d X = pose.to_camera(Eigen::Map<const Eigen::Vector3d>(parameters[1]));
   refractive::Matrix23<double> by_point;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();

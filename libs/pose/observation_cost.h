@@ -20,7 +20,7 @@ using PoseNumbers = std::array<double, kPoseNumbers>;
 
 // The numbers of `start` itself (w = 0), and the pose with `numbers` relative to `start`.
 PoseNumbers numbers_of(const Pose& start);
-Pose moved(const Pose& start, const PoseNumbers& numbers);
+Pose pose_with(const Pose& start, const PoseNumbers& numbers);
 
 // The left Jacobian J of the rotation group: d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);

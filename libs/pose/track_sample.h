@@ -21,9 +21,10 @@ struct SampleLimits {
 // without tracks gives an empty sample.
 io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits = {});
 
-// A sample of a bundle: images connected by common points, from the middle of the bundle's order
-// outwards, and the points most of these images observe. `seeds` and `track` of the limits are not
-// used. With `behind_ports`, only images whose camera is behind a port.
+// A sample of a bundle: images that are connected by common points, and the points that the largest
+// numbers of these images observe. The search for images begins in the middle of the bundle's order
+// and goes outwards. `seeds` and `track` of the limits are not used. With `behind_ports`, only
+// images whose camera is behind a port are taken.
 Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behind_ports);
 
 }  // namespace axial::pose

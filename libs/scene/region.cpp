@@ -16,13 +16,13 @@ double median(std::vector<double> values) {
 }
 
 // The point at which the cameras look.
-struct Attention {
+struct ViewingCentre {
   Eigen::Vector3d centre;
   double radius = 0;     // distance of the farthest camera from the centre
   double agreement = 0;  // length of the mean viewing direction: 1 if all are parallel
 };
 
-Attention centre_of_attention(const std::vector<const Pose*>& poses) {
+ViewingCentre viewing_centre(const std::vector<const Pose*>& poses) {
   Eigen::Vector3d middle, direction = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
@@ -34,20 +34,20 @@ Attention centre_of_attention(const std::vector<const Pose*>& poses) {
     direction += pose->rotation.row(2).transpose();
     distances.push_back((pose->centre - middle).norm());
   }
-  Attention attention;
-  attention.agreement = direction.norm() / static_cast<double>(poses.size());
-  const double ahead = std::tan(std::asin(std::min(attention.agreement, 0.999)));
-  attention.centre = middle + ahead * median(std::move(distances)) * direction.stableNormalized();
+  ViewingCentre viewed;
+  viewed.agreement = direction.norm() / static_cast<double>(poses.size());
+  const double ahead = std::tan(std::asin(std::min(viewed.agreement, 0.999)));
+  viewed.centre = middle + ahead * median(std::move(distances)) * direction.stableNormalized();
   for (const Pose* pose : poses) {
-    attention.radius = std::max(attention.radius, (pose->centre - attention.centre).norm());
+    viewed.radius = std::max(viewed.radius, (pose->centre - viewed.centre).norm());
   }
-  return attention;
+  return viewed;
 }
 
-bool surrounds(const std::vector<const Pose*>& poses, const Attention& attention) {
-  if (attention.agreement > std::numbers::sqrt2 / 2) return false;
+bool surrounds(const std::vector<const Pose*>& poses, const ViewingCentre& viewed) {
+  if (viewed.agreement > std::numbers::sqrt2 / 2) return false;
   return std::all_of(poses.begin(), poses.end(),
-                     [&](const Pose* pose) { return pose->to_camera(attention.centre).z() > 0; });
+                     [&](const Pose* pose) { return pose->to_camera(viewed.centre).z() > 0; });
 }
 
 bool seen_within(const Scene& scene, const SparsePoint& point, double limit) {
@@ -66,12 +66,12 @@ std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode) 
     if (image.calibrated) poses.push_back(&image.pose);
   }
   if (mode == RegionMode::off || poses.size() < 3) return std::nullopt;
-  const Attention attention = centre_of_attention(poses);
-  if (mode == RegionMode::adaptive && !surrounds(poses, attention)) return std::nullopt;
+  const ViewingCentre viewed = viewing_centre(poses);
+  if (mode == RegionMode::adaptive && !surrounds(poses, viewed)) return std::nullopt;
 
   Eigen::AlignedBox3d box;
   for (const SparsePoint& point : scene.points) {
-    if (!point.position.allFinite() || !seen_within(scene, point, 2 * attention.radius)) continue;
+    if (!point.position.allFinite() || !seen_within(scene, point, 2 * viewed.radius)) continue;
     box.extend(point.position.cast<double>());
   }
   if (box.isEmpty()) return std::nullopt;

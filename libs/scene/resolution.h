@@ -19,8 +19,8 @@ struct ResolutionOptions {
 // are rounded and at least 1. Throws an Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
-// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels: the
-// ratios may differ by 1.5 pixels of the shortest side.
+// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. The
+// ratios may differ by the factor 1 + 1.5 / (the shortest of the four sides).
 bool same_shape(cv::Size a, cv::Size b);
 
 // Resizes `image` to `size`, with an area filter if no side grows and a cubic filter otherwise. If

@@ -9,11 +9,11 @@
 
 namespace axial::simulate {
 
-double Draw::between(double a, double b) {
+double RandomSequence::between(double a, double b) {
   return a + (b - a) * uniform(seed_, index_++);
 }
 
-std::uint32_t Draw::seed() {
+std::uint32_t RandomSequence::seed() {
   return static_cast<std::uint32_t>(between(0, 4294967295.0));
 }
 
@@ -29,9 +29,9 @@ View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
   return view;
 }
 
-void shake(View& view, double degrees, Draw& draw) {
+void shake(View& view, double degrees, RandomSequence& random) {
   for (int axis = 0; axis < 3; ++axis) {
-    const double angle = draw.between(-degrees, degrees) * kRadians;
+    const double angle = random.between(-degrees, degrees) * kRadians;
     view.rotation =
         Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis)).toRotationMatrix() * view.rotation;
   }
@@ -39,92 +39,92 @@ void shake(View& view, double degrees, Draw& draw) {
 
 namespace {
 
-Blob boulder(const Floor& floor, double x, double y, double radius, Draw& draw) {
+Blob boulder(const Floor& floor, double x, double y, double radius, RandomSequence& random) {
   Blob blob;
-  blob.radii = {radius * draw.between(0.8, 1.25), radius * draw.between(0.8, 1.25),
-                radius * draw.between(0.65, 1.0)};
-  blob.turn = Eigen::AngleAxisd(draw.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-              Eigen::AngleAxisd(draw.between(-0.4, 0.4), Eigen::Vector3d::UnitX());
-  blob.centre = {x, y, floor.at(x, y) + draw.between(0.0, 0.35) * blob.radii.z()};
-  blob.roughness = draw.between(0.2, 0.34);
-  blob.seed = draw.seed();
+  blob.radii = {radius * random.between(0.8, 1.25), radius * random.between(0.8, 1.25),
+                radius * random.between(0.65, 1.0)};
+  blob.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
+              Eigen::AngleAxisd(random.between(-0.4, 0.4), Eigen::Vector3d::UnitX());
+  blob.centre = {x, y, floor.at(x, y) + random.between(0.0, 0.35) * blob.radii.z()};
+  blob.roughness = random.between(0.2, 0.34);
+  blob.seed = random.seed();
   return blob;
 }
 
 }  // namespace
 
-void add_mushroom(Terrain& terrain, double x, double y, double size, Draw& draw) {
+void add_mushroom(Terrain& terrain, double x, double y, double size, RandomSequence& random) {
   const double ground = terrain.floor.at(x, y);
   Blob stalk;
   stalk.radii = {0.36 * size, 0.33 * size, 0.9 * size};
   stalk.centre = {x, y, ground + 0.25 * size};
   stalk.roughness = 0.25;
-  stalk.seed = draw.seed();
+  stalk.seed = random.seed();
   Blob cap;
-  cap.radii = {draw.between(0.85, 1.05) * size, draw.between(0.75, 0.95) * size, 0.38 * size};
-  cap.turn = Eigen::AngleAxisd(draw.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(draw.between(-0.25, 0.25), Eigen::Vector3d::UnitX());
-  cap.centre = {x + draw.between(-0.15, 0.15) * size, y + draw.between(-0.15, 0.15) * size,
+  cap.radii = {random.between(0.85, 1.05) * size, random.between(0.75, 0.95) * size, 0.38 * size};
+  cap.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(random.between(-0.25, 0.25), Eigen::Vector3d::UnitX());
+  cap.centre = {x + random.between(-0.15, 0.15) * size, y + random.between(-0.15, 0.15) * size,
                 ground + 1.05 * size};
   cap.roughness = 0.24;
-  cap.seed = draw.seed();
+  cap.seed = random.seed();
   terrain.blobs.push_back(stalk);
   terrain.blobs.push_back(cap);
 }
 
-void add_arch(Terrain& terrain, double x, double y, double span_radius, Draw& draw) {
+void add_arch(Terrain& terrain, double x, double y, double span_radius, RandomSequence& random) {
   Arch arch;
-  const double turn = draw.between(0, 3.14);
+  const double turn = random.between(0, 3.14);
   arch.along = {std::cos(turn), std::sin(turn)};
   arch.centre = {x, y, terrain.floor.at(x, y)};
   arch.span_radius = span_radius;
-  arch.rise = draw.between(0.9, 1.1);
+  arch.rise = random.between(0.9, 1.1);
   arch.tube_radius = 0.27 * span_radius;
-  arch.seed = draw.seed();
+  arch.seed = random.seed();
   terrain.arches.push_back(arch);
 }
 
 void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double from,
-             const Eigen::Vector2d& radii, Draw& draw) {
+             const Eigen::Vector2d& radii, RandomSequence& random) {
   while (count > 0) {
-    const double x = draw.between(-half.x(), half.x()), y = draw.between(-half.y(), half.y());
-    const double t = draw.between(0, 1);
+    const double x = random.between(-half.x(), half.x()), y = random.between(-half.y(), half.y());
+    const double t = random.between(0, 1);
     if (std::hypot(x, y) < from) continue;
     // Many small boulders, few large ones.
     const double radius = radii.x() + (radii.y() - radii.x()) * t * t;
-    terrain.blobs.push_back(boulder(terrain.floor, x, y, radius, draw));
+    terrain.blobs.push_back(boulder(terrain.floor, x, y, radius, random));
     --count;
   }
 }
 
-void add_two_rows(Preset& preset, int views, double height, Draw& draw) {
+void add_two_rows(Preset& preset, int views, double height, RandomSequence& random) {
   const int columns = (views + 1) / 2;
   for (int i = 0; i < views; ++i) {
     const int row = i / columns;
     // Forth along one row, back along the other.
     const int column = row == 0 ? i : 2 * columns - 1 - i;
-    const Eigen::Vector3d centre(0.5 * (column - 0.5 * (columns - 1)) + draw.between(-0.06, 0.06),
-                                 0.55 * (row - 0.5) + draw.between(-0.06, 0.06),
-                                 height + draw.between(-0.12, 0.12));
+    const Eigen::Vector3d centre(0.5 * (column - 0.5 * (columns - 1)) + random.between(-0.06, 0.06),
+                                 0.55 * (row - 0.5) + random.between(-0.06, 0.06),
+                                 height + random.between(-0.12, 0.12));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
-    shake(view, 6, draw);
+    shake(view, 6, random);
     preset.views.push_back(view);
   }
 }
 
-void add_two_rings(Preset& preset, int views, double range, Draw& draw) {
+void add_two_rings(Preset& preset, int views, double range, RandomSequence& random) {
   const int lower = (2 * views + 2) / 3;
   for (int i = 0; i < views; ++i) {
     const bool low = i < lower;
     const double step = low ? (i + 0.0) / lower : (i - lower + 0.35) / std::max(1, views - lower);
-    const double around = 2 * std::numbers::pi * step + draw.between(-0.06, 0.06);
-    const double elevation = ((low ? 57 : 77) + draw.between(-2, 2)) * kRadians;
-    const double away = range + draw.between(-0.03, 0.03);
-    const Eigen::Vector3d target(draw.between(-0.03, 0.03), draw.between(-0.03, 0.03), 0.06);
+    const double around = 2 * std::numbers::pi * step + random.between(-0.06, 0.06);
+    const double elevation = ((low ? 57 : 77) + random.between(-2, 2)) * kRadians;
+    const double away = range + random.between(-0.03, 0.03);
+    const Eigen::Vector3d target(random.between(-0.03, 0.03), random.between(-0.03, 0.03), 0.06);
     const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
                                  std::cos(elevation) * std::sin(around), std::sin(elevation));
     View view = look_at(target + away * offset, target, Eigen::Vector3d::UnitZ());
-    shake(view, 3, draw);
+    shake(view, 3, random);
     preset.views.push_back(view);
   }
 }

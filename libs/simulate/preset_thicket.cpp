@@ -13,8 +13,8 @@ constexpr double kPixel = 0.0011;
 // Thickness of the structures [px].
 constexpr double kThickness[] = {1, 2, 4, 8, 16};
 
-Eigen::Vector3d any_direction(double least_z, Draw& draw) {
-  const double around = draw.between(0, 6.28), z = draw.between(least_z, 1);
+Eigen::Vector3d any_direction(double least_z, RandomSequence& random) {
+  const double around = random.between(0, 6.28), z = random.between(least_z, 1);
   const double level = std::sqrt(std::max(0.0, 1 - z * z));
   return {level * std::cos(around), level * std::sin(around), z};
 }
@@ -22,36 +22,37 @@ Eigen::Vector3d any_direction(double least_z, Draw& draw) {
 // Adds a branch, and at its end two branches of half its thickness, recursively down to about a
 // pixel.
 void grow(Terrain& terrain, const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
-          double length, double radius, Draw& draw) {
+          double length, double radius, RandomSequence& random) {
   constexpr int kPoints = 8;
   Tube branch;
   Eigen::Vector3d at = from, towards = direction;
   for (int i = 0; i < kPoints; ++i) {
     branch.spine.push_back(at);
     branch.radii.push_back(radius);
-    towards = (towards + 0.22 * any_direction(-1, draw)).normalized();
+    towards = (towards + 0.22 * any_direction(-1, random)).normalized();
     at += length / (kPoints - 1) * towards;
   }
   const Eigen::Vector3d tip = branch.spine.back();
   terrain.tubes.push_back(std::move(branch));
   if (radius < 0.99 * kPixel) return;
-  const Eigen::Vector3d aside = towards.cross(any_direction(-1, draw)).normalized();
+  const Eigen::Vector3d aside = towards.cross(any_direction(-1, random)).normalized();
   for (const double sign : {-1.0, 1.0}) {
-    Eigen::Vector3d next = (towards + sign * draw.between(0.5, 0.9) * aside).normalized();
+    Eigen::Vector3d next = (towards + sign * random.between(0.5, 0.9) * aside).normalized();
     next = (next + Eigen::Vector3d(0, 0, 0.25)).normalized();  // towards the light
-    grow(terrain, tip, next, draw.between(0.72, 0.9) * length, 0.5 * radius, draw);
+    grow(terrain, tip, next, random.between(0.72, 0.9) * length, 0.5 * radius, random);
   }
 }
 
-void add_coral(Terrain& terrain, double x, double y, double thickness, Draw& draw) {
+void add_coral(Terrain& terrain, double x, double y, double thickness, RandomSequence& random) {
   const Eigen::Vector3d root(x, y, terrain.floor.at(x, y) - 0.02);
-  grow(terrain, root, (any_direction(0.9, draw)), draw.between(0.075, 0.10), 0.5 * thickness, draw);
+  grow(terrain, root, (any_direction(0.9, random)), random.between(0.075, 0.10), 0.5 * thickness,
+       random);
 }
 
 // Adds a rope that sags between two supports, which are outside the views.
-void add_rope(Terrain& terrain, double thickness, Draw& draw) {
-  const double turn = draw.between(0, 3.14), aside = draw.between(-0.28, 0.28);
-  const double height = draw.between(0.08, 0.26), sag = draw.between(0.03, 0.10);
+void add_rope(Terrain& terrain, double thickness, RandomSequence& random) {
+  const double turn = random.between(0, 3.14), aside = random.between(-0.28, 0.28);
+  const double height = random.between(0.08, 0.26), sag = random.between(0.03, 0.10);
   const Eigen::Vector3d along(std::cos(turn), std::sin(turn), 0);
   const Eigen::Vector3d middle(-aside * along.y(), aside * along.x(), height);
   constexpr int kPoints = 81;
@@ -66,25 +67,25 @@ void add_rope(Terrain& terrain, double thickness, Draw& draw) {
 }
 
 // Adds plates on one stalk, one above the other, that overhang the ground.
-void add_plates(Terrain& terrain, double x, double y, double size, Draw& draw) {
+void add_plates(Terrain& terrain, double x, double y, double size, RandomSequence& random) {
   const double ground = terrain.floor.at(x, y);
   const auto add = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& radii, double tilt) {
     Blob blob;
     blob.centre = centre;
     blob.radii = radii;
-    blob.turn = Eigen::AngleAxisd(draw.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
+    blob.turn = Eigen::AngleAxisd(random.between(0, 6.28), Eigen::Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX());
     blob.roughness = 0.12;
-    blob.seed = draw.seed();
+    blob.seed = random.seed();
     terrain.blobs.push_back(blob);
   };
   add({x, y, ground + 0.5 * size}, {0.14 * size, 0.14 * size, 0.8 * size}, 0);
   for (const double level : {0.5, 0.95, 1.3})
-    add({x + draw.between(-0.3, 0.3) * size, y + draw.between(-0.3, 0.3) * size,
+    add({x + random.between(-0.3, 0.3) * size, y + random.between(-0.3, 0.3) * size,
          ground + level * size},
-        {(1.2 - 0.5 * level) * size, draw.between(0.7, 0.9) * (1.2 - 0.5 * level) * size,
+        {(1.2 - 0.5 * level) * size, random.between(0.7, 0.9) * (1.2 - 0.5 * level) * size,
          0.06 * size},
-        draw.between(-0.2, 0.2));
+        random.between(-0.2, 0.2));
 }
 
 }  // namespace
@@ -92,25 +93,25 @@ void add_plates(Terrain& terrain, double x, double y, double size, Draw& draw) {
 void make_thicket(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(3), 0.030, 0.018, 1.0, 1.49, 1.333};
   preset.texture = {seed + 4000u, 0.30};
-  Draw draw(seed + 4000u);
+  RandomSequence random(seed + 4000u);
   Terrain& terrain = preset.terrain;
-  terrain.floor = {draw.seed(), 0.6, 0.05, 0.45, 0.90, 0.2};
+  terrain.floor = {random.seed(), 0.6, 0.05, 0.45, 0.90, 0.2};
   terrain.cell = 0.003;
   terrain.half_width = 1.35;
   terrain.half_height = 1.35;
   terrain.skirt = 4;
   for (const auto& [x, y] : {std::pair{-0.22, -0.16}, {0.20, 0.18}, {0.02, -0.27}, {-0.05, 0.26}})
-    add_coral(terrain, x + draw.between(-0.04, 0.04), y + draw.between(-0.04, 0.04), 16 * kPixel,
-              draw);
+    add_coral(terrain, x + random.between(-0.04, 0.04), y + random.between(-0.04, 0.04),
+              16 * kPixel, random);
   for (const double thickness : {8 * kPixel, 8 * kPixel, 4 * kPixel, 4 * kPixel})
-    add_coral(terrain, draw.between(-0.35, 0.35), draw.between(-0.35, 0.35), thickness, draw);
+    add_coral(terrain, random.between(-0.35, 0.35), random.between(-0.35, 0.35), thickness, random);
   for (const double thickness : kThickness)
-    for (int i = 0; i < 2; ++i) add_rope(terrain, thickness * kPixel, draw);
-  add_plates(terrain, 0.03, 0.0, 0.12, draw);
-  add_plates(terrain, -0.30, 0.14, 0.08, draw);
-  add_mushroom(terrain, 0.30, -0.12, 0.09, draw);
-  scatter(terrain, 30, {1.1, 1.1}, 0.2, {0.015, 0.06}, draw);
-  add_two_rings(preset, views, 0.95, draw);
+    for (int i = 0; i < 2; ++i) add_rope(terrain, thickness * kPixel, random);
+  add_plates(terrain, 0.03, 0.0, 0.12, random);
+  add_plates(terrain, -0.30, 0.14, 0.08, random);
+  add_mushroom(terrain, 0.30, -0.12, 0.09, random);
+  scatter(terrain, 30, {1.1, 1.1}, 0.2, {0.015, 0.06}, random);
+  add_two_rings(preset, views, 0.95, random);
 }
 
 }  // namespace axial::simulate

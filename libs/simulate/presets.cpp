@@ -16,22 +16,22 @@ namespace {
 void make_reef(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed, 1.0};
-  Draw draw(seed);
+  RandomSequence random(seed);
   Terrain& terrain = preset.terrain;
-  terrain.floor = {draw.seed(), 2.2, 0.42, 1, 2, 0};
+  terrain.floor = {random.seed(), 2.2, 0.42, 1, 2, 0};
   terrain.cell = 0.010;
   terrain.half_width = 4.4;
   terrain.half_height = 3.6;
   terrain.skirt = 12;
-  scatter(terrain, 30, {4.2, 3.4}, 0, {0.14, 0.55}, draw);
-  scatter(terrain, 40, {3.6, 2.8}, 0, {0.05, 0.14}, draw);
+  scatter(terrain, 30, {4.2, 3.4}, 0, {0.14, 0.55}, random);
+  scatter(terrain, 40, {3.6, 2.8}, 0, {0.05, 0.14}, random);
   for (const auto& [x, y] : {std::pair{-1.3, 0.5}, {0.4, -0.7}, {1.7, 0.6}, {-0.3, 1.4}})
-    add_mushroom(terrain, x + draw.between(-0.2, 0.2), y + draw.between(-0.2, 0.2),
-                 draw.between(0.36, 0.48), draw);
-  add_arch(terrain, -0.6, -0.8, 0.42, draw);
-  add_arch(terrain, 1.0, 0.3, 0.38, draw);
+    add_mushroom(terrain, x + random.between(-0.2, 0.2), y + random.between(-0.2, 0.2),
+                 random.between(0.36, 0.48), random);
+  add_arch(terrain, -0.6, -0.8, 0.42, random);
+  add_arch(terrain, 1.0, 0.3, 0.38, random);
 
-  add_two_rows(preset, views, 2.90, draw);
+  add_two_rows(preset, views, 2.90, random);
 }
 
 // Forth along one row, back along the next. The seabed grows with the number of rows.
@@ -41,24 +41,24 @@ void make_survey(Preset& preset, std::uint32_t seed, int views) {
   const int rows = (views + kColumns - 1) / kColumns;
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed + 2000u, 1.0};
-  Draw draw(seed + 2000u);
+  RandomSequence random(seed + 2000u);
   Terrain& terrain = preset.terrain;
-  terrain.floor = {draw.seed(), 2.2, 0.42, 1, 2, 0};
+  terrain.floor = {random.seed(), 2.2, 0.42, 1, 2, 0};
   terrain.cell = 0.02;
   terrain.half_width = 0.5 * kStep * (kColumns - 1) + kMargin;
   terrain.half_height = 0.5 * kStep * (rows - 1) + kMargin;
   terrain.skirt = 12;
-  scatter(terrain, views, {terrain.half_width, terrain.half_height}, 0, {0.08, 0.4}, draw);
+  scatter(terrain, views, {terrain.half_width, terrain.half_height}, 0, {0.08, 0.4}, random);
 
   for (int i = 0; i < views; ++i) {
     const int row = i / kColumns, along = i % kColumns;
     const int column = row % 2 == 0 ? along : kColumns - 1 - along;
     const Eigen::Vector3d centre(
-        kStep * (column - 0.5 * (kColumns - 1)) + draw.between(-0.06, 0.06),
-        kStep * (row - 0.5 * (rows - 1)) + draw.between(-0.06, 0.06),
-        kHeight + draw.between(-0.12, 0.12));
+        kStep * (column - 0.5 * (kColumns - 1)) + random.between(-0.06, 0.06),
+        kStep * (row - 0.5 * (rows - 1)) + random.between(-0.06, 0.06),
+        kHeight + random.between(-0.12, 0.12));
     View view = look_at(centre, centre - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
-    shake(view, 4, draw);
+    shake(view, 4, random);
     preset.views.push_back(view);
   }
 }
@@ -68,28 +68,28 @@ void make_survey(Preset& preset, std::uint32_t seed, int views) {
 void make_outcrop(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(0), 0.020, 0.014, 1.0, 1.52, 1.333};
   preset.texture = {seed + 3000u, 0.8};
-  Draw draw(seed + 3000u);
+  RandomSequence random(seed + 3000u);
   Terrain& terrain = preset.terrain;
-  terrain.floor = {draw.seed(), 1.6, 0.30, 0.3, 1.9, -0.7};
+  terrain.floor = {random.seed(), 1.6, 0.30, 0.3, 1.9, -0.7};
   terrain.floor.layer = 0.11;
-  terrain.floor.dip = {draw.between(-0.3, 0.3), draw.between(0.1, 0.3)};
+  terrain.floor.dip = {random.between(-0.3, 0.3), random.between(0.1, 0.3)};
   terrain.cell = 0.008;
   terrain.half_width = 3.2;
   terrain.half_height = 3.2;
   terrain.skirt = 10;
-  scatter(terrain, 14, {2.2, 2.2}, 1.0, {0.10, 0.30}, draw);
-  scatter(terrain, 60, {2.4, 2.4}, 0.3, {0.03, 0.09}, draw);
+  scatter(terrain, 14, {2.2, 2.2}, 1.0, {0.10, 0.30}, random);
+  scatter(terrain, 60, {2.4, 2.4}, 0.3, {0.03, 0.09}, random);
 
   for (int i = 0; i < views; ++i) {
     const double along = views > 1 ? i / (views - 1.0) : 0.5;
-    const double around = (-155 + 130 * along + draw.between(-4, 4)) * kRadians;
-    const double elevation = draw.between(52, 70) * kRadians;
-    const double range = draw.between(2.2, 2.7);
-    const Eigen::Vector3d target(draw.between(-0.15, 0.15), draw.between(-0.15, 0.15), -0.25);
+    const double around = (-155 + 130 * along + random.between(-4, 4)) * kRadians;
+    const double elevation = random.between(52, 70) * kRadians;
+    const double range = random.between(2.2, 2.7);
+    const Eigen::Vector3d target(random.between(-0.15, 0.15), random.between(-0.15, 0.15), -0.25);
     const Eigen::Vector3d offset(std::cos(elevation) * std::cos(around),
                                  std::cos(elevation) * std::sin(around), std::sin(elevation));
     View view = look_at(target + range * offset, target, Eigen::Vector3d::UnitZ());
-    shake(view, 5, draw);
+    shake(view, 5, random);
     preset.views.push_back(view);
   }
 }
@@ -97,21 +97,21 @@ void make_outcrop(Preset& preset, std::uint32_t seed, int views) {
 void make_closeup(Preset& preset, std::uint32_t seed, int views) {
   preset.port = {tilted_normal(3), 0.030, 0.018, 1.0, 1.49, 1.333};
   preset.texture = {seed + 1000u, 0.30};
-  Draw draw(seed + 1000u);
+  RandomSequence random(seed + 1000u);
   Terrain& terrain = preset.terrain;
-  terrain.floor = {draw.seed(), 0.5, 0.07, 0.30, 0.70, 0.27};
+  terrain.floor = {random.seed(), 0.5, 0.07, 0.30, 0.70, 0.27};
   terrain.cell = 0.003;
   terrain.half_width = 1.25;
   terrain.half_height = 1.25;
   terrain.skirt = 4;
-  add_mushroom(terrain, -0.03, 0.02, 0.17, draw);
-  add_mushroom(terrain, 0.17, -0.16, 0.08, draw);
-  add_arch(terrain, -0.17, -0.14, 0.12, draw);
-  add_arch(terrain, 0.14, 0.17, 0.09, draw);
-  scatter(terrain, 8, {0.35, 0.35}, 0.20, {0.04, 0.09}, draw);
-  scatter(terrain, 50, {1.1, 1.1}, 0.25, {0.015, 0.07}, draw);
+  add_mushroom(terrain, -0.03, 0.02, 0.17, random);
+  add_mushroom(terrain, 0.17, -0.16, 0.08, random);
+  add_arch(terrain, -0.17, -0.14, 0.12, random);
+  add_arch(terrain, 0.14, 0.17, 0.09, random);
+  scatter(terrain, 8, {0.35, 0.35}, 0.20, {0.04, 0.09}, random);
+  scatter(terrain, 50, {1.1, 1.1}, 0.25, {0.015, 0.07}, random);
 
-  add_two_rings(preset, views, 0.81, draw);
+  add_two_rings(preset, views, 0.81, random);
 }
 
 // This haze leaves a seventh of the contrast.

@@ -52,35 +52,36 @@ View load_view(const Scene& scene, const std::string& name, unsigned level) {
   fail("{}: no such image in the scene", name);
 }
 
-struct Seen {
+struct ProjectedPoint {
   bool inside = false;
   int x = 0, y = 0;
   float depth = 0;
 };
 
-Seen see(const View& view, const Camera& camera, const Eigen::Vector3f& point) {
+ProjectedPoint project(const View& view, const Camera& camera, const Eigen::Vector3f& point) {
   const Eigen::Vector3f in_camera = view.pose.to_camera(point.cast<double>()).cast<float>();
   const auto image = camera.project(in_camera);
-  Seen seen{false, cvRound(image.pixel.x()), cvRound(image.pixel.y()), in_camera.norm()};
-  seen.inside =
-      image.visible && depth::window_inside(seen.x, seen.y, view.grey.cols - 2, view.grey.rows - 2);
-  return seen;
+  ProjectedPoint projected{false, cvRound(image.pixel.x()), cvRound(image.pixel.y()),
+                           in_camera.norm()};
+  projected.inside = image.visible && depth::window_inside(projected.x, projected.y,
+                                                           view.grey.cols - 2, view.grey.rows - 2);
+  return projected;
 }
 
 void splat(View& view, const Camera& camera, const PointCloud& cloud) {
   for (const Eigen::Vector3f& point : cloud.positions) {
-    const Seen seen = see(view, camera, point);
-    if (!seen.inside) continue;
+    const ProjectedPoint projected = project(view, camera, point);
+    if (!projected.inside) continue;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
-        float& nearest = view.nearest(seen.y + dy, seen.x + dx);
-        nearest = std::min(nearest, seen.depth);
+        float& nearest = view.nearest(projected.y + dy, projected.x + dx);
+        nearest = std::min(nearest, projected.depth);
       }
   }
 }
 
-bool in_front(const View& view, const Seen& seen) {
-  return seen.inside && seen.depth < 1.01f * view.nearest(seen.y, seen.x);
+bool in_front(const View& view, const ProjectedPoint& projected) {
+  return projected.inside && projected.depth < 1.01f * view.nearest(projected.y, projected.x);
 }
 
 float median(std::vector<float>& values) {
@@ -111,8 +112,8 @@ int run(char** argv) {
   std::size_t agree = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f& point = cloud.positions[i];
-    const Seen in_a = see(a, camera_a, point);
-    if (!in_front(a, in_a) || !in_front(b, see(b, camera_b, point))) continue;
+    const ProjectedPoint in_a = project(a, camera_a, point);
+    if (!in_front(a, in_a) || !in_front(b, project(b, camera_b, point))) continue;
     const Eigen::Vector3f x = a.pose.to_camera(point.cast<double>()).cast<float>();
     const Eigen::Vector3f normal = (a.pose.rotation.cast<float>() * cloud.normals[i]).normalized();
     const Eigen::Vector3f from_a = (point - a.pose.centre.cast<float>()).normalized();
@@ -122,7 +123,7 @@ int run(char** argv) {
     if (!(along < -0.2f) || !(cloud.normals[i].dot(from_b) < -0.2f)) continue;
     const depth::PlaneHypothesis plane{normal.dot(x) / along, normal};
     constexpr std::array<depth::ScorePair, 1> kPair{{{0, 0}}};
-    std::array<depth::ViewScore, 1> score;
+    std::array<depth::PlaneScore, 1> score;
     matcher.score(pixel, {&plane, 1}, kPair, {}, score);
     angles.push_back(std::acos(std::clamp(from_a.dot(from_b), -1.0f, 1.0f)) * 180.0f /
                      std::numbers::pi_v<float>);

@@ -10,7 +10,7 @@ from openmvs_scene import Scene
 from programs import cloud_size, main, read, write
 
 
-def moved(scene, folder):
+def with_image_folder(scene, folder):
     """The bytes of the scene with the images' folder replaced by `folder`."""
     for path in set(re.findall(rb"[^\0]*/\d{4}\.jpg", scene)):
         before = struct.pack("<Q", len(path)) + path
@@ -102,7 +102,7 @@ class Export(Scene):
         os.makedirs(self.path("elsewhere"), exist_ok=True)
         scene = read(os.path.join(folder, "scene.mvs"))
         for place, found in (("../closeup/air", 5), ("there", 2), ("nowhere", 0)):
-            write(os.path.join(folder, "scene.mvs"), moved(scene, place))
+            write(os.path.join(folder, "scene.mvs"), with_image_folder(scene, place))
             for start, missing in ((folder, 5 - found), (self.path("elsewhere"),
                                                          0 if found == 5 else 5)):
                 with self.subTest(place=place, start=start):

@@ -59,7 +59,7 @@ class Masks(ProgramTest):
         self.assertIn(f"{self.images[2]}: no mask: looked for 0002.mask.png, 0002.png.png and "
                       f"0002_mask.png in {self.path('images')}", warnings[0])
 
-    def test_rivals(self):
+    def test_two_masks_for_an_image(self):
         for name in self.names:
             self.put(LEFT, "masks", name[:-4] + ".mask.png")
             self.put(RIGHT, "masks", name + ".png")

@@ -58,8 +58,8 @@ Question question(const Survey& survey, const depth::LaneMatcher<Camera>& matche
 
 template <class Camera>
 void answer(const depth::LaneMatcher<Camera>& matcher, const Question& asked) {
-  std::array<depth::ViewScore, kCandidatePairs.size()> all;
-  std::array<depth::ViewScore, 2 * kTrials> best;
+  std::array<depth::PlaneScore, kCandidatePairs.size()> all;
+  std::array<depth::PlaneScore, 2 * kTrials> best;
   matcher.score(asked.pixel, asked.candidates, kCandidatePairs, asked.around, all);
   matcher.score(asked.pixel, asked.trials, asked.trial_pairs, asked.around, best);
   benchmark::DoNotOptimize(all);

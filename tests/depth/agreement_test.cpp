@@ -157,8 +157,8 @@ TEST(Agreement, EachWrongNumberOfTheCameraShows) {
         << name << " " << agreement_of(seen_through(right, change), points).systematic;
 }
 
-std::vector<Eigen::Vector3f> moved(std::vector<Eigen::Vector3f> points,
-                                   const std::function<float()>& share) {
+std::vector<Eigen::Vector3f> with_relative_errors(std::vector<Eigen::Vector3f> points,
+                                                  const std::function<float()>& share) {
   for (Eigen::Vector3f& point : points) point *= 1 + share();
   return points;
 }
@@ -169,8 +169,9 @@ TEST(Agreement, TellsASystematicDifferenceFromNoise) {
   const std::vector<Eigen::Vector3f> points = points_on(kPlane, 800);
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0, 0.02f);
-  const Agreement noisy = agreement_of(maps, moved(points, [&] { return noise(random); }));
-  const Agreement shifted = agreement_of(maps, moved(points, [] { return 0.02f; }));
+  const Agreement noisy =
+      agreement_of(maps, with_relative_errors(points, [&] { return noise(random); }));
+  const Agreement shifted = agreement_of(maps, with_relative_errors(points, [] { return 0.02f; }));
   EXPECT_GT(noisy.pixels, 0.1);
   EXPECT_LT(noisy.pixels, shifted.pixels);
   EXPECT_FALSE(judge(noisy).any()) << noisy.systematic << " " << noisy.significance;

@@ -188,8 +188,8 @@ std::vector<Question> questions() {
 }
 
 template <class Matcher>
-std::vector<ViewScore> answers(const Matcher& matcher, const std::vector<Question>& asked) {
-  std::vector<ViewScore> all;
+std::vector<PlaneScore> answers(const Matcher& matcher, const std::vector<Question>& asked) {
+  std::vector<PlaneScore> all;
   for (const Question& question : asked) {
     ReferencePixel pixel = matcher.pixels().prepare(question.x, question.y);
     matcher.pixels().set_prior(pixel, question.prior);
@@ -200,7 +200,7 @@ std::vector<ViewScore> answers(const Matcher& matcher, const std::vector<Questio
                           {plane.normal.x(), plane.normal.y(), plane.normal.z()}};
     };
     const std::array<SurfacePoint, 3> around{surface(0), surface(1), surface(2)};
-    std::vector<ViewScore> scores(question.pairs.size());
+    std::vector<PlaneScore> scores(question.pairs.size());
     matcher.score(pixel, question.planes, question.pairs, around, scores);
     all.insert(all.end(), scores.begin(), scores.end());
   }
@@ -208,7 +208,7 @@ std::vector<ViewScore> answers(const Matcher& matcher, const std::vector<Questio
 }
 
 template <class Matcher>
-std::vector<ViewScore> answers(const Matcher& matcher) {
+std::vector<PlaneScore> answers(const Matcher& matcher) {
   return answers(matcher, questions());
 }
 

@@ -35,14 +35,14 @@ class FormulaMatcher {
 
   void score(const ReferencePixel&, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint>,
-             std::span<ViewScore> scores) const {
+             std::span<PlaneScore> scores) const {
     calls.emplace_back(pairs.begin(), pairs.end());
     planes_asked.emplace_back(planes.begin(), planes.end());
     for (std::size_t i = 0; i < pairs.size(); ++i)
       scores[i] = score_of(planes[pairs[i].plane].depth, pairs[i].view);
   }
 
-  static ViewScore score_of(float depth, std::uint8_t view) {
+  static PlaneScore score_of(float depth, std::uint8_t view) {
     const bool good = std::find(kGoodViews.begin(), kGoodViews.end(), view) != kGoodViews.end();
     const float off = std::abs(depth - kDepth);
     return {std::min(off + (good ? 0.1f : 0.8f), 0.9f), 50 * depth + view, 1};
@@ -142,8 +142,8 @@ TEST(SweepTrials, LeaveCostViewsAndMotionOfThePlaneThatWon) {
     for (int sweep = 0; sweep < 3; ++sweep) run(matcher, map, input(pairs));
     for (const PlanePixel& pixel : map.pixels) {
       if (!(pixel.plane.depth > 0)) continue;
-      const ViewScore first = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[0]);
-      const ViewScore second = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[1]);
+      const PlaneScore first = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[0]);
+      const PlaneScore second = FormulaMatcher::score_of(pixel.plane.depth, pixel.views[1]);
       ASSERT_EQ(pixel.cost, aggregate(first.cost, second.cost));
       ASSERT_EQ(pixel.motion, first.motion);
     }

@@ -10,8 +10,8 @@
 namespace axial::evaluate {
 namespace {
 
-std::vector<Eigen::Vector3f> moved(const std::vector<Eigen::Vector3f>& points,
-                                   const Similarity& by) {
+std::vector<Eigen::Vector3f> transformed(const std::vector<Eigen::Vector3f>& points,
+                                         const Similarity& by) {
   std::vector<Eigen::Vector3f> result;
   for (const auto& x : points) result.push_back(by(x.cast<double>()).cast<float>());
   return result;
@@ -30,7 +30,7 @@ TEST(RefineRigid, RecoversASmallOffset) {
   const Surface surface(mesh);
   const auto points = sample_surface(height_field(50, 1.8, ripples), 5000, 2);
   const auto reference = distances_to(surface, points);
-  const IcpResult result = refine_rigid(moved(points, small_offset()), surface);
+  const IcpResult result = refine_rigid(transformed(points, small_offset()), surface);
   EXPECT_TRUE(result.converged);
   const Similarity left = result.transform.after(small_offset());
   // The facets of the two meshes differ by some tenths of a millimetre, without bias.
@@ -44,16 +44,16 @@ TEST(RefineRigid, RecoversASmallOffset) {
 TEST(RefineRigid, IsExactWhereTheSurfaceIs) {
   const Mesh mesh = height_field(30, 2, ripples);
   const auto points = sample_surface(mesh, 4000, 2);
-  const IcpResult result = refine_rigid(moved(points, small_offset()), Surface(mesh));
+  const IcpResult result = refine_rigid(transformed(points, small_offset()), Surface(mesh));
   const Similarity left = result.transform.after(small_offset());
-  // The float coordinates of the moved points limit the accuracy.
+  // The float coordinates of the transformed points limit the accuracy.
   EXPECT_LT(left.translation.norm(), 1e-6);
   EXPECT_LT((left.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-6);
 }
 
 TEST(RefineRigid, OutliersDoNotPull) {
   const Mesh mesh = height_field(30, 2, ripples);
-  auto points = moved(sample_surface(mesh, 4000, 2), small_offset());
+  auto points = transformed(sample_surface(mesh, 4000, 2), small_offset());
   for (std::size_t i = 0; i < points.size(); i += 10) points[i].z() += 0.5f;
   const IcpResult result = refine_rigid(points, Surface(mesh));
   EXPECT_LT(result.transform.after(small_offset()).translation.norm(), 1e-5);
@@ -70,7 +70,7 @@ TEST(RefineRigid, DoesNotSlideOnAPlane) {
 
 TEST(RefineRigid, GivesTheSameTwice) {
   const Mesh mesh = height_field(30, 2, ripples);
-  const auto points = moved(sample_surface(mesh, 30000, 2), small_offset());
+  const auto points = transformed(sample_surface(mesh, 30000, 2), small_offset());
   EXPECT_EQ(refine_rigid(points, Surface(mesh)).transform.matrix(),
             refine_rigid(points, Surface(mesh)).transform.matrix());
 }

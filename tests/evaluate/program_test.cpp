@@ -113,12 +113,11 @@ TEST_F(Programs, EvaluateByViewsThicknessAndExpectedErrors) {
   // A pixel is about 5 mm wide, so everything is about 4 pixels thick.
   const std::vector<float> thickness(truth.vertices.size(), 0.02f);
   io::write_mesh_ply(folder_ / "thin.ply", truth, io::VertexProperty{"thickness", thickness});
-  write_atomically(folder_ / "worth.ply",
+  write_atomically(folder_ / "uncertainty.ply",
                    cloud_with_worth(io::read_cloud_ply(folder_ / "cloud.ply")));
-  const Outcome outcome =
-      run("EvaluateReconstruction",
-          "-i worth.ply -m thin.ply --tolerance 0.02 --gross 0.001 --cameras true --samples 20000 "
-          "--json out.json");
+  const Outcome outcome = run("EvaluateReconstruction",
+                              "-i uncertainty.ply -m thin.ply --tolerance 0.02 --gross 0.001 "
+                              "--cameras true --samples 20000 --json out.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   for (const char* title :
        {"seen by views", "thickness [px]", "points of views", "expected error", "confidence"})
@@ -144,13 +143,13 @@ TEST_F(Programs, EvaluateByViewsThicknessAndExpectedErrors) {
 
 TEST_F(Programs, CountTheWorthOfThePointsThatCount) {
   write_scene();
-  write_atomically(folder_ / "worth.ply",
+  write_atomically(folder_ / "uncertainty.ply",
                    cloud_with_worth(io::read_cloud_ply(folder_ / "cloud.ply")));
-  ASSERT_EQ(
-      run("EvaluateReconstruction",
-          "-i worth.ply -m truth.ply --framed-only --cameras true --samples 5000 --json o.json")
-          .exit_code,
-      0);
+  ASSERT_EQ(run("EvaluateReconstruction",
+                "-i uncertainty.ply -m truth.ply --framed-only --cameras true --samples 5000 "
+                "--json o.json")
+                .exit_code,
+            0);
   const auto json = read_json("o.json");
   EXPECT_LT(json["accuracy"]["count"], 15000) << "of 20000";
   EXPECT_EQ(json["calibration"]["points"], json["accuracy"]["count"]);

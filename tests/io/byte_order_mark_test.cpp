@@ -59,7 +59,7 @@ TEST_F(ByteOrderMark, InAHousingAndLenses) {
       housing_with(refractive::FlatPort<double>{{0, 0, 1}, 0.02, 0.01, 1, 1.5, 1.33});
   write_housing(folder_ / "h.json", housing);
   EXPECT_EQ(read_housing(marked("marked.json", read_file(folder_ / "h.json"))).ports.size(), 1u);
-  write_lenses(folder_ / "l.json", Lenses{});
+  write_lenses(folder_ / "l.json", SceneLenses{});
   EXPECT_EQ(read_lenses(marked("marked.json", read_file(folder_ / "l.json"))).default_lens, "none");
   write_calibmar(folder_ / "c.yaml", {1, "PINHOLE", 64, 48, {50, 50, 32, 24}});
   EXPECT_EQ(read_calibmar(marked("marked.yaml", read_file(folder_ / "c.yaml"))).width, 64u);

@@ -82,10 +82,10 @@ RC_GTEST_PROP(ColmapFolder, IsReadAsColmapDoes, ()) {
   const std::string said = log.text();
   bool any = false;
   for (std::size_t i = 0; i < 3; ++i) {
-    const bool rivals = differs[i] && text[i] && binary[i];
+    const bool ignored = differs[i] && text[i] && binary[i];
     for (const char* extension : {".txt", ".bin"})
-      RC_ASSERT((said.find(std::string(kParts[i]) + extension) != std::string::npos) == rivals);
-    any = any || rivals;
+      RC_ASSERT((said.find(std::string(kParts[i]) + extension) != std::string::npos) == ignored);
+    any = any || ignored;
   }
   RC_ASSERT(std::ranges::count(said, '\n') == (any ? 1 : 0));
 }

@@ -95,7 +95,7 @@ TEST_F(LensesTest, AreFoundAgainForImagesOfOneBaseName) {
 TEST_F(LensesTest, RefusesEntriesThatSeveralImagesGoBy) {
   add("/x/cam0/0.jpg", {});
   add("/x/cam1/0.jpg", {});
-  Lenses lenses;
+  SceneLenses lenses;
   lenses.lenses["wide"] = barrel();
   lenses.images["0.jpg"] = "wide";
   write_lenses(file_, lenses);

@@ -150,20 +150,20 @@ TEST_F(MasksTest, ThatOfTheSceneGoesBeforeThatBesideTheImage) {
   EXPECT_THAT(find_masks(requests)[0].looked_for, HasSubstr(named.string()));
 }
 
-TEST_F(MasksTest, RivalsAreThoseWithOtherLabels) {
+TEST_F(MasksTest, IgnoredMasksAreThoseWithOtherLabels) {
   cv::Mat1b labels(4, 6, uchar{3});
   fs::create_directories(folder_ / "images");
   write_png(image("a.mask.png"), labels);
   cv::Mat wide;
   labels.convertTo(wide, CV_16U);
   write_png(image("a.jpg.png"), wide);  // the same labels in other bytes
-  EXPECT_EQ(rival_masks(find({"a.jpg"}, {})).count, 0u);
+  EXPECT_EQ(ignored_masks(find({"a.jpg"}, {})).count, 0u);
   labels(1, 1) = 4;
   write_png(image("a_mask.png"), labels);
-  const RivalMasks rivals = rival_masks(find({"a.jpg", "b.jpg"}, {}));
-  EXPECT_EQ(rivals.count, 1u);
-  EXPECT_EQ(rivals.used, image("a.mask.png"));
-  EXPECT_EQ(rivals.other, image("a_mask.png"));
+  const IgnoredMasks ignored = ignored_masks(find({"a.jpg", "b.jpg"}, {}));
+  EXPECT_EQ(ignored.count, 1u);
+  EXPECT_EQ(ignored.used, image("a.mask.png"));
+  EXPECT_EQ(ignored.other, image("a_mask.png"));
 }
 
 TEST_F(MasksTest, TheFolderMustExist) {

@@ -53,7 +53,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
                            Jacobian* jacobian) const {
     const BundleCamera& camera = bundle_.cameras[0];
     const HousingChange<double> change = x.tail<kHousingNumbers>();
-    const auto now = make_camera<double>(moved(camera.measured, change));
+    const auto now = make_camera<double>(with_change(camera.measured, change));
     const ObservationCost cost(observation, bundle_.images[observation.image].pose, camera, now);
     const double* blocks[] = {x.data(), x.data() + kPoseNumbers, x.data() + kPoseNumbers + 3};
     Eigen::Vector2d result;
@@ -109,11 +109,11 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfJets) {
     refractive::Vector3<Jet> X;
     ceres::AngleAxisRotatePoint(jets.data(), unturned.data(), X.data());
     const HousingChange<Jet> change = jets.tail<kHousingNumbers>();
-    const auto lens = moved(model.lens, change);
+    const auto lens = with_change(model.lens, change);
     const refractive::Vector2<Jet> pixel =
         model.port ? std::visit(
                          [&](const auto& port) {
-                           return projection(moved(port, change), lens, model, X).pixel;
+                           return projection(with_change(port, change), lens, model, X).pixel;
                          },
                          *model.port)
                    : refractive::PinholeCamera<Jet>(lens).project(X).pixel;

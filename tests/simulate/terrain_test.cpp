@@ -17,7 +17,7 @@ namespace axial::simulate {
 namespace {
 
 // z-depths, and upward components of the normals in the world, of all views in one medium.
-struct Seen {
+struct ViewStatistics {
   std::size_t background = 0;
   std::vector<double> depths;
   std::size_t facing_down = 0;
@@ -28,58 +28,59 @@ struct Seen {
   }
 };
 
-Seen look_around(const std::string& name, bool water) {
+ViewStatistics statistics_of_views(const std::string& name, bool water) {
   Preset preset = make_preset({name, 1, 0, 64, 48, 80});
   preset.terrain.cell *= 6;
   const RayScene scene(terrain_mesh(preset.terrain));
   const Port* port = water ? &preset.port : nullptr;
-  Seen seen;
-  seen.views = preset.views.size();
+  ViewStatistics statistics;
+  statistics.views = preset.views.size();
   for (const View& view : preset.views) {
     const Truth truth = render_truth(scene, preset.lens, port, view);
     for (int y = 0; y < preset.lens.height; ++y) {
       for (int x = 0; x < preset.lens.width; ++x) {
         const double distance = truth.distance(y, x);
         if (!(distance > 0)) {
-          ++seen.background;
+          ++statistics.background;
           continue;
         }
         const auto ray = *trace_pixel(preset.lens, port, x, y);
-        seen.depths.push_back((ray.on_axis + distance * ray.direction).z());
-        if (truth.normal(y, x)[2] < -0.1f) ++seen.facing_down;
+        statistics.depths.push_back((ray.on_axis + distance * ray.direction).z());
+        if (truth.normal(y, x)[2] < -0.1f) ++statistics.facing_down;
       }
     }
   }
-  std::sort(seen.depths.begin(), seen.depths.end());
-  return seen;
+  std::sort(statistics.depths.begin(), statistics.depths.end());
+  return statistics;
 }
 
 TEST(Terrain, ReefIsWhereTheSpecificationPutsIt) {
   for (const bool water : {false, true}) {
-    const Seen seen = look_around("reef", water);
-    EXPECT_EQ(seen.views, 10u);
-    EXPECT_EQ(seen.background, 0u);
-    EXPECT_GT(seen.quantile(0.001), 2.0);
-    EXPECT_LT(seen.quantile(0.999), 3.5);
+    const ViewStatistics statistics = statistics_of_views("reef", water);
+    EXPECT_EQ(statistics.views, 10u);
+    EXPECT_EQ(statistics.background, 0u);
+    EXPECT_GT(statistics.quantile(0.001), 2.0);
+    EXPECT_LT(statistics.quantile(0.999), 3.5);
     // The relief is 30 to 50 % of the viewing distance.
-    const double relief = (seen.quantile(0.999) - seen.quantile(0.001)) / seen.quantile(0.5);
+    const double relief =
+        (statistics.quantile(0.999) - statistics.quantile(0.001)) / statistics.quantile(0.5);
     EXPECT_GT(relief, 0.3);
     EXPECT_LT(relief, 0.5);
   }
 }
 
 TEST(Terrain, CloseupIsWhereTheSpecificationPutsIt) {
-  const Seen seen = look_around("closeup", false);
-  EXPECT_EQ(seen.views, 12u);
-  EXPECT_EQ(seen.background, 0u);
-  EXPECT_GT(seen.quantile(0.02), 0.45);
-  EXPECT_GT(seen.quantile(0.5), 0.70);
-  EXPECT_LT(seen.quantile(0.5), 0.80);
+  const ViewStatistics statistics = statistics_of_views("closeup", false);
+  EXPECT_EQ(statistics.views, 12u);
+  EXPECT_EQ(statistics.background, 0u);
+  EXPECT_GT(statistics.quantile(0.02), 0.45);
+  EXPECT_GT(statistics.quantile(0.5), 0.70);
+  EXPECT_LT(statistics.quantile(0.5), 0.80);
   // Views from the side see, beyond the object, the far wall of its hollow.
-  EXPECT_LT(seen.quantile(0.8), 0.90);
-  EXPECT_LT(seen.quantile(0.999), 1.1);
+  EXPECT_LT(statistics.quantile(0.8), 0.90);
+  EXPECT_LT(statistics.quantile(0.999), 1.1);
   // Overhangs must be visible: more than one pixel in a thousand.
-  EXPECT_GT(1000 * seen.facing_down, seen.depths.size());
+  EXPECT_GT(1000 * statistics.facing_down, statistics.depths.size());
 }
 
 TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
@@ -104,12 +105,12 @@ TEST(Terrain, SurveyGrowsWithItsViewsButEachSeesAsMuch) {
 
 TEST(Terrain, OutcropFillsTheViewsAtAFewMetres) {
   for (const bool water : {false, true}) {
-    const Seen seen = look_around("outcrop", water);
-    EXPECT_EQ(seen.views, 10u);
-    EXPECT_EQ(seen.background, 0u);
-    EXPECT_GT(seen.quantile(0.02), 1.2);
-    EXPECT_GT(seen.quantile(0.5), 1.8);
-    EXPECT_LT(seen.quantile(0.5), 3.2);
+    const ViewStatistics statistics = statistics_of_views("outcrop", water);
+    EXPECT_EQ(statistics.views, 10u);
+    EXPECT_EQ(statistics.background, 0u);
+    EXPECT_GT(statistics.quantile(0.02), 1.2);
+    EXPECT_GT(statistics.quantile(0.5), 1.8);
+    EXPECT_LT(statistics.quantile(0.5), 3.2);
   }
 }
 

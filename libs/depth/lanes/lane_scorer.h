@@ -36,11 +36,11 @@ class LaneScorer final : public Scorer {
   AXIAL_FLATTEN void score(const LanePixel& pixel, const LanePlanes& planes, const LanePairs& pairs,
                            std::span<const SurfacePoint> neighbours,
                            LaneScores& scores) const override {
-    Seen seen;
+    LaneProjections projected;
     for (std::size_t first = 0; first < pairs.count; first += View::kWidth)
-      view_.look(pixel, planes, pairs, neighbours, first, scores, seen);
+      view_.look(pixel, planes, pairs, neighbours, first, scores, projected);
     for (std::size_t first = 0; first < pairs.count; first += T::kWidth)
-      compare(pixel, pairs, seen, first, scores);
+      compare(pixel, pairs, projected, first, scores);
   }
 
   AXIAL_FLATTEN void rays(float x, float y, LaneRays& rays) const override {
@@ -49,19 +49,21 @@ class LaneScorer final : public Scorer {
   }
 
  private:
-  void compare(const LanePixel& pixel, const LanePairs& pairs, const Seen& seen, std::size_t first,
-               LaneScores& scores) const {
+  void compare(const LanePixel& pixel, const LanePairs& pairs, const LaneProjections& projected,
+               std::size_t first, LaneScores& scores) const {
     const auto at = [&](const LaneFloats& floats) { return T::load(floats.data() + first); };
     refractive::Matrix2<T> warp;
-    warp << at(seen.warp[0]), at(seen.warp[1]), at(seen.warp[2]), at(seen.warp[3]);
-    const refractive::Projection<T> centre{{at(seen.x), at(seen.y)}, at(seen.visible) > T(0)};
+    warp << at(projected.warp[0]), at(projected.warp[1]), at(projected.warp[2]),
+        at(projected.warp[3]);
+    const refractive::Projection<T> centre{{at(projected.x), at(projected.y)},
+                                           at(projected.visible) > T(0)};
     const T correlation =
         lane_zncc(*pixel.patch, tables_.words.data(),
                   lane_images<Narrow>(tables_, pairs.view.data() + first), centre, warp);
     T cost = select(correlation < T(-1.5f), T(kOutsideCost), T(1) - correlation);
-    cost += at(seen.inconsistency);
+    cost += at(projected.inconsistency);
     if (pixel.prior_weight > 0) {
-      const T off = abs(at(seen.depth) - T(pixel.prior_depth)) / T(pixel.prior_depth);
+      const T off = abs(at(projected.depth) - T(pixel.prior_depth)) / T(pixel.prior_depth);
       cost += T(pixel.prior_weight) * (min(off, T(0.5f)) - cost);
     }
     min(cost, T(kMaxCost)).store(scores.cost.data() + first);

@@ -15,7 +15,7 @@
 namespace axial::depth::lanes {
 
 // The results of LaneView::look() that the correlation and the cost need.
-struct Seen {
+struct LaneProjections {
   LaneFloats x, y;                 // the patch's centre in the source view [px]
   LaneFloats visible;              // 1 or 0
   std::array<LaneFloats, 4> warp;  // d(source pixel)/d(reference pixel), row-major
@@ -31,9 +31,9 @@ class LaneView {
   using Image = decltype(std::declval<Projector>().image(std::declval<Vector>()));
 
   // One source view per lane. If all views have the same projector, `projector` points to it,
-  // because a copy would take much of the time. Otherwise it points to `dealt`.
+  // because a copy would take much of the time. Otherwise it points to `gathered`.
   struct Views {
-    Projector dealt;
+    Projector gathered;
     const Projector* projector;
     refractive::Matrix3<T> rotation;
     Vector translation;
@@ -53,14 +53,14 @@ class LaneView {
     fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
-  // Processes kWidth pairs, from pair `first` on. Stores `seen` and all scores but the cost.
+  // Processes kWidth pairs, from pair `first` on. Stores `projected` and all scores but the cost.
   void look(const LanePixel& pixel, const LanePlanes& lane_planes, const LanePairs& pairs,
             std::span<const SurfacePoint> neighbours, std::size_t first, LaneScores& scores,
-            Seen& seen) const {
-    const Planes planes = deal_planes(lane_planes, Lookup<Abi>(pairs.plane.data() + first));
+            LaneProjections& projected) const {
+    const Planes planes = gather_planes(lane_planes, Lookup<Abi>(pairs.plane.data() + first));
     const Lookup<Abi> of_view(pairs.view.data() + first);
     Views views;
-    deal_views(of_view, views);
+    gather_views(of_view, views);
     const refractive::AxialRay<T> ray{vector(pixel.origin), vector(pixel.direction)};
     const Vector surface = ray.at(planes.depth);
     depth::smoothness<T>(surface, planes.normal, neighbours, tables_.smoothness)
@@ -72,20 +72,20 @@ class LaneView {
         refractive::plane_point_derivative(ray, ray_jacobian(pixel), planes.depth, planes.normal);
     const Image image = views.projector->image(point);
     for (int k = 0; k < 2; ++k) {
-      const refractive::Vector2<T> column = image.moved(slide.col(k));
+      const refractive::Vector2<T> column = image.pixel_motion(slide.col(k));
       for (int i = 0; i < 2; ++i)
-        column(i).store(seen.warp[static_cast<std::size_t>(2 * i + k)].data() + first);
+        column(i).store(projected.warp[static_cast<std::size_t>(2 * i + k)].data() + first);
     }
-    image.projection.pixel.x().store(seen.x.data() + first);
-    image.projection.pixel.y().store(seen.y.data() + first);
-    select(image.projection.visible, T(1), T(0)).store(seen.visible.data() + first);
-    planes.depth.store(seen.depth.data() + first);
+    image.projection.pixel.x().store(projected.x.data() + first);
+    image.projection.pixel.y().store(projected.y.data() + first);
+    select(image.projection.visible, T(1), T(0)).store(projected.visible.data() + first);
+    planes.depth.store(projected.depth.data() + first);
     T term(0);
     if (!tables_.depths.empty())
       term =
           inconsistency(pixel, ray, planes.depth, pairs.view.data() + first, views, point, image);
-    term.store(seen.inconsistency.data() + first);
-    const refractive::Vector2<T> motion = image.moved(views.rotation * ray.direction);
+    term.store(projected.inconsistency.data() + first);
+    const refractive::Vector2<T> motion = image.pixel_motion(views.rotation * ray.direction);
     select(image.projection.visible, sqrt(motion.dot(motion)), T(0))
         .store(scores.motion.data() + first);
   }
@@ -129,17 +129,17 @@ class LaneView {
     return jacobian;
   }
 
-  static Planes deal_planes(const LanePlanes& planes, const Lookup<Abi>& of) {
+  static Planes gather_planes(const LanePlanes& planes, const Lookup<Abi>& of) {
     return {of(planes.depth.data()),
             {of(planes.nx.data()), of(planes.ny.data()), of(planes.nz.data())}};
   }
 
-  void deal_views(const Lookup<Abi>& of, Views& views) const {
+  void gather_views(const Lookup<Abi>& of, Views& views) const {
     views.projector = &first_projector_;
     if (!tables_.same_projector) {
-      fill(views.dealt, tables_.steps,
+      fill(views.gathered, tables_.steps,
            [&](std::size_t k) { return of(tables_.projector[k].data()); });
-      views.projector = &views.dealt;
+      views.projector = &views.gathered;
     }
     for (int i = 0; i < 9; ++i)
       views.rotation(i / 3, i % 3) = of(tables_.rotation[static_cast<std::size_t>(i)].data());

@@ -53,7 +53,7 @@ struct LaneRays : std::array<LaneFloats, 18> {};
 
 struct LaneScores {
   LaneFloats cost;        // 0 to kMaxCost
-  LaneFloats motion;      // see ViewScore::motion (matcher.h)
+  LaneFloats motion;      // see PlaneScore::motion (matcher.h)
   LaneFloats smoothness;  // factor of the lane's plane (smoothness.h)
 };
 

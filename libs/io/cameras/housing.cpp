@@ -96,7 +96,7 @@ const HousingPort* find_port(const Housing& housing, const std::string& name,
   return &port->second;
 }
 
-struct SeenFrom {
+struct PortForPose {
   const Pose& pose;
   const std::string where;
 
@@ -106,7 +106,7 @@ struct SeenFrom {
   refractive::Port<double> operator()(const refractive::Port<double>& port) const { return port; }
 };
 
-struct Carried {
+struct PortWithoutPose {
   const std::string& name;
 
   refractive::Port<double> operator()(const WaterSurface&) const {
@@ -141,13 +141,13 @@ std::optional<refractive::Port<double>> Housing::port_at(const std::string& name
   const std::string where = image + ": its port";
   const HousingPort* const port = find_port(*this, name, where);
   if (!port) return std::nullopt;
-  return std::visit(SeenFrom{pose, fmt::format("{} '{}'", where, name)}, *port);
+  return std::visit(PortForPose{pose, fmt::format("{} '{}'", where, name)}, *port);
 }
 
 std::optional<refractive::Port<double>> Housing::carried_port(const std::string& name) const {
   const HousingPort* const port = find_port(*this, name, "port");
   if (!port) return std::nullopt;
-  return std::visit(Carried{name}, *port);
+  return std::visit(PortWithoutPose{name}, *port);
 }
 
 void check_port(const HousingPort& port, const std::string& where) {

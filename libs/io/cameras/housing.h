@@ -15,8 +15,8 @@
 
 namespace axial::io {
 
-// What an image is taken through: a port, which moves with the camera, or the surface of the water,
-// which is fixed in the world.
+// The refractive interface through which an image is taken: a port, which moves with the camera, or
+// the surface of the water, which is fixed in the world.
 using HousingPort =
     std::variant<refractive::FlatPort<double>, refractive::DomePort<double>, WaterSurface>;
 

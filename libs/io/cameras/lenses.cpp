@@ -18,14 +18,14 @@ using Distortion = refractive::LensDistortion<double>;
 
 const std::string kStraight = "none";
 
-std::string lens_name(const JsonPlace& place, const char* key, const Lenses& lenses) {
+std::string lens_name(const JsonPlace& place, const char* key, const SceneLenses& lenses) {
   const std::string name = place.text(key);
   if (name != kStraight && !lenses.lenses.contains(name))
     fail("{}.{} is '{}', a lens that is not defined", place.where, key, name);
   return name;
 }
 
-void read_definitions(const JsonPlace& place, Lenses& lenses) {
+void read_definitions(const JsonPlace& place, SceneLenses& lenses) {
   if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [name, unused] : place.json.items()) {
     if (name == kStraight || name.empty())
@@ -34,7 +34,7 @@ void read_definitions(const JsonPlace& place, Lenses& lenses) {
   }
 }
 
-void read_images(const JsonPlace& place, Lenses& lenses) {
+void read_images(const JsonPlace& place, SceneLenses& lenses) {
   if (!place.json.is_object()) fail("{} is not an object in braces", place.where);
   for (const auto& [key, unused] : place.json.items()) {
     if (key.empty()) fail("{}: an image name is empty", place.where);
@@ -42,7 +42,7 @@ void read_images(const JsonPlace& place, Lenses& lenses) {
   }
 }
 
-const std::string& name_for(const Lenses& lenses, const std::string& image) {
+const std::string& name_for(const SceneLenses& lenses, const std::string& image) {
   const auto entry = entry_of(lenses.images, image);
   return entry == lenses.images.end() ? lenses.default_lens : entry->second;
 }
@@ -61,7 +61,7 @@ std::string name_beside(const fs::path& scene_path, const std::string& image) {
 }
 
 // Returns the name of the lens. A new distortion gets a new name.
-std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
+std::string named(SceneLenses& lenses, const std::optional<Distortion>& distortion) {
   if (!distortion) return kStraight;
   for (const auto& [name, known] : lenses.lenses)
     if (known == *distortion) return name;
@@ -72,7 +72,7 @@ std::string named(Lenses& lenses, const std::optional<Distortion>& distortion) {
 
 // Readers find an entry by the end of the whole path. Checks that they will find the right lens for
 // every image.
-void check_names(const Lenses& lenses, const Scene& scene, const fs::path& file) {
+void check_names(const SceneLenses& lenses, const Scene& scene, const fs::path& file) {
   for (const SceneImage& image : scene.images) {
     if (!image.calibrated) continue;
     const std::string path = fs::path(image.path).generic_string();
@@ -96,20 +96,20 @@ fs::path lenses_beside(const fs::path& scene_path) {
   return path;
 }
 
-Lenses read_lenses(const fs::path& path) {
+SceneLenses read_lenses(const fs::path& path) {
   const nlohmann::json json = read_json(path);
   const JsonPlace root{json, path.string() + ": lenses"};
   root.require_object({"version", "lenses", "default", "images"});
   if (root.at("version").json != 1)
     fail("{}.version is {}, expected 1", root.where, to_text(root.at("version").json));
-  Lenses lenses;
+  SceneLenses lenses;
   read_definitions(root.at("lenses"), lenses);
   lenses.default_lens = lens_name(root, "default", lenses);
   if (root.has("images")) read_images(root.at("images"), lenses);
   return lenses;
 }
 
-void write_lenses(const fs::path& path, const Lenses& lenses) {
+void write_lenses(const fs::path& path, const SceneLenses& lenses) {
   nlohmann::json json{{"version", 1}, {"default", lenses.default_lens}};
   json["lenses"] = nlohmann::json::object();
   for (const auto& [name, lens] : lenses.lenses) json["lenses"][name] = distortion_to_json(lens);
@@ -117,8 +117,8 @@ void write_lenses(const fs::path& path, const Lenses& lenses) {
   write_json(path, json);
 }
 
-Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
-  Lenses lenses;
+SceneLenses lenses_of(const Scene& scene, const fs::path& scene_path) {
+  SceneLenses lenses;
   std::vector<std::string> names, paths, values;
   const auto add = [&](const SceneImage& image, const std::string& lens) {
     names.push_back(name_beside(scene_path, image.path));
@@ -136,7 +136,7 @@ Lenses lenses_of(const Scene& scene, const fs::path& scene_path) {
   return lenses;
 }
 
-void attach_lenses(Scene& scene, const Lenses& lenses, const fs::path& file) {
+void attach_lenses(Scene& scene, const SceneLenses& lenses, const fs::path& file) {
   std::vector<std::string> names;
   for (const SceneImage& image : scene.images)
     names.push_back(fs::path(image.path).generic_string());
@@ -168,7 +168,7 @@ bool attach_lenses_beside(Scene& scene, const fs::path& scene_path) {
       scene.images, [](const SceneImage& image) { return image.camera.distortion.has_value(); });
 }
 
-void write_lenses_beside(const fs::path& scene_path, const Lenses& lenses, bool behind_ports) {
+void write_lenses_beside(const fs::path& scene_path, const SceneLenses& lenses, bool behind_ports) {
   const fs::path file = lenses_beside(scene_path);
   if (behind_ports || !lenses.lenses.empty()) return write_lenses(file, lenses);
   std::error_code error;

@@ -123,7 +123,7 @@ ColmapModel read_colmap_model(const fs::path& folder) {
   require_unique_ids(model.points, "3D point", where);
   require_unique_names(model, where);
   check_references(model, where);
-  warn_of_rivals(folder, form, model);
+  warn_of_ignored_files(folder, form, model);
   warn_of_port_values(model.cameras, part_file(folder, "cameras", form).string());
   return model;
 }
@@ -143,7 +143,7 @@ std::vector<ColmapCamera> read_colmap_cameras(const fs::path& path) {
   const std::vector<ColmapCamera> cameras =
       form == ModelForm::binary ? read_cameras_binary(file) : read_cameras_text(file);
   require_unique_ids(cameras, "camera", path.string());
-  if (is_folder) warn_of_rival_cameras(path, form, cameras);
+  if (is_folder) warn_of_ignored_cameras(path, form, cameras);
   warn_of_port_values(cameras, file.string());
   return cameras;
 }

@@ -76,14 +76,14 @@ std::string name_below(const SceneImage& image, const fs::path& folder) {
 }
 
 // The projection of a point into one image; `seen` is false where the camera does not see it.
-struct Sighting {
+struct ProjectedPoint {
   std::uint32_t image = 0;
   Eigen::Vector2d pixel{0, 0};
   bool seen = false;
 };
 
-std::vector<std::vector<Sighting>> sightings(const Scene& scene) {
-  std::vector<std::vector<Sighting>> result(scene.points.size());
+std::vector<std::vector<ProjectedPoint>> projected_points(const Scene& scene) {
+  std::vector<std::vector<ProjectedPoint>> result(scene.points.size());
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> of_image(scene.images.size());
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     std::uint32_t previous = kNoId;
@@ -102,9 +102,9 @@ std::vector<std::vector<Sighting>> sightings(const Scene& scene) {
           for (const auto& [point, index] : of_image[i]) {
             const Eigen::Vector3d X = scene.points[point].position.template cast<double>();
             const auto projection = camera.project(image.pose.to_camera(X));
-            Sighting& sighting = result[point][index];
-            sighting.pixel = projection.pixel;
-            sighting.seen = projection.visible;
+            ProjectedPoint& projected = result[point][index];
+            projected.pixel = projection.pixel;
+            projected.seen = projection.visible;
           }
         },
         make_camera<double>(image.camera));
@@ -113,17 +113,17 @@ std::vector<std::vector<Sighting>> sightings(const Scene& scene) {
 }
 
 void add_points(const Scene& scene, const std::vector<std::size_t>& index_of, ColmapModel& model) {
-  const auto all = sightings(scene);
+  const auto all = projected_points(scene);
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     ColmapPoint3D point;
     point.id = model.points.size() + 1;
     point.position = scene.points[p].position.cast<double>();
     if (!scene.point_colors.empty()) point.color = scene.point_colors[p];
-    for (const Sighting& sighting : all[p]) {
-      if (!sighting.seen) continue;
-      ColmapImage& image = model.images[index_of[sighting.image]];
+    for (const ProjectedPoint& projected : all[p]) {
+      if (!projected.seen) continue;
+      ColmapImage& image = model.images[index_of[projected.image]];
       point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});
-      image.points.push_back({sighting.pixel.x() + kHalf, sighting.pixel.y() + kHalf, point.id});
+      image.points.push_back({projected.pixel.x() + kHalf, projected.pixel.y() + kHalf, point.id});
     }
     if (!point.track.empty()) model.points.push_back(std::move(point));
   }

@@ -93,10 +93,10 @@ bool differs(const fs::path& file, ModelForm form, const std::vector<T>& part,
 }
 
 // The files of one folder that differ from the model that is read.
-struct Rivals {
+struct IgnoredFiles {
   const fs::path& folder;
   ModelForm read;
-  std::vector<std::string> taken = {}, passed_over = {};
+  std::vector<std::string> used = {}, ignored = {};
 
   template <class T>
   void add(const char* name, const std::vector<T>& part, std::vector<T> (*text)(const fs::path&),
@@ -104,16 +104,15 @@ struct Rivals {
     const ModelForm other = other_than(read);
     const fs::path file = part_file(folder, name, other);
     if (!has_part(folder, name, other) || !differs(file, other, part, text, binary)) return;
-    taken.push_back(part_file(folder, name, read).filename().string());
-    passed_over.push_back(file.filename().string());
+    used.push_back(part_file(folder, name, read).filename().string());
+    ignored.push_back(file.filename().string());
   }
 
   void warn() const {
-    if (taken.empty()) return;
+    if (used.empty()) return;
     log_warning("{}: {} {} read, as in COLMAP; ignored: {}, which {} from {}", folder.string(),
-                fmt::join(taken, ", "), taken.size() == 1 ? "is" : "are",
-                fmt::join(passed_over, ", "), taken.size() == 1 ? "differs" : "differ",
-                taken.size() == 1 ? "it" : "them");
+                fmt::join(used, ", "), used.size() == 1 ? "is" : "are", fmt::join(ignored, ", "),
+                used.size() == 1 ? "differs" : "differ", used.size() == 1 ? "it" : "them");
   }
 };
 
@@ -149,19 +148,19 @@ ModelForm cameras_form(const fs::path& folder) {
   fail("{}: has neither cameras.txt nor cameras.bin", folder.string());
 }
 
-void warn_of_rival_cameras(const fs::path& folder, ModelForm read,
-                           const std::vector<ColmapCamera>& cameras) {
-  Rivals rivals{folder, read};
-  rivals.add("cameras", cameras, read_cameras_text, read_cameras_binary);
-  rivals.warn();
+void warn_of_ignored_cameras(const fs::path& folder, ModelForm read,
+                             const std::vector<ColmapCamera>& cameras) {
+  IgnoredFiles ignored{folder, read};
+  ignored.add("cameras", cameras, read_cameras_text, read_cameras_binary);
+  ignored.warn();
 }
 
-void warn_of_rivals(const fs::path& folder, ModelForm read, const ColmapModel& model) {
-  Rivals rivals{folder, read};
-  rivals.add("cameras", model.cameras, read_cameras_text, read_cameras_binary);
-  rivals.add("images", model.images, read_images_text, read_images_binary);
-  rivals.add("points3D", model.points, read_points_text, read_points_binary);
-  rivals.warn();
+void warn_of_ignored_files(const fs::path& folder, ModelForm read, const ColmapModel& model) {
+  IgnoredFiles ignored{folder, read};
+  ignored.add("cameras", model.cameras, read_cameras_text, read_cameras_binary);
+  ignored.add("images", model.images, read_images_text, read_images_binary);
+  ignored.add("points3D", model.points, read_points_text, read_points_binary);
+  ignored.warn();
 }
 
 }  // namespace axial::io

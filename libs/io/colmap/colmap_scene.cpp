@@ -108,10 +108,10 @@ std::vector<fs::path> masks_to_undistort(const Scene& scene, const std::vector<b
   std::vector<MaskRequest> requests;
   for (const SceneImage& image : scene.images) requests.push_back({image.path, {}});
   const std::vector<FoundMask> found = find_masks(requests);
-  const RivalMasks rivals = rival_masks(found);
-  if (rivals.count > 0)
+  const IgnoredMasks ignored = ignored_masks(found);
+  if (ignored.count > 0)
     log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
-                rivals.used.string(), rivals.other.string(), rivals.count);
+                ignored.used.string(), ignored.other.string(), ignored.count);
   std::vector<fs::path> masks(found.size());
   for (std::size_t i = 0; i < masks.size(); ++i)
     if (resampled[i]) masks[i] = found[i].path;

@@ -67,16 +67,16 @@ bool loses_pixels(int code) {
          code == JWRN_ARITH_BAD_CODE || code == JWRN_MUST_RESYNC;
 }
 
-struct Complaint {
+struct JpegError {
   jpeg_error_mgr manager;  // must be the first member: the library has a pointer to it
   std::jmp_buf jump;
   std::array<char, JMSG_LENGTH_MAX> text;
 };
 
 [[noreturn]] void give_up(j_common_ptr info) {
-  auto* complaint = reinterpret_cast<Complaint*>(info->err);
-  complaint->manager.format_message(info, complaint->text.data());
-  std::longjmp(complaint->jump, 1);
+  auto* error = reinterpret_cast<JpegError*>(info->err);
+  error->manager.format_message(info, error->text.data());
+  std::longjmp(error->jump, 1);
 }
 
 void hear_warning(j_common_ptr info, int level) {
@@ -85,7 +85,7 @@ void hear_warning(j_common_ptr info, int level) {
 
 struct JpegReading {
   jpeg_decompress_struct info{};
-  Complaint complaint{};
+  JpegError error{};
   cv::Mat pixels;
 
   ~JpegReading() { jpeg_destroy_decompress(&info); }
@@ -95,10 +95,10 @@ struct JpegReading {
 // longjmp would skip them.
 bool read_pixels(JpegReading& reading, std::string_view bytes) {
   jpeg_decompress_struct& info = reading.info;
-  info.err = jpeg_std_error(&reading.complaint.manager);
+  info.err = jpeg_std_error(&reading.error.manager);
   info.err->error_exit = give_up;
   info.err->emit_message = hear_warning;
-  if (setjmp(reading.complaint.jump)) return false;
+  if (setjmp(reading.error.jump)) return false;
   jpeg_create_decompress(&info);
   jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   jpeg_read_header(&info, TRUE);
@@ -137,7 +137,7 @@ Photograph decode_jpeg(std::string_view bytes, const fs::path& path) {
   check_image_size(jpeg_outline(bytes).size, path);
   JpegReading reading;
   if (!read_pixels(reading, bytes))
-    fail("{}: cannot be decoded: {}", path.string(), reading.complaint.text.data());
+    fail("{}: cannot be decoded: {}", path.string(), reading.error.text.data());
   if (reading.pixels.channels() == 4) {  // CMYK: OpenCV converts it
     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     return {cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION), {}};

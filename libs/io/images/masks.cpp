@@ -183,16 +183,16 @@ fs::path mask_beside(const fs::path& image) {
   return image.parent_path() / (image.stem().string() + ".mask.png");
 }
 
-RivalMasks rival_masks(std::span<const FoundMask> masks) {
-  RivalMasks rivals;
+IgnoredMasks ignored_masks(std::span<const FoundMask> masks) {
+  IgnoredMasks ignored;
   for (const FoundMask& mask : masks) {
     const auto other = std::ranges::find_if(
         mask.others, [&](const fs::path& path) { return !same_labels(mask.path, path); });
-    if (other == mask.others.end() || rivals.count++ > 0) continue;
-    rivals.used = mask.path;
-    rivals.other = *other;
+    if (other == mask.others.end() || ignored.count++ > 0) continue;
+    ignored.used = mask.path;
+    ignored.other = *other;
   }
-  return rivals;
+  return ignored;
 }
 
 }  // namespace axial::io

@@ -37,13 +37,13 @@ std::vector<FoundMask> find_masks(std::span<const MaskRequest> images,
 // "<image without extension>.mask.png": the name under which programs write an image's mask.
 std::filesystem::path mask_beside(const std::filesystem::path& image);
 
-// Compares each mask with the other candidates (`others`). `used` and `other` are the first pair of
-// files with different labels; `count` is the number of images that have such a pair. A file that
-// cannot be read counts as different.
-struct RivalMasks {
+// Compares each mask, which is used, with the other candidates (`others`), which are ignored.
+// `used` and `other` are the first pair of files with different labels; `count` is the number of
+// images that have such a pair. A file that cannot be read counts as different.
+struct IgnoredMasks {
   std::size_t count = 0;
   std::filesystem::path used, other;
 };
-RivalMasks rival_masks(std::span<const FoundMask> masks);
+IgnoredMasks ignored_masks(std::span<const FoundMask> masks);
 
 }  // namespace axial::io

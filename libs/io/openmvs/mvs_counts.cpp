@@ -15,9 +15,9 @@ namespace {
 
 // Reads the numbers of a file and skips the other data. `good` becomes false at the first value
 // that is missing. A count is refused if the file is too short for it.
-class Skimmer {
+class SkippingReader {
  public:
-  explicit Skimmer(const std::filesystem::path& path) : buffer_(1u << 20) {
+  explicit SkippingReader(const std::filesystem::path& path) : buffer_(1u << 20) {
     in_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     in_.open(path, std::ios::binary);
     std::error_code error;
@@ -75,7 +75,7 @@ class Skimmer {
 
 constexpr std::uint64_t kCamera = 9 * 8 + mvs_bytes::kPose;
 
-void count_platforms(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
+void count_platforms(SkippingReader& in, std::uint32_t version, MvsCounts& counts) {
   const std::uint64_t platforms = in.count(3 * mvs_bytes::kLength);
   for (std::uint64_t i = 0; i < platforms && in.good(); ++i) {
     in.array(1);
@@ -90,7 +90,7 @@ void count_platforms(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
   }
 }
 
-void count_images(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
+void count_images(SkippingReader& in, std::uint32_t version, MvsCounts& counts) {
   counts.images = in.count(mvs_bytes::kLength + 12);
   for (std::uint64_t i = 0; i < counts.images && in.good(); ++i) {
     counts.name_bytes += in.array(1);
@@ -102,7 +102,7 @@ void count_images(Skimmer& in, std::uint32_t version, MvsCounts& counts) {
   }
 }
 
-void count_points(Skimmer& in, MvsCounts& counts) {
+void count_points(SkippingReader& in, MvsCounts& counts) {
   counts.points = in.count(mvs_bytes::kVector3f + 8);
   for (std::uint64_t i = 0; i < counts.points && in.good(); ++i) {
     in.skip(mvs_bytes::kVector3f);
@@ -116,7 +116,7 @@ void count_points(Skimmer& in, MvsCounts& counts) {
 }  // namespace
 
 std::optional<MvsCounts> count_mvs(const std::filesystem::path& path) {
-  Skimmer in(path);
+  SkippingReader in(path);
   MvsCounts counts;
   counts.file_bytes = in.left();
   const auto magic = in.read<std::array<char, 4>>();

@@ -35,8 +35,9 @@ ModelForm cameras_form(const std::filesystem::path& folder);
 // Warns, in one line, of files in the other form than `read` whose content differs from the model,
 // or which cannot be read. The order of the elements does not matter, nor do differences up to 1e-9
 // (relative for values above 1).
-void warn_of_rivals(const std::filesystem::path& folder, ModelForm read, const ColmapModel& model);
-void warn_of_rival_cameras(const std::filesystem::path& folder, ModelForm read,
-                           const std::vector<ColmapCamera>& cameras);
+void warn_of_ignored_files(const std::filesystem::path& folder, ModelForm read,
+                           const ColmapModel& model);
+void warn_of_ignored_cameras(const std::filesystem::path& folder, ModelForm read,
+                             const std::vector<ColmapCamera>& cameras);
 
 }  // namespace axial::io

@@ -23,8 +23,8 @@ struct DepthAlongRay {
 // The ray of the image centre.
 DepthAlongRay centre_ray(const CameraModel& camera);
 
-// Return `depth` with every valid value converted. Error that starts with `file` if a value or a
-// result is not finite or not positive.
+// Return the given map with every valid value converted to z-depth or to lambda. Error that starts
+// with `file` if a value or a result is not finite or not positive.
 cv::Mat1f z_depth_of(const cv::Mat1f& lambda, const CameraModel& camera, const std::string& file);
 cv::Mat1f lambda_of(const cv::Mat1f& z_depth, const CameraModel& camera, const std::string& file);
 

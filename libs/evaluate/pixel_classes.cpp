@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/depth_places.h"
+#include "evaluate/pixel_classes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 // Marks the centres of the windows of 2 reach + 1 pixels that contain both pixels of a jump to the
 // next column, or to the next row if `to_row` is 1.
-cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PlaceOptions& options) {
+cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PixelClassOptions& options) {
   cv::Mat1b jumps(truth.size(), std::uint8_t{0});
   for (int v = 0; v + to_row < truth.rows; ++v)
     for (int u = 0; u + 1 - to_row < truth.cols; ++u) {
@@ -30,7 +30,7 @@ cv::Mat1b windows_with_jumps(const cv::Mat1f& truth, int to_row, const PlaceOpti
   return jumps;
 }
 
-cv::Mat1b edges_of(const cv::Mat1f& truth, const PlaceOptions& options) {
+cv::Mat1b edges_of(const cv::Mat1f& truth, const PixelClassOptions& options) {
   cv::Mat1b edges = windows_with_jumps(truth, 0, options);
   cv::bitwise_or(edges, windows_with_jumps(truth, 1, options), edges);
   return edges;
@@ -64,7 +64,7 @@ double cosine_to_ray(const Camera& camera, const cv::Mat1f& truth, int u, int v)
 }
 
 // The position of a pixel of one map in a source view.
-struct Seen {
+struct SourcePosition {
   double phase;  // fractional part of the true position
   double shift;  // estimated minus true position [px]
 };
@@ -73,17 +73,18 @@ using Ray = refractive::AxialRay<double>;
 
 // Appends the open pixels of row v to `all`. `rays`: the rays of that row.
 template <class Source>
-void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const DepthMap& source_map,
-              const Source& source, std::vector<Seen>& all) {
-  const Pose &pose = placed.map->pose, &source_pose = source_map.pose;
+void add_source_positions(const ClassifiedMap& classified, int v, std::span<const Ray> rays,
+                          const DepthMap& source_map, const Source& source,
+                          std::vector<SourcePosition>& all) {
+  const Pose &pose = classified.map->pose, &source_pose = source_map.pose;
   const Eigen::Vector2d last(source_map.camera.width - 1, source_map.camera.height - 1);
-  for (int u = 0; u < placed.places.width; ++u) {
-    const double error = placed.evaluation.error(v, u);
-    if (placed.places.at(u, v) != Place::open || std::isnan(error)) continue;
+  for (int u = 0; u < classified.classes.width; ++u) {
+    const double error = classified.evaluation.error(v, u);
+    if (classified.classes.at(u, v) != PixelClass::open || std::isnan(error)) continue;
     const Ray& ray = rays[static_cast<std::size_t>(u)];
     refractive::Matrix23<double> jacobian;
     const Eigen::Vector3d point =
-        source_pose.to_camera(pose.to_world(ray.at(placed.evaluation.truth(v, u))));
+        source_pose.to_camera(pose.to_world(ray.at(classified.evaluation.truth(v, u))));
     const auto image = source.project(point, &jacobian);
     const Eigen::Array2d at = image.pixel.array();
     if (!image.visible || !(at >= 0).all() || !(at <= last.array()).all()) continue;
@@ -97,32 +98,35 @@ void add_seen(const PlacedMap& placed, int v, std::span<const Ray> rays, const D
 }
 
 // Works row by row, so that no code is needed for each pair of camera types.
-void add_seen(const PlacedMap& placed, const DepthMap& source, std::vector<Seen>& all) {
-  const auto from = make_camera<double>(placed.map->camera),
+void add_source_positions(const ClassifiedMap& classified, const DepthMap& source,
+                          std::vector<SourcePosition>& all) {
+  const auto from = make_camera<double>(classified.map->camera),
              to = make_camera<double>(source.camera);
-  std::vector<Ray> rays(static_cast<std::size_t>(placed.places.width));
-  for (int v = 0; v < placed.places.height; ++v) {
+  std::vector<Ray> rays(static_cast<std::size_t>(classified.classes.width));
+  for (int v = 0; v < classified.classes.height; ++v) {
     std::visit(
         [&](const auto& camera) {
-          for (int u = 0; u < placed.places.width; ++u)
+          for (int u = 0; u < classified.classes.width; ++u)
             rays[static_cast<std::size_t>(u)] = camera.ray({u, v});
         },
         from);
-    std::visit([&](const auto& camera) { add_seen(placed, v, rays, source, camera, all); }, to);
+    std::visit(
+        [&](const auto& camera) { add_source_positions(classified, v, rays, source, camera, all); },
+        to);
   }
 }
 
-const DepthMap* first_source(const PlacedMap& placed, std::span<const PlacedMap> maps) {
-  for (std::size_t k = 1; k < placed.map->ids.size(); ++k)
-    for (const PlacedMap& other : maps)
-      if (other.map->ids.front() == placed.map->ids[k]) return other.map;
+const DepthMap* first_source(const ClassifiedMap& classified, std::span<const ClassifiedMap> maps) {
+  for (std::size_t k = 1; k < classified.map->ids.size(); ++k)
+    for (const ClassifiedMap& other : maps)
+      if (other.map->ids.front() == classified.map->ids[k]) return other.map;
   return nullptr;
 }
 
 }  // namespace
 
-PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
-                   const PlaceOptions& options) {
+PixelClassMap classes_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
+                         const PixelClassOptions& options) {
   if (truth.size() != cv::Size(camera.width, camera.height) || truth.size() != grey.size())
     fail(
         "the camera is {} x {}, the truth {} x {} and the photograph {} x {}: the sizes must be "
@@ -132,24 +136,24 @@ PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::
   const cv::Mat1b edges = edges_of(truth, options);
   const cv::Mat1f deviations = deviations_of(grey, options.reach);
   const double least_cosine = std::cos(options.steep_degrees * std::numbers::pi / 180);
-  PlaceMap places{truth.cols, truth.rows, {}};
-  const auto place = [&](const auto& model, int u, int v) {
-    if (!(truth(v, u) > 0)) return Place::nothing;
-    if (edges(v, u)) return Place::edge;
-    if (deviations(v, u) < options.least_deviation) return Place::plain;
-    return cosine_to_ray(model, truth, u, v) < least_cosine ? Place::steep : Place::open;
+  PixelClassMap classes{truth.cols, truth.rows, {}};
+  const auto class_of = [&](const auto& model, int u, int v) {
+    if (!(truth(v, u) > 0)) return PixelClass::nothing;
+    if (edges(v, u)) return PixelClass::edge;
+    if (deviations(v, u) < options.least_deviation) return PixelClass::plain;
+    return cosine_to_ray(model, truth, u, v) < least_cosine ? PixelClass::steep : PixelClass::open;
   };
   std::visit(
       [&](const auto& model) {
         for (int v = 0; v < truth.rows; ++v)
-          for (int u = 0; u < truth.cols; ++u) places.pixels.push_back(place(model, u, v));
+          for (int u = 0; u < truth.cols; ++u) classes.pixels.push_back(class_of(model, u, v));
       },
       make_camera<double>(camera));
-  return places;
+  return classes;
 }
 
 bool is_gross(float error, float truth) {
-  return std::abs(error) > static_cast<float>(PlaceOptions{}.jump - 1) * truth;
+  return std::abs(error) > static_cast<float>(PixelClassOptions{}.jump - 1) * truth;
 }
 
 void Magnitudes::add(float error, float truth) {
@@ -158,18 +162,19 @@ void Magnitudes::add(float error, float truth) {
   if (!is_gross(error, truth)) fine.push_back(all.back());
 }
 
-std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
-  constexpr std::array kPlaces{Place::edge, Place::plain, Place::steep, Place::open};
-  std::array<PlaceErrors, 4> result;
-  for (std::size_t k = 0; k < kPlaces.size(); ++k) {
-    result[k].place = kPlaces[k];
+std::array<ClassErrors, 4> errors_by_class(std::span<const ClassifiedMap> maps) {
+  constexpr std::array kClasses{PixelClass::edge, PixelClass::plain, PixelClass::steep,
+                                PixelClass::open};
+  std::array<ClassErrors, 4> result;
+  for (std::size_t k = 0; k < kClasses.size(); ++k) {
+    result[k].pixel_class = kClasses[k];
     Magnitudes magnitudes;
-    for (const PlacedMap& placed : maps)
-      for (int v = 0; v < placed.places.height; ++v)
-        for (int u = 0; u < placed.places.width; ++u) {
-          if (placed.places.at(u, v) != kPlaces[k]) continue;
+    for (const ClassifiedMap& classified : maps)
+      for (int v = 0; v < classified.classes.height; ++v)
+        for (int u = 0; u < classified.classes.width; ++u) {
+          if (classified.classes.at(u, v) != kClasses[k]) continue;
           ++result[k].truth_pixels;
-          magnitudes.add(placed.evaluation.error(v, u), placed.evaluation.truth(v, u));
+          magnitudes.add(classified.evaluation.error(v, u), classified.evaluation.truth(v, u));
         }
     result[k].compared_pixels = magnitudes.all.size();
     result[k].gross_pixels = magnitudes.gross();
@@ -179,16 +184,16 @@ std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps) {
   return result;
 }
 
-std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins) {
-  std::vector<Seen> seen;
-  for (const PlacedMap& placed : maps) {
-    const DepthMap* source = first_source(placed, maps);
+std::vector<PhaseErrors> errors_by_phase(std::span<const ClassifiedMap> maps, std::size_t bins) {
+  std::vector<SourcePosition> positions;
+  for (const ClassifiedMap& classified : maps) {
+    const DepthMap* source = first_source(classified, maps);
     if (!source) continue;
-    add_seen(placed, *source, seen);
+    add_source_positions(classified, *source, positions);
   }
   const auto count = static_cast<double>(bins);
   std::vector<std::vector<float>> shifts(bins);
-  for (const Seen& pixel : seen)
+  for (const SourcePosition& pixel : positions)
     shifts[std::min(bins - 1, static_cast<std::size_t>(pixel.phase * count))].push_back(
         static_cast<float>(pixel.shift));
   std::vector<PhaseErrors> result(bins);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/point_worth.h"
+#include "evaluate/point_uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,11 +47,12 @@ NormalisedErrors summary_of(std::vector<float> normalised) {
 }
 
 // The distances of points divided by their expected errors; NaN where no error is expected.
-std::vector<float> normalised(const PointWorth& worth, std::span<const float> distances) {
+std::vector<float> normalised(const PointUncertainty& uncertainty,
+                              std::span<const float> distances) {
   std::vector<float> result(distances.size(), NAN);
   for (std::size_t i = 0; i < distances.size(); ++i)
-    if (worth.error[i] > 0 && std::isfinite(worth.error[i]))
-      result[i] = distances[i] / worth.error[i];
+    if (uncertainty.error[i] > 0 && std::isfinite(uncertainty.error[i]))
+      result[i] = distances[i] / uncertainty.error[i];
   return result;
 }
 
@@ -97,15 +98,17 @@ std::vector<ErrorsOfViews> errors_by_views(std::span<const std::uint32_t> views,
   return classes;
 }
 
-std::optional<Calibration> calibration_of(const PointWorth& worth,
+std::optional<Calibration> calibration_of(const PointUncertainty& uncertainty,
                                           std::span<const float> distances) {
-  if (worth.error.empty()) return {};
-  const std::vector<float> all = normalised(worth, distances);
+  if (uncertainty.error.empty()) return {};
+  const std::vector<float> all = normalised(uncertainty, distances);
   Calibration result{summary_of(all), {}, {}};
-  if (!worth.views.empty())
+  if (!uncertainty.views.empty())
     for (const auto& [least, most] : kClassesOfViews)
-      result.by_views.push_back({least, most, summary_of(of_views(all, worth.views, least, most))});
-  if (!worth.confidence.empty()) result.reliability = reliability_of(worth.confidence, all);
+      result.by_views.push_back(
+          {least, most, summary_of(of_views(all, uncertainty.views, least, most))});
+  if (!uncertainty.confidence.empty())
+    result.reliability = reliability_of(uncertainty.confidence, all);
   return result;
 }
 

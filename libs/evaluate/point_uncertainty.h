@@ -12,7 +12,7 @@
 namespace axial::evaluate {
 
 // Each array is empty or has one element for each point.
-struct PointWorth {
+struct PointUncertainty {
   std::vector<std::uint32_t> views;  // number of depth maps from which the point was fused
   std::vector<float> error;          // expected standard deviation [m]
   std::vector<float> confidence;     // 0 to 1
@@ -67,7 +67,7 @@ struct Calibration {
 
 // Compares expected errors with true ones. `distances`: from each point to the truth [m]. Nothing
 // if no expected errors are known. Error for a confidence outside [0, 1].
-std::optional<Calibration> calibration_of(const PointWorth& worth,
+std::optional<Calibration> calibration_of(const PointUncertainty& uncertainty,
                                           std::span<const float> distances);
 
 }  // namespace axial::evaluate

@@ -7,7 +7,7 @@ from openmvs_scene import Cloud, Scene
 from programs import main, read
 
 
-class Worth(Scene):
+class Uncertainty(Scene):
     ON = ("--estimate-uncertainty", "1")
 
     def fused(self, folder, *arguments):

@@ -19,12 +19,12 @@ struct WorkingView {
   double reduction = 1;      // width of the photograph divided by the width of the map
 };
 
-// Makes points from some pixels of a view at a time. Call collect(), ask(), accept() and points()
-// in this order, and repeat.
-class Portion {
+// Makes points from some pixels of a view at a time. Call collect(), compare(), accept() and
+// points() in this order, and repeat.
+class ViewFusion {
  public:
   // `views`: the reference view first, then its neighbours, best first.
-  explicit Portion(std::span<const WorkingView> views);
+  explicit ViewFusion(std::span<const WorkingView> views);
 
   // Collects the next pixels of the reference view, from `pixel` on, that have a depth and are not
   // taken. Returns the pixel with which the next call has to continue.
@@ -32,7 +32,7 @@ class Portion {
 
   // Compares these pixels with the maps of all neighbours, and finds the pixels for which two views
   // are enough.
-  void ask(const FuseOptions& options);
+  void compare(const FuseOptions& options);
 
   // Decides which pixels become points, and takes the pixels that support them. A point needs
   // `min_views` supports, or two if two views are enough.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/point_worth.h"
+#include "evaluate/point_uncertainty.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(ErrorsByViews, SplitsThePointsByTheMapsTheyRestOn) {
 }
 
 struct Cloud {
-  PointWorth worth;
+  PointUncertainty uncertainty;
   std::vector<float> distances;
 };
 
@@ -43,8 +43,8 @@ Cloud honest_cloud() {
   for (int i = 0; i < 100000; ++i) {
     const float expected = 0.001f * static_cast<float>(1 + i % 5);
     const bool gross = i % 10 == 0;
-    cloud.worth.error.push_back(expected);
-    cloud.worth.confidence.push_back(gross ? 0.25f : 1.0f);
+    cloud.uncertainty.error.push_back(expected);
+    cloud.uncertainty.confidence.push_back(gross ? 0.25f : 1.0f);
     cloud.distances.push_back(std::abs((gross ? 10 : 1) * expected * normal(random)));
   }
   return cloud;
@@ -53,7 +53,7 @@ Cloud honest_cloud() {
 TEST(Calibration, IsOneWhereErrorsAreAsExpected) {
   Cloud cloud = honest_cloud();
   for (std::size_t i = 0; i < cloud.distances.size(); i += 10) cloud.distances[i] /= 10;
-  const auto calibration = calibration_of(cloud.worth, cloud.distances);
+  const auto calibration = calibration_of(cloud.uncertainty, cloud.distances);
   ASSERT_TRUE(calibration);
   EXPECT_EQ(calibration->all.points, 100000u);
   // The standard error of the RMS of n normal numbers is 1 / sqrt(2 n).
@@ -61,13 +61,13 @@ TEST(Calibration, IsOneWhereErrorsAreAsExpected) {
   EXPECT_NEAR(calibration->all.median, 0.6745, 0.01);
   EXPECT_NEAR(calibration->all.within[0], 0.6827, 0.01);
   EXPECT_NEAR(calibration->all.within[2], 0.9973, 0.002);
-  for (float& error : cloud.worth.error) error *= 2;
-  EXPECT_NEAR(calibration_of(cloud.worth, cloud.distances)->all.rms, 0.5, 0.005);
+  for (float& error : cloud.uncertainty.error) error *= 2;
+  EXPECT_NEAR(calibration_of(cloud.uncertainty, cloud.distances)->all.rms, 0.5, 0.005);
 }
 
 TEST(Calibration, TellsOfEveryConfidenceHowManyPointsDeserveIt) {
   const Cloud cloud = honest_cloud();
-  const auto calibration = calibration_of(cloud.worth, cloud.distances);
+  const auto calibration = calibration_of(cloud.uncertainty, cloud.distances);
   ASSERT_EQ(calibration->reliability.size(), 10u);
   const Reliability &quarter = calibration->reliability[2], &sure = calibration->reliability[9];
   EXPECT_EQ(quarter.points, 10000u);
@@ -82,13 +82,13 @@ TEST(Calibration, TellsOfEveryConfidenceHowManyPointsDeserveIt) {
 // expected.
 TEST(Calibration, TellsPointsOfTwoMapsFromTheRest) {
   Cloud cloud = honest_cloud();
-  EXPECT_TRUE(calibration_of(cloud.worth, cloud.distances)->by_views.empty());
+  EXPECT_TRUE(calibration_of(cloud.uncertainty, cloud.distances)->by_views.empty());
   for (std::size_t i = 0; i < cloud.distances.size(); ++i) {
-    cloud.worth.views.push_back(static_cast<std::uint32_t>(i % 10 == 0 ? 2 : 4 + i % 3));
+    cloud.uncertainty.views.push_back(static_cast<std::uint32_t>(i % 10 == 0 ? 2 : 4 + i % 3));
     if (i % 10 == 0) cloud.distances[i] /= 20;
   }
-  cloud.worth.error[0] = 0;
-  const auto calibration = calibration_of(cloud.worth, cloud.distances);
+  cloud.uncertainty.error[0] = 0;
+  const auto calibration = calibration_of(cloud.uncertainty, cloud.distances);
   ASSERT_EQ(calibration->by_views.size(), 3u);
   const auto& [two, three, more] =
       std::tie(calibration->by_views[0], calibration->by_views[1], calibration->by_views[2]);
@@ -105,13 +105,13 @@ TEST(Calibration, TellsPointsOfTwoMapsFromTheRest) {
 TEST(Calibration, GoesByThePointsThatExpectAnError) {
   const std::vector<float> distances{0.001f, 0.002f, 0.003f, 0.004f};
   EXPECT_FALSE(calibration_of({}, distances));
-  PointWorth worth;
-  worth.error = {0.001f, 0.0f, NAN, 0.004f};
-  EXPECT_EQ(calibration_of(worth, distances)->all.points, 2u);
-  EXPECT_NEAR(calibration_of(worth, distances)->all.rms, 1, 1e-6);
-  EXPECT_TRUE(calibration_of(worth, distances)->reliability.empty());
-  worth.confidence = {0.5f, 0.5f, 0.5f, 1.5f};
-  EXPECT_THROW(calibration_of(worth, distances), Error);
+  PointUncertainty uncertainty;
+  uncertainty.error = {0.001f, 0.0f, NAN, 0.004f};
+  EXPECT_EQ(calibration_of(uncertainty, distances)->all.points, 2u);
+  EXPECT_NEAR(calibration_of(uncertainty, distances)->all.rms, 1, 1e-6);
+  EXPECT_TRUE(calibration_of(uncertainty, distances)->reliability.empty());
+  uncertainty.confidence = {0.5f, 0.5f, 0.5f, 1.5f};
+  EXPECT_THROW(calibration_of(uncertainty, distances), Error);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cloud/portion.h"
+#include "cloud/view_fusion.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 namespace axial::cloud {
 namespace {
 
-// Pixels of a portion: few enough for the answers to stay in the processor's cache.
+// Pixels of one collect(): few enough for the answers to stay in the processor's cache.
 constexpr std::size_t kPixels = std::size_t{1} << 16;
 
 // The weighted mean of the pixels that support one point.
@@ -62,10 +62,10 @@ void insert_view(PointCloud& cloud, std::size_t begin, std::size_t end, std::uin
 
 }  // namespace
 
-Portion::Portion(std::span<const WorkingView> views)
+ViewFusion::ViewFusion(std::span<const WorkingView> views)
     : views_(views.begin(), views.end()), where_(views.size()), answers_(views.size() - 1) {}
 
-std::size_t Portion::collect(std::size_t pixel) {
+std::size_t ViewFusion::collect(std::size_t pixel) {
   for (PixelPoints& where : where_) where.pixels.clear();
   supports_.clear();
   begin_.assign(1, 0);
@@ -78,7 +78,7 @@ std::size_t Portion::collect(std::size_t pixel) {
   return pixel;
 }
 
-void Portion::ask(const FuseOptions& options) {
+void ViewFusion::compare(const FuseOptions& options) {
   if (options.errors && cameras_.empty())
     for (const WorkingView& view : views_) cameras_.emplace_back(view.map->camera, view.map->pose);
   for (std::size_t n = 0; n < answers_.size(); ++n) {
@@ -89,7 +89,7 @@ void Portion::ask(const FuseOptions& options) {
   if (options.two_if_undisputed && options.min_views > 2) find_proved_by_two(options);
 }
 
-void Portion::find_proved_by_two(const FuseOptions& options) {
+void ViewFusion::find_proved_by_two(const FuseOptions& options) {
   proved_by_two_.resize(where_[0].pixels.size());
   const auto max_distance = static_cast<float>(0.5 * options.depth_threshold);
   std::vector<SurfacePieces> pieces;
@@ -105,7 +105,7 @@ void Portion::find_proved_by_two(const FuseOptions& options) {
 }
 
 // The only serial pass: if two points need the same pixel, the first one gets it.
-void Portion::accept(std::size_t min_views) {
+void ViewFusion::accept(std::size_t min_views) {
   std::vector<std::size_t> joining;
   std::vector<std::pair<std::size_t, std::uint32_t>> disproved;
   for (std::size_t i = 0; i < where_[0].pixels.size(); ++i) {
@@ -136,7 +136,7 @@ void Portion::accept(std::size_t min_views) {
   for (std::size_t v = 1; v < views_.size(); ++v) back_project(*views_[v].map, where_[v]);
 }
 
-PointCloud Portion::points(const FuseOptions& options) const {
+PointCloud ViewFusion::points(const FuseOptions& options) const {
   PointCloud cloud;
   cloud.positions.resize(size());
   if (options.normals || options.errors) cloud.normals.resize(size());
@@ -151,7 +151,7 @@ PointCloud Portion::points(const FuseOptions& options) const {
   return cloud;
 }
 
-void Portion::average(std::size_t point, PointCloud& cloud) const {
+void ViewFusion::average(std::size_t point, PointCloud& cloud) const {
   Mean mean;
   for (std::size_t k = begin_[point]; k < begin_[point + 1]; ++k) {
     const auto [v, index] = supports_[k];
@@ -165,7 +165,7 @@ void Portion::average(std::size_t point, PointCloud& cloud) const {
   if (!cloud.colors.empty()) cloud.colors[point] = mean.color();
 }
 
-void Portion::estimate_errors(PointCloud& cloud) const {
+void ViewFusion::estimate_errors(PointCloud& cloud) const {
   cloud.errors.resize(size());
   cloud.confidences.resize(size());
   parallel_for(

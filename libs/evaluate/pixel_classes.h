@@ -15,7 +15,7 @@
 namespace axial::evaluate {
 
 // The class of a pixel; the first that applies.
-enum class Place : std::uint8_t {
+enum class PixelClass : std::uint8_t {
   nothing,  // no truth
   edge,     // the window around the pixel contains two surfaces, or pixels without truth
   plain,    // no texture
@@ -23,17 +23,17 @@ enum class Place : std::uint8_t {
   open      // none of the other classes
 };
 
-struct PlaceMap {
+struct PixelClassMap {
   int width = 0, height = 0;
-  std::vector<Place> pixels;  // row-major
+  std::vector<PixelClass> pixels;  // row-major
 
-  Place at(int u, int v) const {
+  PixelClass at(int u, int v) const {
     return pixels[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(u)];
   }
 };
 
-struct PlaceOptions {
+struct PixelClassOptions {
   int reach = 4;               // half of the matching window [px], at least 1
   double jump = 1.02;          // ratio of neighbouring true distances at an edge
   double least_deviation = 5;  // standard deviation of grey values in a window with texture
@@ -43,17 +43,17 @@ struct PlaceOptions {
 // Classifies the pixels. `truth`: distances along the rays of `camera` [m]; 0: no truth. `grey`:
 // the photograph. Error unless both have the size of the camera's image and the reach is at least
 // 1.
-PlaceMap places_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
-                   const PlaceOptions& options = {});
+PixelClassMap classes_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
+                         const PixelClassOptions& options = {});
 
 // A depth map, its evaluation, and the classes of its pixels.
-struct PlacedMap {
+struct ClassifiedMap {
   const DepthMap* map;
   DepthEvaluation evaluation;
-  PlaceMap places;
+  PixelClassMap classes;
 };
 
-// True for an error of more than 2 % of the true distance (PlaceOptions::jump - 1). Most gross
+// True for an error of more than 2 % of the true distance (PixelClassOptions::jump - 1). Most gross
 // errors lie on another surface or on none. A mean that includes gross errors says nothing about
 // the other errors.
 bool is_gross(float error, float truth);
@@ -67,8 +67,8 @@ struct Magnitudes {
   std::size_t gross() const { return all.size() - fine.size(); }
 };
 
-struct PlaceErrors {
-  Place place;
+struct ClassErrors {
+  PixelClass pixel_class;
   std::size_t truth_pixels = 0, compared_pixels = 0;
   std::size_t gross_pixels = 0;  // compared pixels with a gross error
   double median = 0;             // of |estimate - truth| [m]; 0 without compared pixels
@@ -76,7 +76,7 @@ struct PlaceErrors {
 };
 
 // Returns the errors of all pixels of all maps for each class from `edge` to `open`.
-std::array<PlaceErrors, 4> errors_by_place(std::span<const PlacedMap> maps);
+std::array<ClassErrors, 4> errors_by_class(std::span<const ClassifiedMap> maps);
 
 // Pixels whose true position in a source view has a fractional part within [begin, end).
 struct PhaseErrors {
@@ -91,6 +91,6 @@ struct PhaseErrors {
 // Pixels that are off by more than half a pixel are left out, because they are wrong for other
 // reasons. Interpolation, or rounding in the projection, shows as a wave over the fraction of a
 // pixel.
-std::vector<PhaseErrors> errors_by_phase(std::span<const PlacedMap> maps, std::size_t bins);
+std::vector<PhaseErrors> errors_by_phase(std::span<const ClassifiedMap> maps, std::size_t bins);
 
 }  // namespace axial::evaluate

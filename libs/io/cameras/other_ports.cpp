@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cameras/rival_ports.h"
+#include "io/cameras/other_ports.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +53,9 @@ bool same_port(const HousingPort& a, const HousingPort& b) {
 std::string image_with_other_port(const Housing& taken, const Housing& other,
                                   const ColmapModel& model) {
   for (const ColmapImage& image : model.images) {
-    const HousingPort* const rival = port_named(other, other.port_of(image.name, image.camera));
-    if (rival && !same(port_named(taken, taken.port_of(image.name, image.camera)), rival))
+    const HousingPort* const other_port =
+        port_named(other, other.port_of(image.name, image.camera));
+    if (other_port && !same(port_named(taken, taken.port_of(image.name, image.camera)), other_port))
       return image.name;
   }
   return {};

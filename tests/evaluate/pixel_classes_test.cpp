@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluate/depth_places.h"
+#include "evaluate/pixel_classes.h"
 
 #include <gtest/gtest.h>
 
@@ -50,67 +50,67 @@ cv::Mat1f wall(double z) {
   return distances_to({0, 0, 1 / z}, pinhole());
 }
 
-TEST(Places, AreEdgesWhereAWindowSeesTwoSurfaces) {
+TEST(PixelClasses, AreEdgesWhereAWindowSeesTwoSurfaces) {
   cv::Mat1f truth = wall(3);
   cv::Mat1f nearer = wall(2);
   constexpr int kFirst = 100;  // column of the farther wall
   nearer.colRange(0, kFirst).copyTo(truth.colRange(0, kFirst));
-  const PlaceMap places = places_of(truth, pinhole(), noise());
+  const PixelClassMap classes = classes_of(truth, pinhole(), noise());
   for (int u = 1; u + 1 < kWidth; ++u) {
     const bool sees_both = u - 4 < kFirst && u + 4 >= kFirst;
-    EXPECT_EQ(places.at(u, 60) == Place::edge, sees_both) << u;
+    EXPECT_EQ(classes.at(u, 60) == PixelClass::edge, sees_both) << u;
   }
-  EXPECT_EQ(places.at(20, 60), Place::open);
+  EXPECT_EQ(classes.at(20, 60), PixelClass::open);
 }
 
 // Windows that contain a jump only in their outermost row.
-TEST(Places, AreEdgesByTheCornersOfWindowsToo) {
+TEST(PixelClasses, AreEdgesByTheCornersOfWindowsToo) {
   cv::Mat1f truth = wall(3);
   truth(cv::Rect(0, 0, 60, 40)) *= 0.5f;  // its last row is 39, its last column 59
-  const PlaceMap places = places_of(truth, pinhole(), noise());
-  EXPECT_EQ(places.at(60, 43), Place::edge);
-  EXPECT_EQ(places.at(60, 44), Place::open);
-  EXPECT_EQ(places.at(63, 40), Place::edge);
-  EXPECT_EQ(places.at(64, 40), Place::open);
+  const PixelClassMap classes = classes_of(truth, pinhole(), noise());
+  EXPECT_EQ(classes.at(60, 43), PixelClass::edge);
+  EXPECT_EQ(classes.at(60, 44), PixelClass::open);
+  EXPECT_EQ(classes.at(63, 40), PixelClass::edge);
+  EXPECT_EQ(classes.at(64, 40), PixelClass::open);
 }
 
-TEST(Places, AreOpenUpToTheBorder) {
-  const PlaceMap places = places_of(wall(2), pinhole(), noise());
-  for (const Place place : places.pixels) EXPECT_EQ(place, Place::open);
+TEST(PixelClasses, AreOpenUpToTheBorder) {
+  const PixelClassMap classes = classes_of(wall(2), pinhole(), noise());
+  for (const PixelClass pixel_class : classes.pixels) EXPECT_EQ(pixel_class, PixelClass::open);
 }
 
-TEST(Places, ArePlainWithoutTextureAndNothingWithoutTruth) {
+TEST(PixelClasses, ArePlainWithoutTextureAndNothingWithoutTruth) {
   cv::Mat1f truth = wall(2);
   truth.rowRange(0, 30) = 0.0f;
   cv::Mat1b grey = noise();
   grey(cv::Rect(40, 60, 30, 30)) = std::uint8_t{128};
-  const PlaceMap places = places_of(truth, pinhole(), grey);
-  EXPECT_EQ(places.at(80, 10), Place::nothing);
-  EXPECT_EQ(places.at(55, 75), Place::plain);
-  EXPECT_EQ(places.at(100, 75), Place::open);
+  const PixelClassMap classes = classes_of(truth, pinhole(), grey);
+  EXPECT_EQ(classes.at(80, 10), PixelClass::nothing);
+  EXPECT_EQ(classes.at(55, 75), PixelClass::plain);
+  EXPECT_EQ(classes.at(100, 75), PixelClass::open);
 }
 
 // At the image centre the slant of a plane is the angle between its normal and the axis.
-TEST(Places, AreSteepWhereTheSurfaceTurnsAway) {
+TEST(PixelClasses, AreSteepWhereTheSurfaceTurnsAway) {
   for (const CameraModel& camera : {pinhole(), behind_glass()})
     for (const double degrees : {0.0, 55.0, 65.0}) {
       const double angle = degrees * std::numbers::pi / 180;
       const Eigen::Vector3d n = Eigen::Vector3d(std::sin(angle), 0, std::cos(angle)) / 2;
-      const auto places = places_of(distances_to(n, camera), camera, noise());
-      EXPECT_EQ(places.at(80, 60), degrees > 60 ? Place::steep : Place::open) << degrees;
+      const auto classes = classes_of(distances_to(n, camera), camera, noise());
+      EXPECT_EQ(classes.at(80, 60), degrees > 60 ? PixelClass::steep : PixelClass::open) << degrees;
     }
 }
 
-TEST(Places, NeedOneSize) {
-  EXPECT_THROW(places_of(wall(2), pinhole(), cv::Mat1b(60, 80)), Error);
-  PlaceOptions options;
+TEST(PixelClasses, NeedOneSize) {
+  EXPECT_THROW(classes_of(wall(2), pinhole(), cv::Mat1b(60, 80)), Error);
+  PixelClassOptions options;
   options.reach = 0;
-  EXPECT_THROW(places_of(wall(2), pinhole(), noise(), options), Error);
-  EXPECT_THROW(places_of(cv::Mat1f(60, 80, 1.0f), pinhole(), cv::Mat1b(60, 80)), Error);
+  EXPECT_THROW(classes_of(wall(2), pinhole(), noise(), options), Error);
+  EXPECT_THROW(classes_of(cv::Mat1f(60, 80, 1.0f), pinhole(), cv::Mat1b(60, 80)), Error);
 }
 
-PlacedMap placed(const DepthMap& map, const cv::Mat1f& truth, const cv::Mat1b& grey) {
-  return {&map, evaluate_depth(map.depth, truth, {}), places_of(truth, map.camera, grey)};
+ClassifiedMap classified(const DepthMap& map, const cv::Mat1f& truth, const cv::Mat1b& grey) {
+  return {&map, evaluate_depth(map.depth, truth, {}), classes_of(truth, map.camera, grey)};
 }
 
 TEST(ErrorsByPlace, AreThoseOfItsPixels) {
@@ -126,18 +126,18 @@ TEST(ErrorsByPlace, AreThoseOfItsPixels) {
   map.depth(plain) += 0.004f;
   map.depth(cv::Rect(50, 70, 3, 1)) += 0.5f;
   map.depth(cv::Rect(0, 0, kWidth, 10)) = 0.0f;
-  const std::vector maps{placed(map, truth, grey), placed(map, truth, grey)};
-  const auto places = errors_by_place(maps);
-  EXPECT_EQ(places[0].truth_pixels, 0u);
-  EXPECT_EQ(places[0].mean, 0);
-  EXPECT_EQ(places[1].place, Place::plain);
+  const std::vector maps{classified(map, truth, grey), classified(map, truth, grey)};
+  const auto classes = errors_by_class(maps);
+  EXPECT_EQ(classes[0].truth_pixels, 0u);
+  EXPECT_EQ(classes[0].mean, 0);
+  EXPECT_EQ(classes[1].pixel_class, PixelClass::plain);
   // Counts the windows without noise: a band of 4 pixels on each side is lost.
-  EXPECT_EQ(places[1].truth_pixels, 2u * 32 * 32);
-  EXPECT_EQ(places[1].gross_pixels, 2u * 3);
-  EXPECT_NEAR(places[1].mean, 0.005, 1e-6);
-  EXPECT_EQ(places[3].gross_pixels, 0u);
-  EXPECT_NEAR(places[3].median, 0.001, 1e-6);
-  EXPECT_LT(places[3].compared_pixels, places[3].truth_pixels);
+  EXPECT_EQ(classes[1].truth_pixels, 2u * 32 * 32);
+  EXPECT_EQ(classes[1].gross_pixels, 2u * 3);
+  EXPECT_NEAR(classes[1].mean, 0.005, 1e-6);
+  EXPECT_EQ(classes[3].gross_pixels, 0u);
+  EXPECT_NEAR(classes[3].median, 0.001, 1e-6);
+  EXPECT_LT(classes[3].compared_pixels, classes[3].truth_pixels);
 }
 
 TEST(ErrorsByPlace, AreGrossBeyondTheStepOfAnEdge) {
@@ -187,9 +187,9 @@ class Phases : public testing::TestWithParam<bool> {
   }
 
   std::vector<PhaseErrors> phases() const {
-    std::vector<PlacedMap> placed_maps{placed(maps_[0], truth_[0], noise())};
-    placed_maps.push_back({&maps_[1], {}, {}});
-    return errors_by_phase(placed_maps, 8);
+    std::vector<ClassifiedMap> classified_maps{classified(maps_[0], truth_[0], noise())};
+    classified_maps.push_back({&maps_[1], {}, {}});
+    return errors_by_phase(classified_maps, 8);
   }
 
   std::array<DepthMap, 2> maps_;
