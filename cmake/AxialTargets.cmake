@@ -80,7 +80,7 @@ endfunction()
 # Unity builds: the compiler gets several source files of a target as one. Headers and templates are
 # then compiled once for all of them, which halves the compile time. Types and constants in unnamed
 # namespaces must differ between the files of a target; functions may be overloads. Files that share
-# such names, and files whose speed is important, are declared in APART and are compiled alone.
+# such names, and files whose speed is measured, are declared in APART and are compiled alone.
 # Files with compile options of their own (axial_source_options) are compiled alone, too.
 # -DAXIAL_UNITY=OFF compiles every file alone, for an editor and for work on a few files.
 option(AXIAL_UNITY "Compile several source files as one" ON)
