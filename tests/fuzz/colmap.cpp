@@ -2,6 +2,7 @@
 // COLMAP's binary and text models, each part as a reader of its own.
 #include "io/colmap/colmap.h"
 
+#include <algorithm>
 #include <array>
 
 #include "private/colmap/colmap_parts.h"
@@ -42,12 +43,33 @@ void read_cameras_txt(const fs::path& file) {
   read_part(file, io::read_cameras_text, &ColmapModel::cameras, io::write_underwater_text);
 }
 
+bool same_colmap_image(const io::ColmapImage& a, const io::ColmapImage& b) {
+  const auto same_point = [](const io::ColmapPoint2D& p, const io::ColmapPoint2D& q) {
+    return p.x == q.x && p.y == q.y && p.point3d == q.point3d;
+  };
+  return a.id == b.id && a.camera == b.camera && a.name == b.name &&
+         std::ranges::equal(a.points, b.points, same_point) &&
+         (a.pose.rotation - b.pose.rotation).cwiseAbs().maxCoeff() < 1e-9 &&
+         (a.pose.centre - b.pose.centre).norm() <= 1e-9 * a.pose.centre.norm();
+}
+
+// The files hold quaternions and translations, which are rounded when they are written.
+void read_images(const fs::path& file, std::vector<io::ColmapImage> (*read)(const fs::path&),
+                 WriteModel write) {
+  const auto images = read(file);
+  const auto again = read_copy(
+      images, file, read, [&](const fs::path& path, const std::vector<io::ColmapImage>& values) {
+        write(path.parent_path(), {{}, values, {}});
+      });
+  require(std::ranges::equal(images, again, same_colmap_image), "the copy has other images");
+}
+
 void read_images_bin(const fs::path& file) {
-  read_part(file, io::read_images_binary, &ColmapModel::images, io::write_colmap_binary);
+  read_images(file, io::read_images_binary, io::write_colmap_binary);
 }
 
 void read_images_txt(const fs::path& file) {
-  read_part(file, io::read_images_text, &ColmapModel::images, io::write_colmap_text);
+  read_images(file, io::read_images_text, io::write_colmap_text);
 }
 
 void read_points_bin(const fs::path& file) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Photographs, masks and TIFFs of floats.
 #include <array>
+#include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/images/image.h"
@@ -10,20 +11,20 @@ namespace axial::fuzz {
 namespace {
 
 // A photograph needs memory for its pixels, and a small file may declare many pixels.
-bool is_large(const fs::path& file) {
-  return io::read_image_size(file).area() > 1'000'000;
+bool is_large(cv::Size size) {
+  return std::int64_t{size.width} * size.height > 1'000'000;
 }
 
 void read_photograph_file(const fs::path& file) {
   const io::ImageHeader header = io::read_image_header(file);
-  if (header.size.area() > 1'000'000) return;
+  if (is_large(header.size)) return;
   const io::Photograph photograph = io::read_photograph(file);
   require(photograph.pixels.size() == header.size, "the header has another size than the pixels");
   io::in_8_bits(photograph.pixels, header.bits);
 }
 
 void read_label_file(const fs::path& file) {
-  if (!is_large(file)) io::read_label_image(file);
+  if (!is_large(io::read_image_size(file))) io::read_label_image(file);
 }
 
 void read_float_file(const fs::path& file) {

@@ -19,7 +19,8 @@ struct Reader {
   std::string_view name;  // of the test and of its folder of seeds
   const char* file;       // the name under which the bytes are stored
   // Reads `file` and checks the result. May write other files into the folder of `file`. An Error
-  // says that the bytes are refused; its message must be one line that names `file`.
+  // says that the bytes are refused; its message must be one line that begins with the name of a
+  // file: of `file`, or of a file that `file` names.
   void (*read)(const fs::path& file);
   // Writes a valid file. `variant` counts from 0. Returns false if there is no such variant.
   bool (*write_seed)(const fs::path& file, int variant);

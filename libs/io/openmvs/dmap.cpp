@@ -69,6 +69,12 @@ std::string relative_image(const std::string& image, const fs::path& dmap) {
   return name;
 }
 
+void require_finite_range(const DepthMap& map, const std::string& file) {
+  if (!std::isfinite(map.min_depth) || !std::isfinite(map.max_depth))
+    fail("{}: the depth range is {} to {} along the ray of the image centre", file, map.min_depth,
+         map.max_depth);
+}
+
 // The counterpart of relative_image.
 std::string resolved_image(const std::string& name, const fs::path& dmap) {
   return (fs::absolute(dmap).parent_path() / name).lexically_normal().string();
@@ -109,6 +115,7 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
         enclosing(ray.lambda(static_cast<double>(map.min_depth)),
                   ray.lambda(static_cast<double>(map.max_depth)), map.depth);
   }
+  require_finite_range(map, file);
   return stored;
 }
 
@@ -130,6 +137,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
   const DepthAlongRay ray = centre_ray(map.camera);
   map.min_depth = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
   map.max_depth = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
+  require_finite_range(map, file);
   return std::move(stored.map);
 }
 
