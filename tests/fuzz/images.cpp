@@ -5,10 +5,18 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/images/image.h"
+#include "private/images/image_codecs.h"
 #include "reader.h"
 
 namespace axial::fuzz {
 namespace {
+
+// True if the reader decodes the format itself. Other formats are decoded as a whole by OpenCV's
+// libraries, with the memory that a header of a few bytes declares.
+bool is_decoded_by_us(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  return io::is_jpeg(bytes) || io::is_png(bytes) || io::is_tiff(bytes);
+}
 
 // A photograph needs memory for its pixels, and a small file may declare many pixels.
 bool is_large(cv::Size size) {
@@ -16,6 +24,7 @@ bool is_large(cv::Size size) {
 }
 
 void read_photograph_file(const fs::path& file) {
+  if (!is_decoded_by_us(file)) return;
   const io::ImageHeader header = io::read_image_header(file);
   if (is_large(header.size)) return;
   const io::Photograph photograph = io::read_photograph(file);
@@ -24,7 +33,7 @@ void read_photograph_file(const fs::path& file) {
 }
 
 void read_label_file(const fs::path& file) {
-  if (!is_large(io::read_image_size(file))) io::read_label_image(file);
+  if (is_decoded_by_us(file) && !is_large(io::read_image_size(file))) io::read_label_image(file);
 }
 
 void read_float_file(const fs::path& file) {

@@ -252,6 +252,7 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   EXPECT_THAT(message("\"fx\": 6.0", "\"fx\": 7.0"), HasSubstr("lens"));
   EXPECT_THAT(message("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(message("\"n_glass\": 1.49", "\"n_glass\": 0.5"), HasSubstr("n_glass is 0.5"));
+  EXPECT_THAT(message("\"max_depth_m\": 4.5", "\"max_depth_m\": 1e39"), HasSubstr("to inf"));
   EXPECT_THAT(message("\"made_from\"", "\"made_by\""), HasSubstr("made_by"));
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
 }
