@@ -13,6 +13,7 @@ target_compile_options(axial_flags INTERFACE
   # need no branch.
   -fno-math-errno -fno-trapping-math)
 if(AXIAL_FUZZ)
+  # clang's sanitizers, with the counters of executed code that libFuzzer needs.
   target_compile_options(axial_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize=null,alignment,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
