@@ -90,9 +90,10 @@ void read_side_file(const fs::path& file) {
     io::write_dmap(map, small_map(false), "options");
     write_atomically(file, bytes);
   }
-  io::dmap_status(map);
   io::read_dmap_header(map);
-  expect_same_copy(io::read_dmap(map), map);
+  const io::StoredDepthMap stored = io::read_dmap(map);
+  require(io::dmap_made_from(map) == stored.made_from, "the map is not found to be ours");
+  expect_same_copy(stored, map);
 }
 
 bool write_map_seed(const fs::path& file, int variant) {
