@@ -12,7 +12,12 @@ target_compile_options(axial_flags INTERFACE
   # No code reads errno or uses floating-point traps. The results are the same, and square roots
   # need no branch.
   -fno-math-errno -fno-trapping-math)
-if(AXIAL_SANITIZE)
+if(AXIAL_FUZZ)
+  # clang's sanitizers, with the counters of executed code that libFuzzer needs.
+  target_compile_options(axial_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+    -fno-sanitize=null,alignment,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
+elseif(AXIAL_SANITIZE)
   # The checks for null pointers and alignment are off, because they would take a quarter of the
   # compile time: AddressSanitizer detects null pointers anyway, and Eigen asserts alignment itself.
   # AddressSanitizer's checks are calls instead of inline code. This saves a tenth of the compile

@@ -11,6 +11,7 @@ packages=(
   libnanoflann-dev libembree-dev libxxhash-dev libboost-dev libboost-program-options-dev
   # to test
   clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
+  clang libclang-rt-dev
   # to run the pipeline
   colmap python3
 )

@@ -196,12 +196,12 @@ TEST_F(ColmapTest, RefusesTwoImagesOfOneName) {
   }
 }
 
-// Blanks (not at the ends), '#', quotes and commas anywhere.
+// Blanks and carriage returns (not at the ends), '#', quotes and commas anywhere.
 RC_GTEST_PROP(Colmap, KeepsAnyName, ()) {
   const auto name = *rc::gen::nonEmpty(
-      rc::gen::container<std::string>(rc::gen::element('a', ' ', '#', '"', ',', '7', '\t')));
-  RC_PRE(std::string(" \t").find(name.front()) == std::string::npos);
-  RC_PRE(std::string(" \t").find(name.back()) == std::string::npos);
+      rc::gen::container<std::string>(rc::gen::element('a', ' ', '#', '"', ',', '7', '\t', '\r')));
+  RC_PRE(std::string(" \t\r").find(name.front()) == std::string::npos);
+  RC_PRE(std::string(" \t\r").find(name.back()) == std::string::npos);
   ColmapModel model;
   model.cameras = {{1, "PINHOLE", 64, 48, {50, 50, 32, 24}}};
   model.images = {{1, 1, name, {}, {}}};
@@ -251,6 +251,8 @@ TEST_F(ColmapTest, NamesWhatIsWrongInImagesAndPoints) {
   EXPECT_THAT(images("5 0 0 0 0 -1 -2 -3 1 a.jpg\n\n"), HasSubstr("not a rotation"));
   EXPECT_THAT(images("5 nan 0 0 0 -1 -2 -3 1 a.jpg\n\n"), HasSubstr("qw is 'nan'"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 inf 1 a.jpg\n\n"), HasSubstr("tz is 'inf'"));
+  EXPECT_THAT(images("5 0.9239 0 0 0.3827 1.7e308 1.7e308 1.7e308 1 a.jpg\n\n"),
+              HasSubstr("too long"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 -3 2 a.jpg\n1 2 9\n"), HasSubstr("camera 2"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 -3 1 a.jpg\n1 2 8\n"), HasSubstr("3D point 8"));
   EXPECT_THAT(images("5 1 0 0 0 -1 -2 -3 1 a.jpg\n1 2\n"), HasSubstr("3D point id is missing"));

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cstring>
+#include <limits>
 
 #include "base/atomic_file.h"
 #include "io/wrong_input.h"
@@ -225,6 +226,8 @@ TEST_F(DmapTest, NamesWhatIsWrong) {
   EXPECT_THAT(error_with(12, 0u), HasSubstr("0x7"));
   EXPECT_THAT(error_with(16, 0xFFFFFFFFu), HasSubstr("4294967295"));
   EXPECT_THAT(error_with(20, HUGE_VALF), HasSubstr("inf"));
+  // The ray of the image centre is not along the optical axis, so the distance is longer than z.
+  EXPECT_THAT(error_with(24, std::numeric_limits<float>::max()), HasSubstr("to inf along the ray"));
   EXPECT_THAT(error_with(28, std::uint16_t{65535}), HasSubstr("image name"));
   EXPECT_THAT(error_with(kIds, 0u), HasSubstr("no ids"));
   EXPECT_THAT(error_with(kIds, 0xFFFFFFFFu), HasSubstr("ids"));
@@ -249,6 +252,7 @@ TEST_F(DmapTest, RefusesASideFileOfAnotherMap) {
   EXPECT_THAT(message("\"fx\": 6.0", "\"fx\": 7.0"), HasSubstr("lens"));
   EXPECT_THAT(message("\"version\": 1", "\"version\": 2"), HasSubstr("version is 2"));
   EXPECT_THAT(message("\"n_glass\": 1.49", "\"n_glass\": 0.5"), HasSubstr("n_glass is 0.5"));
+  EXPECT_THAT(message("\"max_depth_m\": 4.5", "\"max_depth_m\": 1e39"), HasSubstr("to inf"));
   EXPECT_THAT(message("\"made_from\"", "\"made_by\""), HasSubstr("made_by"));
   EXPECT_EQ(dmap_made_from(file_), std::nullopt);
 }

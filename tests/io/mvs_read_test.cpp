@@ -138,6 +138,10 @@ TEST_F(MvsTest, NamesWhatIsWrong) {
   EXPECT_THAT(error([](D& d) { d.pose_r[0] = kNan; }), HasSubstr("pose R"));
   EXPECT_THAT(error([](D& d) { d.camera_r[0] = kNan; }), HasSubstr("camera R"));
   EXPECT_THAT(error([](D& d) { d.pose_c[1] = HUGE_VAL; }), HasSubstr("pose C"));
+  EXPECT_THAT(error([](D& d) {
+                d.camera_c = {0, 1.7e308, 0}, d.pose_c = {-1.7e308, 0, 0};
+              }),
+              HasSubstr("C of the camera"));
   EXPECT_THAT(error([](D& d) { d.platform = 1; }), HasSubstr("platformID is 1"));
   EXPECT_THAT(error([](D& d) { d.platform = kNoId; }), HasSubstr("platformID"));
   EXPECT_THAT(error([](D& d) { d.camera = 1; }), HasSubstr("cameraID is 1"));

@@ -90,6 +90,8 @@ Pose pose_from_colmap(const ColmapPose& values, const std::string& where) {
   Pose pose;
   pose.rotation = rotation_from(unit[0], unit[1], unit[2], unit[3]);
   pose.centre = -pose.rotation.transpose() * Eigen::Vector3d(values[4], values[5], values[6]);
+  if (!pose.centre.allFinite())
+    fail("{}: the translation {} {} {} is too long", where, values[4], values[5], values[6]);
   return pose;
 }
 

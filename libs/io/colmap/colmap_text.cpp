@@ -108,7 +108,7 @@ std::string cameras_as_text(const ColmapModel& model, Dialect dialect) {
 
 void check_name(const ColmapImage& image, const std::string& file) {
   const std::string& name = image.name;
-  if (name.empty() || trimmed(name) != name || name.find_first_of("\n\r") != std::string::npos)
+  if (name.empty() || trimmed(name) != name || name.find('\n') != std::string::npos)
     fail("{}: image {} has the name '{}', which text files cannot hold", file, image.id, name);
 }
 

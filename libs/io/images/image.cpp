@@ -84,16 +84,29 @@ std::string_view unread_format(std::string_view bytes) {
   return {};
 }
 
-bool opencv_knows(const fs::path& path) {
-  try {
-    return cv::haveImageReader(path.string());
-  } catch (const cv::Exception&) {
-    return false;
-  }
+// WebP, BMP, JPEG 2000, Sun raster and PNM. For other formats, OpenCV would call GDAL, which prints
+// messages and opens files that the bytes name.
+bool is_rare_format(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return true;
+  for (const std::string_view start :
+       {"BM"sv, "\0\0\0\x0CjP  "sv, "\xFF\x4F\xFF\x51"sv, "\x59\xA6\x6A\x95"sv})
+    if (bytes.starts_with(start)) return true;
+  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '7' &&
+         " \t\r\n"sv.find(bytes[2]) != std::string_view::npos;
+}
+
+void require_known_format(std::string_view bytes, const fs::path& path) {
+  if (is_tiff(bytes) || is_rare_format(bytes)) return;
+  if (const auto format = unread_format(bytes); !format.empty())
+    fail("{}: is {}, a format that is not supported; supported are JPEG, PNG and TIFF",
+         path.string(), format);
+  fail("{}: is not in a supported image format, such as JPEG, PNG and TIFF", path.string());
 }
 
 // Decodes formats that image_codecs.h does not handle.
 cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int flags) {
+  require_known_format(bytes, path);
   const Silence silence;
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
@@ -103,11 +116,6 @@ cv::Mat decode_by_opencv(const std::string& bytes, const fs::path& path, int fla
     fail("{}: cannot be decoded: {}", path.string(), error.err);
   }
   if (!image.empty()) return image;
-  if (const auto format = unread_format(bytes); !format.empty())
-    fail("{}: is {}, a format that is not supported; supported are JPEG, PNG and TIFF",
-         path.string(), format);
-  if (!opencv_knows(path))
-    fail("{}: is not in a supported image format, such as JPEG, PNG and TIFF", path.string());
   fail("{}: cannot be decoded: truncated or damaged", path.string());
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <jpeglib.h>
-
 #include <cstdio>
-// jerror.h needs jpeglib.h, so it comes second.
+// jpeglib.h needs FILE and size_t.
+#include <jpeglib.h>
+// jerror.h needs jpeglib.h.
 #include <jerror.h>
 
 #include <array>

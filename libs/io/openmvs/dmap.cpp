@@ -69,6 +69,16 @@ std::string relative_image(const std::string& image, const fs::path& dmap) {
   return name;
 }
 
+// Converts the depth range of the header from z-depth to lambda.
+std::pair<float, float> range_along_ray(const DepthMap& map, const std::string& file) {
+  const DepthAlongRay ray = centre_ray(map.camera);
+  const auto low = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
+  const auto high = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
+  if (!std::isfinite(low) || !std::isfinite(high))
+    fail("{}: the depth range is {} to {} along the ray of the image centre", file, low, high);
+  return {low, high};
+}
+
 // The counterpart of relative_image.
 std::string resolved_image(const std::string& name, const fs::path& dmap) {
   return (fs::absolute(dmap).parent_path() / name).lexically_normal().string();
@@ -104,10 +114,9 @@ StoredDepthMap read_dmap(const fs::path& path, DmapSide use) {
     map.min_depth = side->min_depth;
     map.max_depth = side->max_depth;
   } else {
-    const DepthAlongRay ray = centre_ray(map.camera);
+    const auto [low, high] = range_along_ray(map, file);
     std::tie(map.min_depth, map.max_depth) =
-        enclosing(ray.lambda(static_cast<double>(map.min_depth)),
-                  ray.lambda(static_cast<double>(map.max_depth)), map.depth);
+        enclosing(static_cast<double>(low), static_cast<double>(high), map.depth);
   }
   return stored;
 }
@@ -127,9 +136,7 @@ DepthMap read_dmap_header(const fs::path& path, DmapSide use) {
       use_side_file(*side, dmap_side_path(path).string(), stored);
   DepthMap& map = stored.map;
   map.image_path = resolved_image(map.image_path, path);
-  const DepthAlongRay ray = centre_ray(map.camera);
-  map.min_depth = static_cast<float>(ray.lambda(static_cast<double>(map.min_depth)));
-  map.max_depth = static_cast<float>(ray.lambda(static_cast<double>(map.max_depth)));
+  std::tie(map.min_depth, map.max_depth) = range_along_ray(map, file);
   return std::move(stored.map);
 }
 

@@ -63,6 +63,8 @@ std::optional<DmapSideFile> read_dmap_side_file(const fs::path& dmap) {
     side.camera.port = port_from_json(port, std::numeric_limits<double>::infinity());
   side.min_depth = static_cast<float>(root.number("min_depth_m"));
   side.max_depth = static_cast<float>(root.number("max_depth_m"));
+  if (!std::isfinite(side.min_depth) || !std::isfinite(side.max_depth))
+    fail("{} has the depth range {} to {}", root.where, side.min_depth, side.max_depth);
   side.made_from = root.text("made_from");
   side.content = root.text("content");
   return side;

@@ -31,7 +31,8 @@ Pose compose(const MvsPose& camera, const MvsPose& platform, const std::string& 
   const Eigen::Matrix3d r_pose = checked_rotation(platform.rotation, where + " pose R");
   const Eigen::Vector3d c_cam = checked_centre(camera.centre, where + " camera C");
   const Eigen::Vector3d c_pose = checked_centre(platform.centre, where + " pose C");
-  return {r_cam * r_pose, r_pose.transpose() * c_cam + c_pose};
+  const Eigen::Vector3d centre = r_pose.transpose() * c_cam + c_pose;
+  return {r_cam * r_pose, checked_centre(centre, where + " C of the camera on its platform")};
 }
 
 void check_intrinsics(const Eigen::Matrix3d& k, const std::string& where) {

@@ -17,11 +17,13 @@ namespace {
 // that is missing. A count is refused if the file is too short for it.
 class SkippingReader {
  public:
-  explicit SkippingReader(const std::filesystem::path& path) : buffer_(1u << 20) {
-    in_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    in_.open(path, std::ios::binary);
+  explicit SkippingReader(const std::filesystem::path& path) {
+    constexpr std::uint64_t kSmallest = 1u << 12, kLargest = 1u << 20;
     std::error_code error;
     left_ = std::filesystem::file_size(path, error);
+    buffer_.resize(error ? kSmallest : std::clamp(left_, kSmallest, kLargest));
+    in_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    in_.open(path, std::ios::binary);
     if (error || !in_) fail();
   }
 

@@ -32,8 +32,8 @@ struct MvsCounts {
   std::uint64_t writing_bytes() const;
 };
 
-// Scans the file with a buffer of one megabyte. Nothing for a file of version 0, and for a file
-// that cannot be read or is malformed, for which read_mvs reports the reason.
+// Scans the file with a buffer of at most one megabyte. Nothing for a file of version 0, and for a
+// file that cannot be read or is malformed, for which read_mvs reports the reason.
 std::optional<MvsCounts> count_mvs(const std::filesystem::path& path);
 
 // The counts of the file that write_mvs makes, as upper bounds.

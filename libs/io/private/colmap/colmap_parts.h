@@ -26,8 +26,8 @@ int colmap_model_id(std::string_view name, Dialect dialect);
 // Quaternion (w, x, y, z) and translation of the transformation from world to camera.
 using ColmapPose = std::array<double, 7>;
 
-// Error that starts with `where` for values that are not finite or a quaternion of (almost) zero
-// length. Other quaternions are normalised.
+// Error that starts with `where` for values that are not finite, a quaternion of (almost) zero
+// length, or a translation whose camera centre is not finite. Other quaternions are normalised.
 Pose pose_from_colmap(const ColmapPose& values, const std::string& where);
 ColmapPose pose_to_colmap(const Pose& pose);
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// PLY clouds and meshes.
+#include "io/ply/ply.h"
+
+#include <algorithm>
+#include <array>
+
+#include "io/openmvs/point_source.h"
+#include "io/ply/ply_property.h"
+#include "reader.h"
+
+namespace axial::fuzz {
+namespace {
+
+// The format that the writer uses counts the views of a point in a byte.
+bool can_be_written(const PointCloud& cloud) {
+  for (std::size_t i = 0; !cloud.view_begin.empty() && i < cloud.size(); ++i)
+    if (cloud.views_of(i).size() > 255) return false;
+  return true;
+}
+
+PointCloud read_cloud(const fs::path& file) {
+  return io::read_cloud_ply(file);
+}
+
+void read_cloud_file(const fs::path& file) {
+  const PointCloud cloud = read_cloud(file);
+  if (!can_be_written(cloud)) return;
+  const PointCloud again = read_copy(
+      cloud, file, read_cloud,
+      [](const fs::path& path, const PointCloud& value) { io::write_cloud_ply(path, value); });
+  require(again.positions == cloud.positions, "the copy has other positions");
+  require(again.normals == cloud.normals, "the copy has other normals");
+  require(again.colors == cloud.colors, "the copy has other colours");
+  require(again.view_images == cloud.view_images, "the copy has other views");
+}
+
+void read_mesh_file(const fs::path& file) {
+  const auto read = [](const fs::path& path) { return io::read_mesh_ply(path); };
+  const Mesh mesh = read(file);
+  const Mesh again = read_copy(mesh, file, read, [](const fs::path& path, const Mesh& value) {
+    io::write_mesh_ply(path, value);
+  });
+  require(again.vertices == mesh.vertices, "the copy has other vertices");
+  require(again.colors == mesh.colors, "the copy has other colours");
+  require(again.faces == mesh.faces, "the copy has other faces");
+}
+
+// Functions that read only a part of a file.
+void read_parts(const fs::path& file) {
+  io::count_point_cloud(file, {});
+  io::ply_has_faces(file);
+  io::read_vertex_property(file, "confidence");
+  io::ply_place(file);
+  io::read_cloud_ply(file, LocalFrame{{1e6, -2e6, 3}});
+}
+
+PointCloud small_cloud() {
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}};
+  cloud.normals = {{0, 0, 1}, {0, 1, 0}};
+  cloud.colors = {{1, 2, 3}, {4, 5, 6}};
+  cloud.view_begin = {0, 2, 3};
+  cloud.view_images = {0, 2, 1};
+  cloud.view_weights = {0.5f, 0.25f, 1};
+  cloud.errors = {0.1f, 0.2f};
+  cloud.confidences = {0.5f, 1};
+  return cloud;
+}
+
+constexpr const char* kAscii =
+    "ply\nformat ascii 1.0\ncomment geo_offset 500000 -4e6 2\nobj_info none\nelement vertex 3\n"
+    "property float64 x\nproperty double y\nproperty float z\nproperty uchar diffuse_red\n"
+    "property uchar diffuse_green\nproperty uchar diffuse_blue\nelement other 1\n"
+    "property list short int16 values\nelement face 1\nproperty list uchar int vertex_index\n"
+    "end_header\n0 0 1 9 8 7\n1.5 0 1e-3 6 5 4\n0 1 0 3 2 1\n2 -5 7\n3 0 1 2\n";
+
+std::string big_endian() {
+  using namespace std::string_literals;
+  return "ply\r\nformat binary_big_endian 1.0\r\nelement vertex 1\r\nproperty ushort x\r\n"
+         "property uint y\r\nproperty int8 z\r\nproperty list ushort uint view_indices\r\n"
+         "end_header\r\n\0\5\0\0\0\7\xFE\0\1\0\0\0\3"s;
+}
+
+bool write_cloud_seed(const fs::path& file, int variant) {
+  const io::PlyPlacement placement{LocalFrame{{500000, 4e6, 0}}, variant == 1};
+  if (variant < 2) io::write_cloud_ply(file, small_cloud(), true, placement);
+  if (variant == 2) write_atomically(file, kAscii);
+  if (variant == 3) write_atomically(file, big_endian());
+  return variant < 4;
+}
+
+bool write_mesh_seed(const fs::path& file, int variant) {
+  Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}};
+  if (variant == 1) mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  io::write_mesh_ply(file, mesh);
+  if (variant == 2) write_atomically(file, kAscii);
+  return variant < 3;
+}
+
+}  // namespace
+
+std::span<const Reader> ply_readers() {
+  static constexpr std::array kReaders{
+      Reader{"ply-cloud", "cloud.ply", read_cloud_file, write_cloud_seed},
+      Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
+      Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed}};
+  return kReaders;
+}
+
+}  // namespace axial::fuzz

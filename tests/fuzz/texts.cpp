@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texts that users write, and lists of written files.
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "io/bytes/json.h"
+#include "io/bytes/written_files.h"
+#include "io/cameras/position_file.h"
+#include "reader.h"
+
+namespace axial::fuzz {
+namespace {
+
+void read_position_file(const fs::path& file) {
+  const auto positions =
+      io::read_positions(file, [](const std::string& name) { return name.ends_with(".png"); });
+  for (const io::NamedPosition& position : positions)
+    require(position.line > 0 && position.position.allFinite(), "a position is not possible");
+}
+
+bool write_position_seed(const fs::path& file, int variant) {
+  write_atomically(file,
+                   "\xEF\xBB\xBF# name x y z\na b.png 1 -2e3 +3.5 # first\n"
+                   "\"a \"\" #b.png\" 4 5 6\nc#.png\t7 8 9\n");
+  return variant < 1;
+}
+
+// No file that is found lies outside the folder.
+void read_file_list(const fs::path& file) {
+  const fs::path folder = file.parent_path() / "again";
+  if (!fs::exists(folder / "a.txt")) write_atomically(folder / "a.txt", "a");
+  const io::WrittenFiles found = io::find_written(folder, io::read_json(file));
+  for (const auto& paths : {found.unchanged, found.changed})
+    for (const fs::path& path : paths) require(path == "a.txt", "found " + path.string());
+}
+
+bool write_list_seed(const fs::path& file, int variant) {
+  const fs::path folder = file.parent_path() / "again";
+  write_atomically(folder / "a.txt", "a");
+  io::write_json(file, io::list_files(folder));
+  return variant < 1;
+}
+
+void read_split_list(const fs::path& file) {
+  const auto fields = io::split_list(read_file(file), file.string());
+  require(!fields.empty(), "a list has no fields");
+}
+
+bool write_split_seed(const fs::path& file, int variant) {
+  write_atomically(file, "a.png,\"b,\"\"c\"\".png\",,d");
+  return variant < 1;
+}
+
+}  // namespace
+
+std::span<const Reader> text_readers() {
+  static constexpr std::array kReaders{
+      Reader{"positions", "positions.txt", read_position_file, write_position_seed},
+      Reader{"file-list", "list.json", read_file_list, write_list_seed},
+      Reader{"split-list", "list.txt", read_split_list, write_split_seed}};
+  return kReaders;
+}
+
+}  // namespace axial::fuzz
