@@ -146,8 +146,6 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   adjusting.loss_sigmas *= 4;
   for (int round = 0; round < options.rounds; ++round) {
     report.last = adjust(bundle, adjusting);
-    // Before errors are judged: the undistorted pixels belong to the previous focal lengths.
-    if (options.between_rounds) options.between_rounds();
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
