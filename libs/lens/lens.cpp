@@ -163,6 +163,7 @@ std::optional<ImagedDirection> direction_at(const Lens& lens, const Field& field
 }
 
 Field field_of(const Lens& lens) {
+  if (!lens.model) return {};
   constexpr int kSides = 16;
   double angle = 0;
   for (int k = 0; k < kSides; ++k) {

@@ -49,6 +49,7 @@ struct Field {
   // degrees. A corner that no direction projects to counts as this limit.
   double corner = 0;
 };
+// Zeros for a lens without a model.
 Field field_of(const Lens& lens);
 
 // The same as direction_at() above, with the field of the lens. It is faster, because it does not
