@@ -111,8 +111,8 @@ Imaged rad_tan_thin_prism_fisheye(Parameters k, const Vector2d& p) {
   const double r2 = e.point.squaredNorm();
   // The model's first tangential parameter has the role of Brown's second.
   const Imaged shift = tangential(e.point, k[7], k[6]);
-  const Imaged prisms = sum(prism(e.point, {k[8], k[10]}, {r2, 1}),
-                            prism(e.point, {k[9], k[11]}, {r2 * r2, 2 * r2}));
+  const Imaged prisms =
+      sum(prism(e.point, {k[8], k[10]}, {r2, 1}), prism(e.point, {k[9], k[11]}, {r2 * r2, 2 * r2}));
   return sum(e, chain(sum(shift, prisms), e));
 }
 

@@ -91,8 +91,8 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
     RowMajor<kHousingNumbers> by_change(jacobians[2]);
     const Eigen::Map<const HousingChange<double>> change(parameters[2]);
     by_change.leftCols<kPortNumbers>() =
-        -by_point * ray_by_change(measured_.measured.port, change, image.tangents,
-                                  (X - image.origin).norm());
+        -by_point *
+        ray_by_change(measured_.measured.port, change, image.tangents, (X - image.origin).norm());
     // The focal lengths scale the picture about the principal point.
     by_change.col(kFocalNumber) = image.pixel - now_.principal_point();
   }

@@ -44,8 +44,8 @@ class CurrentCameras : public ceres::EvaluationCallback {
 };
 
 // Residual [px of the photograph] of one observation. Parameter blocks: the pose's numbers, the
-// point [m], the camera's change. A point that is not visible (PhotographImage) has a large constant
-// residual with zero derivatives; the loss function bounds its weight.
+// point [m], the camera's change. A point that is not visible (PhotographImage) has a large
+// constant residual with zero derivatives; the loss function bounds its weight.
 class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
  public:
   // All arguments must outlive the cost.

@@ -44,8 +44,8 @@ template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 
 // A camera without a lens: its pixels are tangents in air (u, v) of the direction (u, v, 1) in the
-// camera frame. It is the inner camera of a lens of any kind (lens_camera.h). A tangent can be up to
-// 1e6, and the incidence on a flat port up to 88.8 degrees.
+// camera frame. It is the inner camera of a lens of any kind (lens_camera.h). A tangent can be up
+// to 1e6, and the incidence on a flat port up to 88.8 degrees.
 using TangentCamera =
     std::variant<refractive::PinholeCamera<double>, refractive::FlatPortCamera<double>,
                  refractive::DomePortCamera<double>>;

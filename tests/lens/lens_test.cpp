@@ -250,7 +250,9 @@ TEST(Lens, DirectionsWithinTheFieldAreThoseOfTheSearch) {
       for (double y = 0; y < 480; y += 20) {
         const auto searched = direction_at(lens, {x, y}), found = direction_at(lens, field, {x, y});
         ASSERT_EQ(searched.has_value(), found.has_value()) << camera.model << " " << x << " " << y;
-        if (found) EXPECT_EQ(found->direction, searched->direction);
+        if (found) {
+          EXPECT_EQ(found->direction, searched->direction);
+        }
       }
   }
 }

@@ -36,8 +36,9 @@ TEST(ColmapBundle, MeasuresErrorsInThePhotograph) {
   for (const double error : reprojection_errors(bundle.bundle)) ASSERT_NEAR(error, 0.1, 1e-9);
 }
 
-// The focal length is far too short, and its factor corrects it exactly. The image of the distortion
-// grows with the focal length: a distortion that stays as it is would cause errors of pixels.
+// The focal length is far too short, and its factor corrects it exactly. The image of the
+// distortion grows with the focal length: a distortion that stays as it is would cause errors of
+// pixels.
 TEST(ColmapBundle, DistortionFollowsTheFocalLength) {
   const io::ColmapModel model = model_of(survey(camera_behind(flat_port(2)), {}));
   for (const double factor : {1.01, 1.3}) {
