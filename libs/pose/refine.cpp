@@ -42,15 +42,9 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
     from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
     to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
   }
-  const SimilarityFit fit = best_similarity(from, to);
-  const auto place = [&](Eigen::Vector3d& x) {
-    x = fit.scale * (fit.rotation * x) + fit.translation;
-  };
-  for (BundleImage& image : bundle.images) {
-    place(image.pose.centre);
-    image.pose.rotation = image.pose.rotation * fit.rotation.transpose();
-  }
-  for (BundlePoint& point : bundle.points) place(point.position);
+  const Similarity place = best_similarity(from, to);
+  for (BundleImage& image : bundle.images) image.pose = place(image.pose);
+  for (BundlePoint& point : bundle.points) point.position = place(point.position);
   return true;
 }
 

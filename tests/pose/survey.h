@@ -144,13 +144,12 @@ inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool wit
     from.col(i) = found.images[static_cast<std::size_t>(i)].pose.centre;
     to.col(i) = truth.images[static_cast<std::size_t>(i)].pose.centre;
   }
-  const SimilarityFit fit = best_similarity(from, to, with_scale);
+  const Similarity fit = best_similarity(from, to, with_scale);
   PoseErrors errors;
   errors.scale = fit.scale;
   double sum = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector3d moved = fit.scale * (fit.rotation * from.col(i)) + fit.translation;
-    sum += (moved - to.col(i)).squaredNorm();
+    sum += (fit(Eigen::Vector3d(from.col(i))) - to.col(i)).squaredNorm();
     const Eigen::Matrix3d between =
         found.images[static_cast<std::size_t>(i)].pose.rotation * fit.rotation.transpose() *
         truth.images[static_cast<std::size_t>(i)].pose.rotation.transpose();
