@@ -60,20 +60,20 @@ class LensProjector {
   InnerProjector inner_;
 };
 
-namespace detail {
-
 // The lens of the inner camera: its pixels are tangents.
 template <class T>
 PinholeLens<T> tangent_lens() {
   return {T(1), T(1), T(0), T(0)};
 }
 
-// The image rectangle of the inner camera, larger than any image in tangents. The DistortedLens
-// tests against the real image rectangle.
+// The image rectangle of the inner camera, larger than any image in tangents. The lens
+// with distortion tests against the real image rectangle.
 template <class T>
 WidenedImage<T> all_tangents() {
   return {1, 1, T(1e6)};
 }
+
+namespace detail {
 
 // Tangent of the largest in-air incidence on the port over `image` [px], at most kGrazing. Only the
 // border is sampled, because the incidence grows towards the border.

@@ -165,13 +165,11 @@ struct Refined {
   pose::RefineReport report;
 };
 
-Refined refine(Options& options, pose::ColmapBundle& refined, const io::ColmapModel& model) {
+Refined refine(const Options& options, pose::ColmapBundle& refined) {
   pose::bring_to_metres(refined.bundle, options.refine.adjust);
   log_info("Starts with points at a median distance of {:.3g} m",
            pose::median_distance(refined.bundle));
   pose::Bundle before = refined.bundle;
-  if (options.refine.adjust.free[pose::kFocalNumber])
-    options.refine.between_rounds = [&] { place_again(refined, model); };
   pose::RefineReport report = pose::refine(refined.bundle, options.refine,
                                            [](const std::string& line) { log_info("{}", line); });
   return {std::move(before), std::move(report)};
@@ -284,13 +282,13 @@ Refined refine_or_without_scale(Options& options, pose::ColmapBundle& refined, c
                                 UnusedInput& unused, LocalFrame& frame) {
   std::optional<pose::ColmapBundle> start;
   if (options.allow_missing && !options.scale_from.empty()) start = refined;
-  Refined done = refine(options, refined, input.model);
+  Refined done = refine(options, refined);
   if (done.report.lost.empty()) return done;
   unused.report("--scale-from " + options.scale_from + ": " + done.report.lost.front());
   options.scale_from.clear();
   refined = *std::move(start);
   frame = set_known(options, refined.bundle, input.frame, unused);
-  return refine(options, refined, input.model);
+  return refine(options, refined);
 }
 
 // Tells the errors, checks the result, and writes it. `frame`: of the refined bundle.

@@ -60,7 +60,7 @@ Worst worst_of(const pose::HousingChange<double>& sigmas, const Calibration& cal
 // The bundle with the port as calibrated. If the calibrated values are not valid for a port, the
 // bundle with the port before calibration, and board poses for it.
 pose::ColmapBundle believable(const Calibration& calibration) {
-  const CameraModel now = calibration.camera().now();
+  const pose::HousedCamera now = calibration.camera().now();
   try {
     io::check_port(*now.port, "port");
     return calibration.bundle;

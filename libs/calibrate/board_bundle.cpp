@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/board_bundle.h"
 
-#include "io/colmap/colmap_lens.h"
-#include "lens/lens.h"
-
 namespace axial::calibrate {
 namespace {
 
@@ -42,21 +39,16 @@ pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::
 
 std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
                                  std::span<const Eigen::Vector3d> corners, const Pose& pose) {
-  const lens::Lens in_air = io::lens_of(bundle.lenses[0]);
-  const CameraModel now = bundle.bundle.cameras[0].now();
-  const auto camera = make_camera<double>(now);
+  const pose::HousedCamera now = bundle.bundle.cameras[0].now();
+  const pose::PhotographCamera camera(now);
   std::vector<Corner> seen;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto image =
-        std::visit([&](const auto& c) { return c.project(pose.to_camera(corners[i])); }, camera);
+    const pose::PhotographImage image = camera.image(pose.to_camera(corners[i]));
     if (!image.visible) continue;
-    const Eigen::Vector3d bearing = now.lens.bearing(image.pixel);
-    const Eigen::Vector2d pixel = image_direction(in_air, bearing.x(), bearing.y());
-    const bool inside = pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= in_air.width - 2.0 &&
-                        pixel.y() <= in_air.height - 2.0;
-    // A distortion model may also fold distant directions back into the image: they are not
-    // visible.
-    if (inside && direction_at(in_air, pixel)) seen.push_back({i, pixel});
+    const Eigen::Vector2d& pixel = image.pixel;
+    const bool inside = pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= now.lens.width - 2.0 &&
+                        pixel.y() <= now.lens.height - 2.0;
+    if (inside) seen.push_back({i, pixel});
   }
   return seen;
 }

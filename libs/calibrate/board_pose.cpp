@@ -20,10 +20,10 @@ struct Perspective {
 
 Perspective perspective_of(const pose::Bundle& image) {
   Perspective result;
-  const auto camera = make_camera<double>(image.cameras[0].now());
+  const pose::PhotographCamera camera(image.cameras[0].now());
   for (const pose::Observation& observation : image.observations) {
-    const auto ray = std::visit([&](const auto& c) { return c.ray(observation.pixel); }, camera);
-    if (!(ray.direction.z() > 0)) continue;
+    const auto ray = camera.ray(observation.pixel);
+    if (!(ray.direction.z() > 0)) continue;  // also for NaN
     const Eigen::Vector3d& corner = image.points[observation.point].position;
     result.board.emplace_back(corner.x(), corner.y(), corner.z());
     result.directions.emplace_back(ray.direction.x() / ray.direction.z(),

@@ -20,7 +20,7 @@ struct Derivatives {
 };
 
 Derivatives derivatives(const pose::Bundle& bundle, const pose::Observation& observation,
-                        const CameraVariant<double>& now) {
+                        const pose::PhotographCamera& now) {
   const pose::BundleCamera& camera = bundle.cameras[0];
   const Pose& start = bundle.images[observation.image].pose;
   const pose::ObservationCost cost(observation, start, camera, now);
@@ -37,7 +37,7 @@ Derivatives derivatives(const pose::Bundle& bundle, const pose::Observation& obs
 }  // namespace
 
 Information information(const pose::Bundle& bundle, std::size_t image) {
-  const auto now = make_camera<double>(bundle.cameras[0].now());
+  const pose::PhotographCamera now(bundle.cameras[0].now());
   Eigen::Matrix<double, kPoseNumbers, kPoseNumbers> poses;
   Eigen::Matrix<double, kPoseNumbers, kHousingNumbers> across;
   Information result = Information::Zero();

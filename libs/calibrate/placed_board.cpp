@@ -38,13 +38,12 @@ class BoardPlacer {
   // The distance at which the board, facing the camera, is as wide or high as `share` of the image.
   // Uses the angle between the rays of neighbouring pixels in the middle of the image.
   double distance_for(double share) const {
-    const Eigen::Vector2d middle(camera_.lens.cx, camera_.lens.cy);
-    refractive::AxialRayJacobian<double> spread;
-    std::visit([&](const auto& c) { c.ray(middle, spread); }, make_camera<double>(camera_));
-    const auto lens = io::lens_of(bundle_.lenses[0]).pinhole;
-    // Converts a length in the photograph's pixels to pixels of the lens without distortion.
-    const double across = width() * camera_.lens.fx / lens.fx * spread.direction.col(0).norm();
-    const double down = height() * camera_.lens.fy / lens.fy * spread.direction.col(1).norm();
+    const auto angle = [&](const Eigen::Vector2d& step) {
+      const Eigen::Vector2d& middle = camera_.principal_point();
+      return (camera_.ray(middle + step / 2).direction - camera_.ray(middle - step / 2).direction)
+          .norm();
+    };
+    const double across = width() * angle({1, 0}), down = height() * angle({0, 1});
     return std::max(extent_.x() / across, extent_.y() / down) / share;
   }
 
@@ -96,7 +95,7 @@ class BoardPlacer {
 
   const pose::ColmapBundle& bundle_;
   std::span<const Eigen::Vector3d> corners_;
-  CameraModel camera_;
+  pose::PhotographCamera camera_;
   Eigen::Vector3d middle_, extent_;
 };
 

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "scene/decompositions.h"
 
 namespace axial::evaluate {
 namespace {
@@ -28,17 +27,6 @@ void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
 
 }  // namespace
 
-Similarity Similarity::after(const Similarity& first) const {
-  return {scale * first.scale, rotation * first.rotation, (*this)(first.translation)};
-}
-
-Eigen::Matrix4d Similarity::matrix() const {
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.topLeftCorner<3, 3>() = scale * rotation;
-  m.topRightCorner<3, 1>() = translation;
-  return m;
-}
-
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target) {
   if (source.size() != target.size())
@@ -49,8 +37,7 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
   check_spread(to, "reference");
-  const SimilarityFit fit = best_similarity(from, to);
-  return {fit.scale, fit.rotation, fit.translation};
+  return best_similarity(from, to);
 }
 
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {
@@ -106,10 +93,7 @@ Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
 }
 
 void apply(const Similarity& similarity, io::ColmapModel& model) {
-  for (io::ColmapImage& image : model.images) {
-    image.pose.centre = similarity(image.pose.centre);
-    image.pose.rotation = image.pose.rotation * similarity.rotation.transpose();
-  }
+  for (io::ColmapImage& image : model.images) image.pose = similarity(image.pose);
   for (io::ColmapPoint3D& point : model.points) point.position = similarity(point.position);
 }
 

@@ -8,31 +8,18 @@
 #include <vector>
 
 #include "io/colmap/colmap.h"
+#include "scene/decompositions.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
 
 namespace axial::evaluate {
 
-// The transformation x -> scale * rotation * x + translation.
-struct Similarity {
-  double scale = 1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+using axial::Similarity;
 
-  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
-    return scale * (rotation * x) + translation;
-  }
-  // Returns the transformation that applies `first`, then this one.
-  Similarity after(const Similarity& first) const;
-  // The homogeneous 4 x 4 matrix.
-  Eigen::Matrix4d matrix() const;
-};
-
-// Returns the least-squares similarity from `source` to `target` (Umeyama 1991), without
-// reflection. Error for fewer than three pairs, coordinates that are not finite, or points on one
-// line (their spread across it is below a thousandth of the spread along it), which do not fix the
-// rotation.
+// Returns best_similarity() from `source` to `target`. Error for fewer than three pairs,
+// coordinates that are not finite, or points on one line (their spread across it is below a
+// thousandth of the spread along it), which do not fix the rotation.
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target);
 

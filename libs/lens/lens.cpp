@@ -12,10 +12,10 @@ namespace axial::lens {
 namespace {
 
 using Eigen::Vector2d;
+using Imaged = refractive::PlanePoint<double>;
 
 Vector2d image_point(const Lens& lens, const Vector2d& direction) {
-  const Vector2d p = lens.model->distort(lens.distortion, direction);
-  return {lens.pinhole.fx * p.x() + lens.pinhole.cx, lens.pinhole.fy * p.y() + lens.pinhole.cy};
+  return image_with_derivative(lens, direction).point;
 }
 
 bool inside(const Lens& lens, const Vector2d& pixel) {
@@ -62,16 +62,50 @@ bool whole_border_seen(const Lens& lens, const refractive::PinholeLens<double>& 
   return true;
 }
 
-// Central differences, because the models share no closed-form derivative.
-Eigen::Matrix2d derivative_at(const Lens& lens, const Vector2d& direction) {
-  const double h = 1e-6 * (1 + direction.norm());
-  Eigen::Matrix2d derivative;
-  for (int k = 0; k < 2; ++k) {
-    const Vector2d step = h * Vector2d::Unit(k);
-    derivative.col(k) =
-        (image_point(lens, direction + step) - image_point(lens, direction - step)) / (2 * h);
+// Solves for the direction by Newton's method, from the direction of the undistorted lens. The
+// result may lie beyond a fold of the lens.
+std::optional<ImagedDirection> solved_direction(const Lens& lens, const Vector2d& pixel) {
+  const auto& pinhole = lens.pinhole;
+  Vector2d direction((pixel.x() - pinhole.cx) / pinhole.fx, (pixel.y() - pinhole.cy) / pinhole.fy);
+  constexpr int kSteps = 50;
+  for (int i = 0; i < kSteps; ++i) {
+    const Imaged at = image_with_derivative(lens, direction);
+    const Vector2d miss = at.point - pixel;
+    if (!miss.allFinite() || !(at.by.determinant() > 0)) return std::nullopt;
+    Vector2d step = at.by.inverse() * miss;
+    if (miss.norm() < 1e-9 * (1 + pixel.norm())) return ImagedDirection{direction - step, at.by};
+    // The edge of a fisheye is far out on the plane z = 1, so the step length is limited.
+    const double reach = 0.5 * (1 + direction.norm());
+    if (step.norm() > reach) step *= reach / step.norm();
+    direction -= step;
   }
-  return derivative;
+  return std::nullopt;
+}
+
+// The largest angle [rad] from the axis up to which directions that lie on the side of `side`, a
+// unit vector, move outwards in the image as the angle grows.
+double growing_angle(const Lens& lens, const Vector2d& side) {
+  const Vector2d centre = image_point(lens, Vector2d::Zero());
+  const auto grows = [&](double angle) {
+    const Imaged at = image_with_derivative(lens, std::tan(angle) * side);
+    return at.by.determinant() > 0 && (at.point - centre).dot(at.by * side) > 0;
+  };
+  constexpr int kSteps = 90, kHalvings = 40;
+  constexpr double kWidest = (1 - 1e-6) * std::numbers::pi / 2;  // has a finite tangent
+  double low = 0, high = kWidest;
+  for (int i = 1; i <= kSteps && low < kWidest; ++i) {
+    const double next = kWidest * i / kSteps;
+    if (!grows(next)) {
+      high = next;
+      break;
+    }
+    low = next;
+  }
+  for (int i = 0; i < kHalvings && low < high; ++i) {
+    const double middle = (low + high) / 2;
+    (grows(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 // The largest angle of an image corner from the axis [rad], at most 85 degrees, which is as far as
@@ -93,7 +127,7 @@ double widest_angle(const Lens& lens) {
 std::optional<refractive::LensDistortion<double>> fitted(const Lens& lens) {
   constexpr double kPixels = 1e-4;
   const auto radius = [&](double theta) {
-    return lens.model->distort(lens.distortion, {std::tan(theta), 0}).x();
+    return lens.model->distort(lens.distortion, {std::tan(theta), 0}).point.x();
   };
   return fitted_fisheye(radius, widest_angle(lens),
                         kPixels / std::max(lens.pinhole.fx, lens.pinhole.fy));
@@ -105,26 +139,38 @@ Vector2d image_direction(const Lens& lens, double u, double v) {
   return image_point(lens, {u, v});
 }
 
-std::optional<ImagedDirection> direction_at(const Lens& lens, const Vector2d& pixel) {
+refractive::PlanePoint<double> image_with_derivative(const Lens& lens, const Vector2d& direction) {
   const auto& pinhole = lens.pinhole;
-  Vector2d direction((pixel.x() - pinhole.cx) / pinhole.fx, (pixel.y() - pinhole.cy) / pinhole.fy);
-  constexpr int kSteps = 50;
-  for (int i = 0; i < kSteps; ++i) {
-    const Vector2d miss = image_point(lens, direction) - pixel;
-    const Eigen::Matrix2d derivative = derivative_at(lens, direction);
-    if (!miss.allFinite() || !(derivative.determinant() > 0)) return std::nullopt;
-    if (miss.norm() < 1e-9 * (1 + pixel.norm())) {
-      const auto any = [](const Vector2d&) { return true; };
-      if (!grows_until(lens, direction, any)) return std::nullopt;
-      return ImagedDirection{direction - derivative.inverse() * miss, derivative};
-    }
-    Vector2d step = derivative.inverse() * miss;
-    // The edge of a fisheye is far out on the plane z = 1, so the step length is limited.
-    const double reach = 0.5 * (1 + direction.norm());
-    if (step.norm() > reach) step *= reach / step.norm();
-    direction -= step;
+  Imaged at = lens.model->distort(lens.distortion, direction);
+  at.point = {pinhole.fx * at.point.x() + pinhole.cx, pinhole.fy * at.point.y() + pinhole.cy};
+  at.by.row(0) *= pinhole.fx;
+  at.by.row(1) *= pinhole.fy;
+  return at;
+}
+
+std::optional<ImagedDirection> direction_at(const Lens& lens, const Vector2d& pixel) {
+  const auto found = solved_direction(lens, pixel);
+  const auto any = [](const Vector2d&) { return true; };
+  if (!found || !grows_until(lens, found->direction, any)) return std::nullopt;
+  return found;
+}
+
+std::optional<ImagedDirection> direction_at(const Lens& lens, const Field& field,
+                                            const Vector2d& pixel) {
+  const auto found = solved_direction(lens, pixel);
+  if (!found || !(found->direction.norm() <= field.reach)) return std::nullopt;
+  return found;
+}
+
+Field field_of(const Lens& lens) {
+  if (!lens.model) return {};
+  constexpr int kSides = 16;
+  double angle = 0;
+  for (int k = 0; k < kSides; ++k) {
+    const double turn = 2 * std::numbers::pi * k / kSides;
+    angle = std::max(angle, growing_angle(lens, {std::cos(turn), std::sin(turn)}));
   }
-  return std::nullopt;
+  return {std::tan(angle), std::min(std::tan(widest_angle(lens)), std::tan(angle))};
 }
 
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const Lens& lens) {

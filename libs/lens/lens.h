@@ -24,6 +24,10 @@ struct Lens {
 // Projects the in-air direction (u, v, 1) to a pixel. NaN where the model is not defined.
 Eigen::Vector2d image_direction(const Lens& lens, double u, double v);
 
+// The same for `direction` (u, v), with the derivative by (u, v).
+refractive::PlanePoint<double> image_with_derivative(const Lens& lens,
+                                                     const Eigen::Vector2d& direction);
+
 // The inverse of image_direction, with the derivative of image_direction at the result.
 struct ImagedDirection {
   Eigen::Vector2d direction;   // (u, v)
@@ -34,6 +38,24 @@ struct ImagedDirection {
 // direction of the undistorted lens. Nothing if no direction projects to the pixel, if the method
 // does not converge, or if the lens folds back between the axis and the direction.
 std::optional<ImagedDirection> direction_at(const Lens& lens, const Eigen::Vector2d& pixel);
+
+// How far from its axis a lens images directions.
+struct Field {
+  // The largest |(u, v)| up to which directions that move away from the axis also move outwards in
+  // the image, on any side of the axis. It does not depend on the focal lengths. Where another side
+  // folds back earlier, the determinant of the derivative is not positive beyond the fold.
+  double reach = 0;
+  // The largest |(u, v)| of the image corners, at most `reach` and at most the tangent of 85
+  // degrees. A corner that no direction projects to counts as this limit.
+  double corner = 0;
+};
+// Zeros for a lens without a model.
+Field field_of(const Lens& lens);
+
+// The same as direction_at() above, with the field of the lens. It is faster, because it does not
+// search for a fold between the axis and the direction.
+std::optional<ImagedDirection> direction_at(const Lens& lens, const Field& field,
+                                            const Eigen::Vector2d& pixel);
 
 // Returns the lens if it is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a perspective lens model whose
 // distortion parameters are all exactly zero.

@@ -4,85 +4,137 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace axial::lens {
 namespace {
 
+using Eigen::Matrix2d;
 using Eigen::Vector2d;
+using Imaged = refractive::PlanePoint<double>;
 using Bent = refractive::LensDistortion<double>;
 
-// a[0] x + a[1] x^2 + ...
-double power_series(Parameters a, double x) {
-  double sum = 0;
-  for (std::size_t i = a.size(); i-- > 0;) sum = (sum + a[i]) * x;
-  return sum;
+// The value of a function of one variable, and its derivative.
+struct Slope {
+  double value, slope;
+};
+
+// 1 + a[0] x + a[1] x^2 + ...
+Slope power_series(Parameters a, double x) {
+  Slope sum{0, 0};
+  for (std::size_t i = a.size(); i-- > 0;)
+    sum = {(sum.value + a[i]) * x, sum.slope * x + (sum.value + a[i])};
+  return {1 + sum.value, sum.slope};
+}
+
+// p factor(s) with s = |p|^2.
+Imaged scaled(const Vector2d& p, const Slope& factor) {
+  const Matrix2d along = (2 * factor.slope * p) * p.transpose();
+  return {p * factor.value, factor.value * Matrix2d::Identity() + along};
+}
+
+// `outer` maps the point of `inner`.
+Imaged chain(const Imaged& outer, const Imaged& inner) {
+  return {outer.point, outer.by * inner.by};
+}
+
+// Both map the same point.
+Imaged sum(const Imaged& a, const Imaged& b) {
+  return {a.point + b.point, a.by + b.by};
 }
 
 // Tangential distortion (Brown): added to the radially distorted point.
-Vector2d tangential(const Vector2d& p, double p1, double p2) {
-  const double r2 = p.squaredNorm(), xy = p.x() * p.y();
-  return {2 * p1 * xy + p2 * (r2 + 2 * p.x() * p.x()), 2 * p2 * xy + p1 * (r2 + 2 * p.y() * p.y())};
+Imaged tangential(const Vector2d& p, double p1, double p2) {
+  const double x = p.x(), y = p.y(), r2 = p.squaredNorm(), xy = x * y;
+  Imaged shift;
+  shift.point = {2 * p1 * xy + p2 * (r2 + 2 * x * x), 2 * p2 * xy + p1 * (r2 + 2 * y * y)};
+  const double across = 2 * (p1 * x + p2 * y);
+  shift.by << 2 * p1 * y + 6 * p2 * x, across, across, 2 * p2 * x + 6 * p1 * y;
+  return shift;
 }
 
-Vector2d pinhole(Parameters, const Vector2d& p) {
-  return p;
+// direction * factor(s) with s = |p|^2.
+Imaged prism(const Vector2d& p, const Vector2d& direction, const Slope& factor) {
+  return {direction * factor.value, (2 * factor.slope * direction) * p.transpose()};
 }
 
-Vector2d radial(Parameters k, const Vector2d& p) {
-  return p * (1 + power_series(k, p.squaredNorm()));
+Imaged pinhole(Parameters, const Vector2d& p) {
+  return {p, Matrix2d::Identity()};
 }
 
-Vector2d opencv(Parameters k, const Vector2d& p) {
-  return radial(k.first(2), p) + tangential(p, k[2], k[3]);
+Imaged radial(Parameters k, const Vector2d& p) {
+  return scaled(p, power_series(k, p.squaredNorm()));
 }
 
-Vector2d full_opencv(Parameters k, const Vector2d& p) {
+Imaged opencv(Parameters k, const Vector2d& p) {
+  return sum(radial(k.first(2), p), tangential(p, k[2], k[3]));
+}
+
+Imaged full_opencv(Parameters k, const Vector2d& p) {
   const double r2 = p.squaredNorm();
-  const std::array<double, 3> above{k[0], k[1], k[4]};
-  const double ratio = (1 + power_series(above, r2)) / (1 + power_series(k.subspan(5, 3), r2));
-  return p * ratio + tangential(p, k[2], k[3]);
+  const std::array<double, 3> coefficients{k[0], k[1], k[4]};
+  const Slope above = power_series(coefficients, r2), below = power_series(k.subspan(5, 3), r2);
+  const double ratio = above.value / below.value;
+  const Slope factor{ratio, (above.slope - ratio * below.slope) / below.value};
+  return sum(scaled(p, factor), tangential(p, k[2], k[3]));
+}
+
+// p atan(spread r) / (unit r) with r = |p|.
+Imaged by_angle(const Vector2d& p, double spread, double unit) {
+  const double r2 = p.squaredNorm(), r = std::sqrt(r2);
+  if (!(r2 > 0)) return scaled(p, {spread / unit, 0});
+  const double factor = std::atan(spread * r) / (unit * r);
+  return scaled(p, {factor, (spread / (unit * (1 + spread * spread * r2)) - factor) / (2 * r2)});
 }
 
 // The point at the distance theta from the centre, in the direction of p: the equidistant fisheye.
-Vector2d equidistant(const Vector2d& p) {
-  const double r = p.norm();
-  return r > 0 ? Vector2d(p * (std::atan(r) / r)) : p;
+Imaged equidistant(const Vector2d& p) {
+  return by_angle(p, 1, 1);
 }
 
-Vector2d fisheye(Parameters k, const Vector2d& p) {
-  return radial(k, equidistant(p));
+Imaged fisheye(Parameters k, const Vector2d& p) {
+  const Imaged e = equidistant(p);
+  return chain(radial(k, e.point), e);
 }
 
-Vector2d thin_prism_fisheye(Parameters k, const Vector2d& p) {
-  const Vector2d e = equidistant(p);
-  const double r2 = e.squaredNorm();
+Imaged thin_prism_fisheye(Parameters k, const Vector2d& p) {
+  const Imaged e = equidistant(p);
   const std::array<double, 4> series{k[0], k[1], k[4], k[5]};
-  return radial(series, e) + tangential(e, k[2], k[3]) + Vector2d(k[6], k[7]) * r2;
+  const Imaged bent = sum(radial(series, e.point), tangential(e.point, k[2], k[3]));
+  const Slope square{e.point.squaredNorm(), 1};
+  return chain(sum(bent, prism(e.point, {k[6], k[7]}, square)), e);
 }
 
-Vector2d rad_tan_thin_prism_fisheye(Parameters k, const Vector2d& p) {
-  const Vector2d e = radial(k.first(6), equidistant(p));
-  const double r2 = e.squaredNorm();
+Imaged rad_tan_thin_prism_fisheye(Parameters k, const Vector2d& p) {
+  const Imaged angle = equidistant(p);
+  const Imaged e = chain(radial(k.first(6), angle.point), angle);
+  const double r2 = e.point.squaredNorm();
   // The model's first tangential parameter has the role of Brown's second.
-  return e + tangential(e, k[7], k[6]) + Vector2d(k[8], k[10]) * r2 +
-         Vector2d(k[9], k[11]) * r2 * r2;
+  const Imaged shift = tangential(e.point, k[7], k[6]);
+  const Imaged prisms =
+      sum(prism(e.point, {k[8], k[10]}, {r2, 1}), prism(e.point, {k[9], k[11]}, {r2 * r2, 2 * r2}));
+  return sum(e, chain(sum(shift, prisms), e));
 }
 
-Vector2d field_of_view(Parameters k, const Vector2d& p) {
-  const double omega = k[0], r = p.norm();
-  if (omega == 0 || r == 0) return p;
-  return p * (std::atan(2 * r * std::tan(omega / 2)) / (omega * r));
+Imaged field_of_view(Parameters k, const Vector2d& p) {
+  const double omega = k[0];
+  if (omega == 0) return pinhole(k, p);
+  return by_angle(p, 2 * std::tan(omega / 2), omega);
 }
 
 // Division model: undistorted = distorted / (1 + k r_distorted^2), solved for the distorted point.
-Vector2d division(Parameters k, const Vector2d& p) {
-  return p * (2 / (1 + std::sqrt(1 - 4 * k[0] * p.squaredNorm())));
+Imaged division(Parameters k, const Vector2d& p) {
+  const double root = std::sqrt(1 - 4 * k[0] * p.squaredNorm());
+  return scaled(p, {2 / (1 + root), 4 * k[0] / (root * (1 + root) * (1 + root))});
 }
 
 // Enhanced unified camera model; (alpha, beta) = (0, 1) is the pinhole.
-Vector2d eucm(Parameters k, const Vector2d& p) {
-  const double below = k[0] * std::sqrt(k[1] * p.squaredNorm() + 1) + 1 - k[0];
-  return below > 0 ? Vector2d(p / below) : Vector2d::Constant(std::nan(""));
+Imaged eucm(Parameters k, const Vector2d& p) {
+  const double root = std::sqrt(k[1] * p.squaredNorm() + 1);
+  const double below = k[0] * root + 1 - k[0];
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!(below > 0)) return {Vector2d::Constant(kNone), Matrix2d::Constant(kNone)};
+  return scaled(p, {1 / below, -k[0] * k[1] / (2 * root * below * below)});
 }
 
 // The same models in the matcher's form. One function handles related models: OPENCV is FULL_OPENCV

@@ -17,8 +17,8 @@ using Parameters = std::span<const double>;
 struct Model {
   std::string_view name;  // "PINHOLE", "OPENCV", ...
   // The point that the in-air direction (u, v, 1) has in the image, before focal lengths and
-  // principal point are applied.
-  Eigen::Vector2d (*distort)(Parameters, const Eigen::Vector2d& direction);
+  // principal point are applied, and its derivative by (u, v). NaN where the model is not defined.
+  refractive::PlanePoint<double> (*distort)(Parameters, const Eigen::Vector2d& direction);
   bool flat;  // a pinhole if all distortion parameters are zero
   // The lens in the matcher's form. Null: the matcher does not have this model.
   refractive::LensDistortion<double> (*bent)(Parameters){};

@@ -10,18 +10,21 @@
 namespace axial::pose {
 namespace {
 
-double error_of(const CameraVariant<double>& camera, const HousingChange<double>& change,
-                const Pose& pose, const Eigen::Vector3d& point, const Observation& observation) {
-  return std::visit(
-      [&](const auto& c) {
-        const auto image = c.project(pose.to_camera(point));
-        if (!image.visible) return std::numeric_limits<double>::infinity();
-        return (observation.to_photograph * (image.pixel - observation.pixel_with(change))).norm();
-      },
-      camera);
+double error_of(const PhotographCamera& camera, const Pose& pose, const Eigen::Vector3d& point,
+                const Observation& observation) {
+  const PhotographImage image = camera.image(pose.to_camera(point));
+  if (!image.visible) return std::numeric_limits<double>::infinity();
+  return (image.pixel - observation.pixel).norm();
 }
 
 }  // namespace
+
+std::vector<PhotographCamera> cameras_now(const Bundle& bundle) {
+  std::vector<PhotographCamera> cameras;
+  cameras.reserve(bundle.cameras.size());
+  for (const BundleCamera& camera : bundle.cameras) cameras.emplace_back(camera.now());
+  return cameras;
+}
 
 std::size_t point_of(const Bundle& bundle, std::size_t source) {
   const auto found = std::find_if(bundle.points.begin(), bundle.points.end(),
@@ -38,15 +41,13 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
 }
 
 std::vector<double> reprojection_errors(const Bundle& bundle) {
-  std::vector<CameraVariant<double>> cameras;
-  for (const BundleCamera& camera : bundle.cameras)
-    cameras.push_back(make_camera<double>(camera.now()));
+  const std::vector<PhotographCamera> cameras = cameras_now(bundle);
   std::vector<double> errors;
   errors.reserve(bundle.observations.size());
   for (const Observation& observation : bundle.observations) {
     const BundleImage& image = bundle.images[observation.image];
-    errors.push_back(error_of(cameras[image.camera], bundle.cameras[image.camera].change,
-                              image.pose, bundle.points[observation.point].position, observation));
+    errors.push_back(error_of(cameras[image.camera], image.pose,
+                              bundle.points[observation.point].position, observation));
   }
   return errors;
 }

@@ -15,12 +15,12 @@
 namespace axial::pose {
 
 struct BundleCamera {
-  CameraModel measured;
+  HousedCamera measured;
   // How far lens and port are from the measured ones.
   HousingChange<double> change = HousingChange<double>::Zero();
 
   // The camera with the change applied.
-  CameraModel now() const { return with_change(measured, change); }
+  HousedCamera now() const { return with_change(measured, change); }
 };
 
 struct BundleImage {
@@ -37,19 +37,8 @@ struct BundlePoint {
 struct Observation {
   std::size_t image = 0;
   std::size_t point = 0;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the camera's pinhole lens
-  // From pixels of the pinhole lens to pixels of the photograph, to first order; not the identity
-  // where the lens distorts. Reprojection errors are measured in the photograph.
-  Eigen::Matrix2d to_photograph = Eigen::Matrix2d::Identity();
-  // The derivative of `pixel` by the logarithm of the factor of the focal lengths. It is not zero
-  // where the lens distorts: the same pixel of the photograph then has another undistorted pixel.
-  Eigen::Vector2d pixel_by_focal = Eigen::Vector2d::Zero();
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the photograph
   std::size_t source = 0;  // its index in ColmapImage::points, in the model it comes from
-
-  // `pixel` for the camera changed by `change`, to first order.
-  Eigen::Vector2d pixel_with(const HousingChange<double>& change) const {
-    return pixel + pixel_by_focal * change(kFocalNumber);
-  }
 };
 
 struct Bundle {
@@ -59,6 +48,9 @@ struct Bundle {
   std::vector<Observation> observations;
 };
 
+// The cameras of the bundle as they are now.
+std::vector<PhotographCamera> cameras_now(const Bundle& bundle);
+
 // The index of the point whose source is `source`. Error if no point of the bundle has that source,
 // for example because it was dropped.
 std::size_t point_of(const Bundle& bundle, std::size_t source);
@@ -67,7 +59,7 @@ std::size_t point_of(const Bundle& bundle, std::size_t source);
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
 // Reprojection errors [px of the photograph] of all observations, in their order. Infinite where
-// light from the point does not reach the lens.
+// light from the point does not reach the lens, or has no image (PhotographImage::visible).
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
 // The same errors, one list for each image; the list is empty for an image without observations.

@@ -28,35 +28,6 @@ const io::ColmapCamera& lens_of(const io::ColmapCamera& camera,
   return *found;
 }
 
-// The lens of `camera` without distortion, with a focal length so short that its image holds
-// everything that `camera` images.
-refractive::PinholeLens<double> holding(const io::ColmapCamera& camera) {
-  const lens::Lens in_air = io::lens_of(camera);
-  refractive::PinholeLens<double> lens = in_air.pinhole;
-  const double right = static_cast<double>(camera.width) - 1;
-  const double bottom = static_cast<double>(camera.height) - 1;
-  double zoom = 1;
-  const auto hold = [&](const Eigen::Vector2d& pixel) {
-    const auto imaged = direction_at(in_air, pixel);
-    if (!imaged) return;
-    const double u = lens.fx * imaged->direction.x(), v = lens.fy * imaged->direction.y();
-    const double room_u = u > 0 ? right - lens.cx : lens.cx;
-    const double room_v = v > 0 ? bottom - lens.cy : lens.cy;
-    zoom = std::min(
-        {zoom, room_u / std::max(std::abs(u), room_u), room_v / std::max(std::abs(v), room_v)});
-  };
-  constexpr int kSamples = 32;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double x = right * i / kSamples, y = bottom * i / kSamples;
-    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(x, 0), Eigen::Vector2d(x, bottom),
-                                         Eigen::Vector2d(0, y), Eigen::Vector2d(right, y)})
-      hold(pixel);
-  }
-  lens.fx *= zoom;
-  lens.fy *= zoom;
-  return lens;
-}
-
 // Makes the bundle's cameras: one for each pair of lens and port that occurs.
 class CameraMaker {
  public:
@@ -72,9 +43,8 @@ class CameraMaker {
 
  private:
   void add(const io::ColmapCamera& lens, const std::string& port) {
-    result_.bundle.cameras.push_back({{static_cast<int>(lens.width), static_cast<int>(lens.height),
-                                       holding(lens), housing_.carried_port(port)},
-                                      HousingChange<double>::Zero()});
+    result_.bundle.cameras.push_back(
+        {{io::lens_of(lens), housing_.carried_port(port)}, HousingChange<double>::Zero()});
     result_.lenses.push_back(lens);
     result_.lenses.back().id = static_cast<std::uint32_t>(result_.lenses.size());
     result_.ports.push_back(port);
@@ -84,27 +54,6 @@ class CameraMaker {
   const io::Housing& housing_;
   std::map<std::pair<std::uint32_t, std::string>, std::size_t> indices_;
 };
-
-// Computes the observation's pixel on the lens without distortion, and its derivatives. Returns
-// false where the lens has no direction for the pixel.
-bool place(const io::ColmapCamera& lens, const refractive::PinholeLens<double>& pinhole,
-           const io::ColmapPoint2D& point, Observation& observation) {
-  const lens::Lens in_air = io::lens_of(lens);
-  const auto imaged = direction_at(in_air, {point.x - 0.5, point.y - 0.5});
-  if (!imaged) return false;
-  observation.pixel = {pinhole.fx * imaged->direction.x() + pinhole.cx,
-                       pinhole.fy * imaged->direction.y() + pinhole.cy};
-  observation.to_photograph.col(0) = imaged->derivative.col(0) / pinhole.fx;
-  observation.to_photograph.col(1) = imaged->derivative.col(1) / pinhole.fy;
-  // If the focal length f changes, the pixel of the photograph stays the same and its direction d
-  // changes: d(d)/d(log f) = -(d(pixel)/d(d))^-1 (pixel - principal point). The focal length of the
-  // pinhole has the same factor, which adds d.
-  const refractive::PinholeLens<double> bare = in_air.pinhole;
-  const Eigen::Vector2d from_centre(point.x - 0.5 - bare.cx, point.y - 0.5 - bare.cy);
-  const Eigen::Vector2d by_focal = imaged->direction - imaged->derivative.inverse() * from_centre;
-  observation.pixel_by_focal = {pinhole.fx * by_focal.x(), pinhole.fy * by_focal.y()};
-  return true;
-}
 
 template <class Item>
 std::map<std::uint64_t, std::size_t> indices_by_id(const std::vector<Item>& items) {
@@ -147,9 +96,10 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
       observation.image = image_indices.at(element.image);
       observation.point = bundle.points.size();
       observation.source = element.point2d;
-      const std::size_t camera = bundle.images[observation.image].camera;
       const io::ColmapPoint2D& seen = model.images[observation.image].points.at(element.point2d);
-      if (place(result.lenses[camera], bundle.cameras[camera].measured.lens, seen, observation))
+      observation.pixel = {seen.x - 0.5, seen.y - 0.5};
+      const BundleCamera& camera = bundle.cameras[bundle.images[observation.image].camera];
+      if (direction_at(camera.measured.lens, observation.pixel))
         bundle.observations.push_back(observation);
       else
         ++result.unseen;
@@ -157,22 +107,6 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
     bundle.points.push_back({point.position, point.id});
   }
   return result;
-}
-
-void place_again(ColmapBundle& refined, const io::ColmapModel& model) {
-  Bundle& bundle = refined.bundle;
-  std::vector<io::ColmapCamera> lenses;
-  std::vector<refractive::PinholeLens<double>> pinholes;
-  for (std::size_t i = 0; i < refined.lenses.size(); ++i) {
-    lenses.push_back(lens_now(refined, i));
-    pinholes.push_back(bundle.cameras[i].now().lens);
-  }
-  for (Observation& observation : bundle.observations) {
-    const std::size_t camera = bundle.images[observation.image].camera;
-    const io::ColmapPoint2D& seen = model.images[observation.image].points[observation.source];
-    if (place(lenses[camera], pinholes[camera], seen, observation))
-      observation.pixel -= observation.pixel_by_focal * bundle.cameras[camera].change(kFocalNumber);
-  }
 }
 
 PortFit port_fit(const io::ColmapModel& model) {

@@ -20,17 +20,11 @@ struct ColmapBundle {
 
 // The bundle of the poses, points and tracks of `model`. The lenses of `model` are not used: each
 // camera gets the lens in air of `lenses` with its id, or the only one if `lenses` holds one,
-// behind its port of `housing`. Observations are converted to pixels of a lens without distortion
-// whose image holds the whole photograph. Error for a camera without a lens, for a camera whose
-// size differs from its lens, for a port that is not defined, and for a camera behind a water
-// surface.
+// behind its port of `housing`. Error for a camera without a lens, for a camera whose size differs
+// from its lens, for a lens of a model that is not supported, for a port that is not defined, and
+// for a camera behind a water surface.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
-
-// Computes the undistorted pixels of the observations again, with the focal lengths that the
-// cameras have now. Until then, Observation::pixel_by_focal accounts for a change of the focal
-// lengths, only to first order. `model` is the model that the bundle was made of.
-void place_again(ColmapBundle& bundle, const io::ColmapModel& model);
 
 // With which cameras the poses of a model with ports were computed: the RMS reprojection error [px]
 // of its tracks with the cameras behind their ports, and with the same cameras in air. 0 where a

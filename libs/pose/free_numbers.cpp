@@ -152,7 +152,7 @@ void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bun
 
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
                                    const AdjustOptions& options) {
-  const CameraModel now = camera.now();
+  const HousedCamera now = camera.now();
   std::vector<FreeValue> values;
   if (now.port) values = std::visit(ValuesOfPort{}, *now.port);
   const double factor = std::exp(camera.change(kFocalNumber));

@@ -6,38 +6,29 @@
 namespace axial::pose {
 namespace {
 
-using Jet = ceres::Jet<double, kHousingNumbers>;
+using Jet = ceres::Jet<double, kPortNumbers>;
 
-refractive::FlatPortCamera<Jet> camera_behind(const refractive::FlatPort<Jet>& port,
-                                              const refractive::PinholeLens<Jet>& lens, int width,
-                                              int height) {
-  return {lens, port, width, height};
+refractive::AxialRay<Jet> ray_behind(const refractive::FlatPort<Jet>& port,
+                                     const refractive::Vector2<Jet>& tangents) {
+  // Rays do not depend on the field.
+  const refractive::FlatPortField<Jet> any(refractive::FlatPortOptics<Jet>(port), Jet(1), Jet(1));
+  return refractive::FlatPortCamera<Jet>(refractive::tangent_lens<Jet>(), port, any,
+                                         refractive::all_tangents<Jet>())
+      .ray(tangents);
 }
 
-refractive::DomePortCamera<Jet> camera_behind(const refractive::DomePort<Jet>& port,
-                                              const refractive::PinholeLens<Jet>& lens, int width,
-                                              int height) {
-  return {lens, port, width, height};
-}
-
-refractive::AxialRay<Jet> ray(const CameraModel& measured, const HousingChange<Jet>& change,
-                              const Eigen::Vector2d& pixel) {
-  const refractive::PinholeLens<Jet> lens = with_change(measured.lens, change);
-  const refractive::Vector2<Jet> at = pixel.cast<Jet>();
-  if (!measured.port) return refractive::PinholeCamera<Jet>(lens).ray(at);
-  return std::visit(
-      [&](const auto& port) {
-        return camera_behind(with_change(port, change), lens, measured.width, measured.height)
-            .ray(at);
-      },
-      *measured.port);
+refractive::AxialRay<Jet> ray_behind(const refractive::DomePort<Jet>& port,
+                                     const refractive::Vector2<Jet>& tangents) {
+  return refractive::DomePortCamera<Jet>(refractive::tangent_lens<Jet>(), port,
+                                         refractive::all_tangents<Jet>())
+      .ray(tangents);
 }
 
 }  // namespace
 
-CameraModel with_change(const CameraModel& measured, const HousingChange<double>& change) {
-  CameraModel camera = measured;
-  camera.lens = with_change(measured.lens, change);
+HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change) {
+  HousedCamera camera = measured;
+  camera.lens.pinhole = with_change(measured.lens.pinhole, change);
   if (measured.port)
     camera.port = std::visit(
         [&](const auto& port) { return refractive::Port<double>(with_change(port, change)); },
@@ -45,14 +36,18 @@ CameraModel with_change(const CameraModel& measured, const HousingChange<double>
   return camera;
 }
 
-Eigen::Matrix<double, 3, kHousingNumbers> ray_by_change(const CameraModel& measured,
-                                                        const HousingChange<double>& change,
-                                                        const Eigen::Vector2d& pixel,
-                                                        double lambda) {
-  HousingChange<Jet> jets;
-  for (int k = 0; k < kHousingNumbers; ++k) jets(k) = Jet(change(k), k);
-  const refractive::Vector3<Jet> point = ray(measured, jets, pixel).at(Jet(lambda));
-  Eigen::Matrix<double, 3, kHousingNumbers> derivative;
+Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
+    const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
+    const Eigen::Vector2d& tangents, double lambda) {
+  Eigen::Matrix<double, 3, kPortNumbers> derivative;
+  derivative.setZero();
+  if (!measured) return derivative;
+  HousingChange<Jet> jets = change.cast<Jet>();
+  for (int k = 0; k < kPortNumbers; ++k) jets(k).v(k) = 1;
+  const refractive::Vector2<Jet> at = tangents.cast<Jet>();
+  const refractive::Vector3<Jet> point = std::visit(
+      [&](const auto& port) { return ray_behind(with_change(port, jets), at).at(Jet(lambda)); },
+      *measured);
   for (int k = 0; k < 3; ++k) derivative.row(k) = point(k).v.transpose();
   return derivative;
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "scene/camera_model.h"
+#include "pose/photograph_camera.h"
 
 namespace axial::pose {
 
@@ -16,6 +16,7 @@ namespace axial::pose {
 // of the glass [m] (4). Of all cameras, also in air: the logarithm of the factor of both focal
 // lengths (5).
 inline constexpr int kHousingNumbers = 6;
+inline constexpr int kPortNumbers = 5;  // the first numbers belong to the port
 inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 
 template <class T>
@@ -58,15 +59,15 @@ refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& me
 }
 
 // The camera with `change` applied to lens and port.
-CameraModel with_change(const CameraModel& measured, const HousingChange<double>& change);
+HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change);
 
-// The derivative by the change of the point at `lambda` [m] on the ray of `pixel`, in the camera
-// frame. The image of a point is the pixel whose ray meets the point, so the derivative of the
-// image by the change is -(d(pixel)/dX) times this derivative (implicit function theorem). Only the
-// ray, a closed form, is differentiated, and no iteration.
-Eigen::Matrix<double, 3, kHousingNumbers> ray_by_change(const CameraModel& measured,
-                                                        const HousingChange<double>& change,
-                                                        const Eigen::Vector2d& pixel,
-                                                        double lambda);
+// The derivative by the numbers of the port of the point at `lambda` [m] on the ray in water of the
+// in-air direction (u, v, 1), in the camera frame. `tangents`: (u, v). The image of a point is the
+// direction whose ray meets the point. The derivative of the tangents by the numbers is therefore
+// -d(tangents)/dX times this derivative (implicit function theorem). Only the ray, a closed form,
+// is differentiated, and no iteration. Zero without a port.
+Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
+    const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
+    const Eigen::Vector2d& tangents, double lambda);
 
 }  // namespace axial::pose

@@ -53,14 +53,14 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w) {
 CurrentCameras::CurrentCameras(std::span<const BundleCamera> cameras,
                                std::span<const HousingChange<double>> changes)
     : measured_(cameras), changes_(changes) {
-  CurrentCameras::PrepareForEvaluation(false, true);
+  for (std::size_t i = 0; i < measured_.size(); ++i)
+    cameras_.emplace_back(with_change(measured_[i].measured, changes_[i]));
 }
 
 void CurrentCameras::PrepareForEvaluation(bool, bool new_evaluation_point) {
   if (!new_evaluation_point) return;
-  cameras_.resize(measured_.size());
   for (std::size_t i = 0; i < cameras_.size(); ++i)
-    cameras_[i] = make_camera<double>(with_change(measured_[i].measured, changes_[i]));
+    cameras_[i] = PhotographCamera(with_change(measured_[i].measured, changes_[i]));
 }
 
 bool ObservationCost::Evaluate(double const* const* parameters, double* residuals,
@@ -69,21 +69,17 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   std::copy_n(parameters[0], numbers.size(), numbers.begin());
   const Pose pose = pose_with(start_, numbers);
   const Eigen::Vector3d X = pose.to_camera(Eigen::Map<const Eigen::Vector3d>(parameters[1]));
-  refractive::Matrix23<double> by_point;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  const auto image =
-      std::visit([&](const auto& camera) { return camera.project(X, &by_point, &origin); }, now_);
+  const PhotographImage image = now_.image(X);
   Eigen::Map<Eigen::Vector2d> residual(residuals);
   if (!image.visible) {
     // At least as far as any visible image lies from its observation.
-    residual = Eigen::Vector2d(measured_.measured.width, measured_.measured.height);
+    residual = Eigen::Vector2d(measured_.measured.lens.width, measured_.measured.lens.height);
     set_zero(jacobians);
     return true;
   }
-  const Eigen::Map<const HousingChange<double>> change(parameters[2]);
-  residual = observation_.to_photograph * (image.pixel - observation_.pixel_with(change));
+  residual = image.pixel - observation_.pixel;
   if (!jacobians) return true;
-  by_point = observation_.to_photograph * by_point;
+  const refractive::Matrix23<double> by_point = image.by_tangents * image.tangents_by_point;
   if (jacobians[0]) {
     RowMajor<kPoseNumbers> by_pose(jacobians[0]);
     by_pose.leftCols<3>() = -by_point * cross_matrix(X) *
@@ -93,9 +89,12 @@ bool ObservationCost::Evaluate(double const* const* parameters, double* residual
   if (jacobians[1]) RowMajor<3>{jacobians[1]} = by_point * pose.rotation;
   if (jacobians[2]) {
     RowMajor<kHousingNumbers> by_change(jacobians[2]);
-    by_change =
-        -by_point * ray_by_change(measured_.measured, change, image.pixel, (X - origin).norm());
-    by_change.col(kFocalNumber) -= observation_.to_photograph * observation_.pixel_by_focal;
+    const Eigen::Map<const HousingChange<double>> change(parameters[2]);
+    by_change.leftCols<kPortNumbers>() =
+        -by_point *
+        ray_by_change(measured_.measured.port, change, image.tangents, (X - image.origin).norm());
+    // The focal lengths scale the picture about the principal point.
+    by_change.col(kFocalNumber) = image.pixel - now_.principal_point();
   }
   return true;
 }

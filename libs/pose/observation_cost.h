@@ -35,22 +35,22 @@ class CurrentCameras : public ceres::EvaluationCallback {
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
-  const CameraVariant<double>& operator[](std::size_t camera) const { return cameras_[camera]; }
+  const PhotographCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
 
  private:
   std::span<const BundleCamera> measured_;
   std::span<const HousingChange<double>> changes_;
-  std::vector<CameraVariant<double>> cameras_;
+  std::vector<PhotographCamera> cameras_;
 };
 
 // Residual [px of the photograph] of one observation. Parameter blocks: the pose's numbers, the
-// point [m], the camera's change. A point whose light does not reach the lens has a large constant
-// residual with zero derivatives; the loss function bounds its weight.
+// point [m], the camera's change. A point that is not visible (PhotographImage) has a large
+// constant residual with zero derivatives; the loss function bounds its weight.
 class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
  public:
   // All arguments must outlive the cost.
   ObservationCost(const Observation& observation, const Pose& start, const BundleCamera& measured,
-                  const CameraVariant<double>& now)
+                  const PhotographCamera& now)
       : observation_(observation), start_(start), measured_(measured), now_(now) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -60,7 +60,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHou
   const Observation& observation_;
   const Pose& start_;
   const BundleCamera& measured_;
-  const CameraVariant<double>& now_;
+  const PhotographCamera& now_;
 };
 
 }  // namespace axial::pose

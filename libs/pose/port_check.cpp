@@ -32,16 +32,17 @@ void change_port(const PortChange& change, Dome& port) {
   if (change.of == Of::centre) port.centre.setZero();
 }
 
-void change_camera(const PortChange& change, CameraModel& camera) {
+void change_camera(const PortChange& change, HousedCamera& camera) {
+  refractive::PinholeLens<double>& lens = camera.lens.pinhole;
   if (change.of == Of::focal || change.of == Of::focal_in_air) {
-    camera.lens.fx *= change.value;
-    camera.lens.fy *= change.value;
+    lens.fx *= change.value;
+    lens.fy *= change.value;
   }
   if (change.of == Of::port_left_out || change.of == Of::focal_in_air) camera.port.reset();
   if (change.of == Of::thin_port && !camera.port) {
     if (change.value == 1) camera.port = Flat{{0, 0, 1}, 1e-6, 0, 1, 1.5, kWater};
-    camera.lens.fx *= change.value;
-    camera.lens.fy *= change.value;
+    lens.fx *= change.value;
+    lens.fy *= change.value;
   }
   if (camera.port) std::visit([&](auto& port) { change_port(change, port); }, *camera.port);
 }

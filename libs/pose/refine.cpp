@@ -42,15 +42,9 @@ bool place_by_positions(Bundle& bundle, const std::vector<KnownPosition>& positi
     from.col(static_cast<Eigen::Index>(i)) = bundle.images[positions[i].image].pose.centre;
     to.col(static_cast<Eigen::Index>(i)) = positions[i].metres;
   }
-  const SimilarityFit fit = best_similarity(from, to);
-  const auto place = [&](Eigen::Vector3d& x) {
-    x = fit.scale * (fit.rotation * x) + fit.translation;
-  };
-  for (BundleImage& image : bundle.images) {
-    place(image.pose.centre);
-    image.pose.rotation = image.pose.rotation * fit.rotation.transpose();
-  }
-  for (BundlePoint& point : bundle.points) place(point.position);
+  const Similarity place = best_similarity(from, to);
+  for (BundleImage& image : bundle.images) image.pose = place(image.pose);
+  for (BundlePoint& point : bundle.points) point.position = place(point.position);
   return true;
 }
 
@@ -146,8 +140,6 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   adjusting.loss_sigmas *= 4;
   for (int round = 0; round < options.rounds; ++round) {
     report.last = adjust(bundle, adjusting);
-    // Before errors are judged: the undistorted pixels belong to the previous focal lengths.
-    if (options.between_rounds) options.between_rounds();
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);

@@ -15,9 +15,6 @@ struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
   int rounds = 3;  // of adjusting, then dropping observations that do not fit
-  // Called after each round's adjustment. It may change the bundle's observations, as place_again()
-  // does.
-  std::function<void()> between_rounds;
 };
 
 struct RefineReport {

@@ -11,9 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/colmap/colmap_lens.h"
 #include "io/images/image.h"
-#include "pose/tracks.h"
 
 namespace axial::pose {
 namespace {
@@ -21,26 +19,6 @@ namespace {
 constexpr std::size_t kPairs = 3, kLeastPoints = 30, kPointsOfPair = 150;
 constexpr int kHalf = 6;           // patches have 13 x 13 samples
 constexpr double kPicture = 1200;  // samples: pixels of the photograph reduced to this width [px]
-
-using Cameras = std::vector<CameraVariant<double>>;
-
-Cameras cameras_of(const Bundle& bundle) {
-  Cameras cameras;
-  for (const BundleCamera& camera : bundle.cameras)
-    cameras.push_back(make_camera<double>(camera.now()));
-  return cameras;
-}
-
-// From pixels of the lens without distortion to pixels of the photograph.
-std::optional<Eigen::Vector2d> in_photograph(const io::ColmapCamera& lens,
-                                             const refractive::PinholeLens<double>& pinhole,
-                                             const Eigen::Vector2d& pixel) {
-  const Eigen::Vector2d at =
-      image_direction(io::lens_of(lens), (pixel.x() - pinhole.cx) / pinhole.fx,
-                      (pixel.y() - pinhole.cy) / pinhole.fy);
-  if (!at.allFinite()) return {};
-  return at;
-}
 
 // The image of a point, and its derivatives by the point along two directions across the line of
 // sight.
@@ -182,9 +160,7 @@ std::optional<double> TrackPictures::behind(const Bundle& bundle) const {
 }
 
 std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_observations) const {
-  const Cameras cameras = cameras_of(bundle);
-  std::map<std::uint32_t, const io::ColmapCamera*> lenses;
-  for (const io::ColmapCamera& camera : sample_.cameras) lenses[camera.id] = &camera;
+  const std::vector<PhotographCamera> cameras = cameras_now(bundle);
   std::vector<double> values;
   std::size_t compared = 0;
   for (const Pair& pair : pairs_) {
@@ -193,26 +169,16 @@ std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_obs
       const auto patch = [&](std::size_t image, std::size_t observation,
                              const Tangents& at) -> std::optional<Patch> {
         const BundleImage& from = bundle.images[image];
-        const io::ColmapCamera& lens = *lenses.at(sample_.images[image].camera);
-        // The lens that observations were undistorted with does not change with the bundle's
-        // cameras.
-        const auto& pinhole = in_air_.cameras[in_air_.images[image].camera].measured.lens;
         const auto see = [&](const Eigen::Vector3d& x) -> std::optional<Eigen::Vector2d> {
-          const auto image_of =
-              std::visit([&](const auto& camera) { return camera.project(from.pose.to_camera(x)); },
-                         cameras[from.camera]);
-          if (!image_of.visible) return {};
-          return in_photograph(lens, pinhole, image_of.pixel);
+          const PhotographImage seen = cameras[from.camera].image(from.pose.to_camera(x));
+          if (!seen.visible) return {};
+          return seen.pixel;
         };
         const auto centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
         if (!centre || !u || !v) return {};
         Patch result{*centre, {}};
         result.along << *u - *centre, *v - *centre;
-        if (at_observations) {
-          const auto seen = in_photograph(lens, pinhole, in_air_.observations[observation].pixel);
-          if (!seen) return {};
-          result.centre = *seen;
-        }
+        if (at_observations) result.centre = in_air_.observations[observation].pixel;
         return result;
       };
       const Tangents at =

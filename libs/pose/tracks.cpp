@@ -14,17 +14,15 @@ namespace {
 
 using Ray = refractive::AxialRay<double>;
 
-// The ray in water of every observation, in the world frame.
+// The ray in water of every observation, in the world frame. An observation at whose pixel the lens
+// images no direction gets NaN.
 std::vector<Ray> world_rays(const Bundle& bundle) {
-  std::vector<CameraVariant<double>> cameras;
-  for (const BundleCamera& camera : bundle.cameras)
-    cameras.push_back(make_camera<double>(camera.now()));
+  const std::vector<PhotographCamera> cameras = cameras_now(bundle);
   std::vector<Ray> rays;
+  rays.reserve(bundle.observations.size());
   for (const Observation& observation : bundle.observations) {
     const BundleImage& image = bundle.images[observation.image];
-    const Eigen::Vector2d pixel = observation.pixel_with(bundle.cameras[image.camera].change);
-    const Ray ray =
-        std::visit([&](const auto& camera) { return camera.ray(pixel); }, cameras[image.camera]);
+    const Ray ray = cameras[image.camera].ray(observation.pixel);
     rays.push_back(
         {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction});
   }
@@ -48,15 +46,33 @@ double widest_angle(std::span<const std::size_t> list, const std::vector<Ray>& r
   return std::acos(std::clamp(smallest_cosine, -1.0, 1.0));
 }
 
+// Observations and their rays, in the same order.
+struct Seen {
+  std::vector<Observation>& observations;
+  std::vector<Ray> rays;
+
+  template <class Kept>
+  void keep(const Kept& kept) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (!kept(observations[i])) continue;
+      observations[count] = observations[i];
+      rays[count++] = rays[i];
+    }
+    observations.resize(count);
+    rays.resize(count);
+  }
+};
+
 // Removes the points that are not kept, and their observations, and renumbers the other points.
-void drop_points(Bundle& bundle, const std::vector<bool>& kept) {
+void drop_points(Bundle& bundle, Seen& seen, const std::vector<bool>& kept) {
   std::vector<std::size_t> place(kept.size());
   std::vector<BundlePoint> points;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     place[i] = points.size();
     if (kept[i]) points.push_back(bundle.points[i]);
   }
-  std::erase_if(bundle.observations, [&](const Observation& o) { return !kept[o.point]; });
+  seen.keep([&](const Observation& observation) { return kept[observation.point]; });
   for (Observation& observation : bundle.observations) observation.point = place[observation.point];
   bundle.points = std::move(points);
 }
@@ -67,18 +83,17 @@ bool seen_by_two_images(std::span<const std::size_t> list, const Bundle& bundle)
   });
 }
 
-void drop_weak_points(Bundle& bundle, double min_angle) {
-  const std::vector<Ray> rays = world_rays(bundle);
+void drop_weak_points(Bundle& bundle, Seen& seen, double min_angle) {
   std::vector<bool> kept;
   for (const auto& list : observations_by_point(bundle))
-    kept.push_back(seen_by_two_images(list, bundle) && widest_angle(list, rays) >= min_angle);
-  drop_points(bundle, kept);
+    kept.push_back(seen_by_two_images(list, bundle) && widest_angle(list, seen.rays) >= min_angle);
+  drop_points(bundle, seen, kept);
 }
 
-void drop_weak_images(Bundle& bundle, std::size_t min_observations) {
+void drop_weak_images(const Bundle& bundle, Seen& seen, std::size_t min_observations) {
   const std::vector<std::size_t> counts = observations_by_image(bundle);
-  std::erase_if(bundle.observations, [&](const Observation& observation) {
-    return counts[observation.image] < min_observations;
+  seen.keep([&](const Observation& observation) {
+    return counts[observation.image] >= min_observations;
   });
 }
 
@@ -101,7 +116,8 @@ void triangulate(Bundle& bundle) {
   std::vector<Ray> own;
   for (std::size_t i = 0; i < lists.size(); ++i) {
     own.clear();
-    for (const std::size_t observation : lists[i]) own.push_back(rays[observation]);
+    for (const std::size_t observation : lists[i])
+      if (rays[observation].direction.allFinite()) own.push_back(rays[observation]);
     if (const auto point = triangulate(own)) bundle.points[i].position = *point;
   }
 }
@@ -129,12 +145,13 @@ std::size_t filter(Bundle& bundle, const TrackLimits& limits, DropCounts* counts
     if (errors[i] <= limits.max_error) believed.push_back(bundle.observations[i]);
   bundle.observations = std::move(believed);
   dropped.errors = before - bundle.observations.size();
+  Seen seen{bundle.observations, world_rays(bundle)};
   for (std::size_t left = bundle.observations.size() + 1; left != bundle.observations.size();) {
     left = bundle.observations.size();
-    drop_weak_images(bundle, limits.min_observations);
+    drop_weak_images(bundle, seen, limits.min_observations);
     dropped.weak_images += left - bundle.observations.size();
     const std::size_t of_strong_images = bundle.observations.size();
-    drop_weak_points(bundle, limits.min_angle * std::numbers::pi / 180);
+    drop_weak_points(bundle, seen, limits.min_angle * std::numbers::pi / 180);
     dropped.weak_points += of_strong_images - bundle.observations.size();
   }
   if (counts) {

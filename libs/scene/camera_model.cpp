@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/camera_model.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace axial {
 
 CameraModel CameraModel::resized(int new_width, int new_height) const {
@@ -20,6 +23,24 @@ refractive::DistortedLens<T> distorted_lens(const CameraModel& model) {
 }
 
 namespace {
+
+struct TangentsBehindPort {
+  double usual;
+
+  TangentCamera operator()(const refractive::FlatPort<double>& port) const {
+    constexpr double kGrazing = 50;  // 88.9 degrees
+    const double tilt = std::acos(std::clamp(port.normal.z(), -1.0, 1.0));
+    const double angle = std::min(std::atan(usual) + tilt, std::atan(kGrazing));
+    const refractive::FlatPortField<double> field(refractive::FlatPortOptics<double>(port),
+                                                  kGrazing, std::max(1e-3, std::tan(angle)));
+    return refractive::FlatPortCamera<double>(refractive::tangent_lens<double>(), port, field,
+                                              refractive::all_tangents<double>());
+  }
+  TangentCamera operator()(const refractive::DomePort<double>& port) const {
+    return refractive::DomePortCamera<double>(refractive::tangent_lens<double>(), port,
+                                              refractive::all_tangents<double>());
+  }
+};
 
 // Makes the camera of `model` behind a port of either kind.
 template <class T>
@@ -46,6 +67,12 @@ CameraVariant<T> make_camera(const CameraModel& model) {
   if (model.port) return std::visit(BehindPort<T>{model}, *model.port);
   if (model.distortion) return refractive::LensPinholeCamera<T>(distorted_lens<T>(model));
   return refractive::PinholeCamera<T>(model.lens.cast<T>());
+}
+
+TangentCamera make_tangent_camera(const std::optional<refractive::Port<double>>& port,
+                                  double usual) {
+  if (port) return std::visit(TangentsBehindPort{usual}, *port);
+  return refractive::PinholeCamera<double>(refractive::tangent_lens<double>());
 }
 
 template refractive::DistortedLens<float> distorted_lens<float>(const CameraModel&);

@@ -43,6 +43,18 @@ using CameraVariant =
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 
+// A camera without a lens: its pixels are tangents in air (u, v) of the direction (u, v, 1) in the
+// camera frame. It is the inner camera of a lens of any kind (lens_camera.h). A tangent can be up
+// to 1e6, and the incidence on a flat port up to 88.8 degrees.
+using TangentCamera =
+    std::variant<refractive::PinholeCamera<double>, refractive::FlatPortCamera<double>,
+                 refractive::DomePortCamera<double>>;
+
+// Makes the camera behind `port`; an empty port is air. Points are projected fastest if the angle
+// between their direction in air and the optical axis is at most that of the tangent `usual`.
+TangentCamera make_tangent_camera(const std::optional<refractive::Port<double>>& port,
+                                  double usual);
+
 extern template refractive::DistortedLens<float> distorted_lens<float>(const CameraModel&);
 extern template refractive::DistortedLens<double> distorted_lens<double>(const CameraModel&);
 extern template CameraVariant<float> make_camera<float>(const CameraModel&);

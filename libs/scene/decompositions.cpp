@@ -31,10 +31,21 @@ double relative_width(const Eigen::Matrix3Xd& points) {
   return std::sqrt(std::max(extents(1), 0.0) / extents(2));
 }
 
-SimilarityFit best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
-                              bool with_scale) {
+Similarity Similarity::after(const Similarity& first) const {
+  return {scale * first.scale, rotation * first.rotation, (*this)(first.translation)};
+}
+
+Eigen::Matrix4d Similarity::matrix() const {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.topLeftCorner<3, 3>() = scale * rotation;
+  m.topRightCorner<3, 1>() = translation;
+  return m;
+}
+
+Similarity best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                           bool with_scale) {
   const Eigen::Matrix4d matrix = Eigen::umeyama(from, to, with_scale);
-  SimilarityFit fit;
+  Similarity fit;
   fit.scale = std::cbrt(matrix.topLeftCorner<3, 3>().determinant());
   fit.rotation = matrix.topLeftCorner<3, 3>() / fit.scale;
   fit.translation = matrix.topRightCorner<3, 1>();

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
+#include "scene/pose.h"
+
 extern template class Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
 namespace axial {
@@ -33,17 +35,29 @@ double relative_width(const Eigen::Matrix3Xd& points);
 inline constexpr double kLineWidth = 1e-3;
 
 // The map x -> scale * rotation * x + translation. `rotation` has determinant 1.
-struct SimilarityFit {
+struct Similarity {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
+    return scale * (rotation * x) + translation;
+  }
+  // The pose of the moved camera. It sees moved points in the same directions.
+  Pose operator()(const Pose& pose) const {
+    return {pose.rotation * rotation.transpose(), (*this)(pose.centre)};
+  }
+  // Returns the map that applies `first`, then this one.
+  Similarity after(const Similarity& first) const;
+  // The homogeneous 4 x 4 matrix.
+  Eigen::Matrix4d matrix() const;
 };
 
 // The similarity that maps `from` to `to` with the smallest sum of squared distances (S. Umeyama,
 // 1991). Precondition: both have the same number of points, at least one, as columns. Points on a
 // line do not determine the rotation about this line (see relative_width). Without `with_scale` the
 // scale is 1.
-SimilarityFit best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
-                              bool with_scale = true);
+Similarity best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                           bool with_scale = true);
 
 }  // namespace axial

@@ -177,6 +177,86 @@ RC_GTEST_PROP(Lens, DirectionsAreFoundAgain, ()) {
   }
 }
 
+// Central differences of the points are good to about 1e-9 of the derivative.
+RC_GTEST_PROP(Lens, DerivativesAreThoseOfCentralDifferences, ()) {
+  const std::vector<ColmapCamera> cameras{
+      one_focal_camera("SIMPLE_PINHOLE", {}),
+      two_focal_camera("PINHOLE", {}),
+      one_focal_camera("SIMPLE_RADIAL", {-0.1}),
+      one_focal_camera("RADIAL", {-0.1, 0.02}),
+      two_focal_camera("OPENCV", {-0.1, 0.02, 1e-2, -2e-2}),
+      two_focal_camera("FULL_OPENCV", {-0.1, 0.02, 1e-2, -2e-2, 0.01, 0.02, 0.03, 0.004}),
+      two_focal_camera("OPENCV_FISHEYE", {0.02, -0.01, 0.002, 0.001}),
+      one_focal_camera("SIMPLE_RADIAL_FISHEYE", {0.02}),
+      one_focal_camera("RADIAL_FISHEYE", {0.02, -0.01}),
+      one_focal_camera("SIMPLE_FISHEYE", {}),
+      two_focal_camera("FISHEYE", {}),
+      two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-2, 2e-2, 0.003, 1e-3, 4e-2, 5e-2}),
+      two_focal_camera("RAD_TAN_THIN_PRISM_FISHEYE",
+                       {0.02, -0.01, 3e-3, 2e-3, 1e-3, 1e-3, 1e-2, 2e-2, 4e-2, 3e-2, 5e-2, 2e-2}),
+      two_focal_camera("FOV", {0.9}),
+      one_focal_camera("SIMPLE_DIVISION", {-0.2}),
+      two_focal_camera("DIVISION", {0.1}),
+      two_focal_camera("EUCM", {0.6, 1.1})};
+  const Vector2d at(within(0.7), within(0.7));
+  for (const ColmapCamera& camera : cameras) {
+    const Lens lens = lens_of(camera);
+    const auto image = image_with_derivative(lens, at);
+    RC_ASSERT(image.point == image_direction(lens, at.x(), at.y()));
+    for (int k = 0; k < 2; ++k) {
+      const Vector2d step = 1e-5 * Vector2d::Unit(k), ahead = at + step, behind = at - step;
+      const Vector2d slope = (image_direction(lens, ahead.x(), ahead.y()) -
+                              image_direction(lens, behind.x(), behind.y())) /
+                             2e-5;
+      RC_ASSERT((image.by.col(k) - slope).norm() < 1e-8 * image.by.norm());
+    }
+  }
+}
+
+TEST(Lens, HasItsDerivativeOnTheAxis) {
+  for (const ColmapCamera& camera :
+       {two_focal_camera("FISHEYE", {}), two_focal_camera("EUCM", {0.6, 1.1})}) {
+    const auto image = image_with_derivative(lens_of(camera), Vector2d::Zero());
+    EXPECT_LT((image.by - Vector2d(kFx, kFy).asDiagonal().toDenseMatrix()).norm(), 1e-9);
+  }
+  const auto spread = image_with_derivative(lens_of(two_focal_camera("FOV", {0.9})), {0, 0});
+  EXPECT_NEAR(spread.by(0, 0), kFx * 2 * std::tan(0.45) / 0.9, 1e-9);
+}
+
+// The field ends where the derivative of r (1 + k1 r^2 + k2 r^4) is zero.
+TEST(Lens, TheFieldEndsAtTheFold) {
+  const auto reach = [](const ColmapCamera& camera) { return field_of(lens_of(camera)).reach; };
+  EXPECT_NEAR(reach(one_focal_camera("RADIAL", {-0.5, 0.1})), 1, 1e-6);
+  EXPECT_NEAR(reach(one_focal_camera("SIMPLE_RADIAL", {-0.5})), std::sqrt(2.0 / 3), 1e-6);
+  EXPECT_GT(reach(two_focal_camera("PINHOLE", {})), 1e5);
+  EXPECT_GT(reach(two_focal_camera("OPENCV_FISHEYE", {0, 0, 0, 0})), 1e5);
+}
+
+TEST(Lens, TheFieldKnowsTheFarthestCorner) {
+  const Field field = field_of(lens_of(two_focal_camera("PINHOLE", {})));
+  EXPECT_NEAR(field.corner, std::hypot((kCx - 0.5) / kFx, (479 - kCy + 0.5) / kFy), 1e-2);
+  const Field folded = field_of(lens_of(one_focal_camera("RADIAL", {-0.9, 0.1})));
+  EXPECT_EQ(folded.corner, folded.reach);
+}
+
+TEST(Lens, DirectionsWithinTheFieldAreThoseOfTheSearch) {
+  for (const ColmapCamera& camera :
+       {one_focal_camera("RADIAL", {-0.5, 0.1}), two_focal_camera("PINHOLE", {}),
+        two_focal_camera("OPENCV", {-0.4, 0.02, 1e-3, -1e-3}),
+        two_focal_camera("THIN_PRISM_FISHEYE", {0.02, -0.1, 1e-3, 1e-3, 0, 0, 1e-3, 1e-3})}) {
+    const Lens lens = lens_of(camera);
+    const Field field = field_of(lens);
+    for (double x = 0; x < 640; x += 20)
+      for (double y = 0; y < 480; y += 20) {
+        const auto searched = direction_at(lens, {x, y}), found = direction_at(lens, field, {x, y});
+        ASSERT_EQ(searched.has_value(), found.has_value()) << camera.model << " " << x << " " << y;
+        if (found) {
+          EXPECT_EQ(found->direction, searched->direction);
+        }
+      }
+  }
+}
+
 // Differences between the matcher's lens and the model: the image of (u, v) [px], and the direction
 // found from that image.
 struct Misses {

@@ -15,6 +15,7 @@ using testing::camera_behind;
 using testing::disturb;
 using testing::dome_port;
 using testing::flat_port;
+using testing::housed;
 using testing::kDegree;
 using testing::pose_errors;
 using testing::survey;
@@ -285,7 +286,7 @@ TEST(Uncertainty, OfTheScaleIsHonest) {
 TEST(Adjust, FindsThePortAgain) {
   const Bundle truth = survey(camera_behind(flat_port(2, 0.02)), {.points = 600, .noise = 0.5});
   Bundle bundle = truth;
-  bundle.cameras[0].measured = camera_behind(flat_port(3, 0.025));
+  bundle.cameras[0].measured = housed(camera_behind(flat_port(3, 0.025)));
   AdjustOptions options;
   options.distances.push_back(known_baseline(truth));
   options.free = {true, true, true, false, false};
@@ -307,7 +308,7 @@ TEST(Adjust, FindsTheCentreOfADome) {
   Bundle bundle = truth;
   auto wrong = port;
   wrong.centre += Eigen::Vector3d(0.002, -0.001, 0.002);
-  bundle.cameras[0].measured = camera_behind(wrong);
+  bundle.cameras[0].measured = housed(camera_behind(wrong));
   AdjustOptions options;
   options.distances.push_back(known_baseline(truth));
   options.free = {true, true, true, false, false};

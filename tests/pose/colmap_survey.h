@@ -4,7 +4,6 @@
 
 #include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "io/colmap/colmap_lens.h"
 #include "pose/survey.h"
 
 namespace axial::pose::testing {
@@ -17,6 +16,16 @@ inline io::Housing housing() {
   housing.ports["main"] = flat_port(2);
   housing.default_port = "main";
   return housing;
+}
+
+// The image of the in-air direction (u, v, 1) by kLens: COLMAP's formula for OPENCV. Pixel centres
+// at integers.
+inline Eigen::Vector2d seen_by_lens(double u, double v) {
+  const std::vector<double>& p = kLens.params;
+  const double r2 = u * u + v * v, radial = 1 + p[4] * r2 + p[5] * r2 * r2;
+  const double x = u * radial + 2 * p[6] * u * v + p[7] * (r2 + 2 * u * u);
+  const double y = v * radial + 2 * p[7] * u * v + p[6] * (r2 + 2 * v * v);
+  return {p[0] * x + p[2] - 0.5, p[1] * y + p[3] - 0.5};
 }
 
 // The survey as a COLMAP model whose images the distorting lens has taken.
@@ -33,10 +42,10 @@ inline io::ColmapModel model_of(const Bundle& bundle) {
   }
   for (std::size_t i = 0; i < bundle.points.size(); ++i)
     model.points.push_back({i + 1000, bundle.points[i].position, {1, 2, 3}, 0, {}});
-  const auto& lens = bundle.cameras[0].measured.lens;
+  const auto& lens = bundle.cameras[0].measured.lens.pinhole;
   for (const Observation& observation : bundle.observations) {
     const Eigen::Vector3d bearing = lens.bearing(observation.pixel);
-    const Eigen::Vector2d pixel = image_direction(io::lens_of(kLens), bearing.x(), bearing.y());
+    const Eigen::Vector2d pixel = seen_by_lens(bearing.x(), bearing.y());
     io::ColmapImage& image = model.images[observation.image];
     io::ColmapPoint3D& point = model.points[observation.point];
     point.track.push_back({image.id, static_cast<std::uint32_t>(image.points.size())});

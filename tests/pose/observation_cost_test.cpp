@@ -21,8 +21,9 @@ using Jacobian = Eigen::Matrix<double, 2, kNumbers>;
 using Jet = ceres::Jet<double, kNumbers>;
 
 struct Case {
-  const char* name;
+  std::string name;
   std::optional<refractive::Port<double>> port;
+  lens::Lens lens;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& one) {
@@ -31,14 +32,10 @@ std::ostream& operator<<(std::ostream& out, const Case& one) {
 
 class ObservationCostOf : public ::testing::TestWithParam<Case> {
  protected:
+  // The points are seen by a lens without distortion, but the cost does not need small residuals.
   Bundle bundle_ = survey(camera_behind(GetParam().port), {});
 
-  Observation observation(std::size_t index) const {
-    Observation observation = bundle_.observations[index];
-    observation.to_photograph << 0.9, 0.05, -0.03, 1.1;
-    observation.pixel_by_focal << 70, -40;
-    return observation;
-  }
+  void SetUp() override { bundle_.cameras[0].measured = {GetParam().lens, GetParam().port}; }
 
   // All numbers differ from zero, so that no derivative is right by accident.
   Numbers numbers(const Observation& observation) const {
@@ -53,7 +50,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
                            Jacobian* jacobian) const {
     const BundleCamera& camera = bundle_.cameras[0];
     const HousingChange<double> change = x.tail<kHousingNumbers>();
-    const auto now = make_camera<double>(with_change(camera.measured, change));
+    const PhotographCamera now(with_change(camera.measured, change));
     const ObservationCost cost(observation, bundle_.images[observation.image].pose, camera, now);
     const double* blocks[] = {x.data(), x.data() + kPoseNumbers, x.data() + kPoseNumbers + 3};
     Eigen::Vector2d result;
@@ -69,7 +66,7 @@ class ObservationCostOf : public ::testing::TestWithParam<Case> {
 
 TEST_P(ObservationCostOf, HasTheDerivativesOfFiniteDifferences) {
   for (std::size_t i = 0; i < bundle_.observations.size(); i += 97) {
-    const Observation seen = observation(i);
+    const Observation& seen = bundle_.observations[i];
     const Numbers x = numbers(seen);
     Jacobian jacobian;
     residual(seen, x, &jacobian);
@@ -83,21 +80,38 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfFiniteDifferences) {
   }
 }
 
-// The camera by automatic differentiation alone, unlike the tested code.
+// The camera by automatic differentiation alone, unlike the tested code: a pinhole with the focal
+// lengths of the lens, and the matcher's formula for its distortion.
 template <class Port>
-refractive::Projection<Jet> projection(const Port& port, const refractive::PinholeLens<Jet>& lens,
-                                       const CameraModel& model,
-                                       const refractive::Vector3<Jet>& X) {
+refractive::Vector2<Jet> projection(const Port& port, const refractive::PinholeLens<Jet>& pinhole,
+                                    const lens::Lens& lens, const refractive::Vector3<Jet>& X) {
   if constexpr (std::is_same_v<Port, refractive::FlatPort<Jet>>)
-    return refractive::FlatPortCamera<Jet>(lens, port, model.width, model.height).project(X);
+    return refractive::FlatPortCamera<Jet>(pinhole, port, lens.width, lens.height).project(X).pixel;
   else
-    return refractive::DomePortCamera<Jet>(lens, port, model.width, model.height).project(X);
+    return refractive::DomePortCamera<Jet>(pinhole, port, lens.width, lens.height).project(X).pixel;
+}
+
+refractive::Vector2<Jet> pixel_by_jets(const HousedCamera& camera, const HousingChange<Jet>& change,
+                                       const refractive::Vector3<Jet>& X) {
+  const auto pinhole = with_change(camera.lens.pinhole, change);
+  const refractive::Vector2<Jet> undistorted =
+      camera.port ? std::visit(
+                        [&](const auto& port) {
+                          return projection(with_change(port, change), pinhole, camera.lens, X);
+                        },
+                        *camera.port)
+                  : refractive::PinholeCamera<Jet>(pinhole).project(X).pixel;
+  const auto distortion = lens_distortion(camera.lens);
+  if (!distortion) return undistorted;
+  const auto bends = distortion->cast<Jet>();
+  const refractive::Vector3<Jet> bearing = pinhole.bearing(undistorted);
+  const auto bent = bends.bent(bends.spread_out({bearing.x(), bearing.y()}).point).point;
+  return pinhole.pixel({bent.x(), bent.y(), Jet(1)});
 }
 
 TEST_P(ObservationCostOf, HasTheDerivativesOfJets) {
-  const CameraModel& model = bundle_.cameras[0].measured;
   for (std::size_t i = 0; i < bundle_.observations.size(); i += 97) {
-    const Observation seen = observation(i);
+    const Observation& seen = bundle_.observations[i];
     const Numbers x = numbers(seen);
     Jacobian jacobian;
     const Eigen::Vector2d value = residual(seen, x, &jacobian);
@@ -109,17 +123,8 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfJets) {
     refractive::Vector3<Jet> X;
     ceres::AngleAxisRotatePoint(jets.data(), unturned.data(), X.data());
     const HousingChange<Jet> change = jets.tail<kHousingNumbers>();
-    const auto lens = with_change(model.lens, change);
-    const refractive::Vector2<Jet> pixel =
-        model.port ? std::visit(
-                         [&](const auto& port) {
-                           return projection(with_change(port, change), lens, model, X).pixel;
-                         },
-                         *model.port)
-                   : refractive::PinholeCamera<Jet>(lens).project(X).pixel;
     const refractive::Vector2<Jet> expected =
-        seen.to_photograph.cast<Jet>() *
-        (pixel - seen.pixel.cast<Jet>() - seen.pixel_by_focal.cast<Jet>() * change(kFocalNumber));
+        pixel_by_jets(bundle_.cameras[0].measured, change, X) - seen.pixel.cast<Jet>();
     for (int row = 0; row < 2; ++row) {
       EXPECT_NEAR(value(row), expected(row).a, 1e-9);
       EXPECT_LT((jacobian.row(row).transpose() - expected(row).v).norm(),
@@ -128,15 +133,30 @@ TEST_P(ObservationCostOf, HasTheDerivativesOfJets) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cameras, ObservationCostOf,
-                         ::testing::Values(Case{"Air", {}}, Case{"FlatPort", flat_port(3)},
-                                           Case{"Dome", dome_port()}),
+std::vector<Case> cases() {
+  const auto of_model = [](const char* model, std::vector<double> distortion) {
+    return lens::Lens{lens::find_model(model), {610, 615, 511.5, 383.5}, distortion, 1024, 768};
+  };
+  const std::pair<const char*, lens::Lens> lenses[] = {
+      {"Pinhole", of_model("PINHOLE", {})},
+      {"Perspective", of_model("OPENCV", {-0.12, 0.02, 1e-3, -2e-3})},
+      {"Fisheye", of_model("THIN_PRISM_FISHEYE", {0.02, -0.01, 1e-3, 2e-3, 0, 0, 1e-3, -2e-3})}};
+  std::vector<Case> cases;
+  for (const auto& [name, lens] : lenses) {
+    cases.push_back({std::string(name) + "InAir", {}, lens});
+    cases.push_back({std::string(name) + "BehindAFlatPort", flat_port(3), lens});
+    cases.push_back({std::string(name) + "BehindADome", dome_port(), lens});
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, ObservationCostOf, ::testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(ObservationCost, APointThatIsNotSeenMovesNothing) {
   const Bundle bundle = survey(camera_behind(flat_port()), {});
   const Observation& seen = bundle.observations[0];
-  const auto now = make_camera<double>(bundle.cameras[0].now());
+  const PhotographCamera now(bundle.cameras[0].now());
   const ObservationCost cost(seen, bundle.images[seen.image].pose, bundle.cameras[0], now);
   const PoseNumbers pose = numbers_of(bundle.images[seen.image].pose);
   const Eigen::Vector3d behind =

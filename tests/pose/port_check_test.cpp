@@ -80,8 +80,8 @@ TEST_P(ImportWarningOf, NamesTheCause) {
     Bundle bundle = survey(camera_behind(flat_port(3, 0.03)), {.distance = 0.7, .noise = noise});
     scale_places(bundle, fault.scale);
     bundle.cameras[0].measured.port = fault.given;
-    bundle.cameras[0].measured.lens.fx *= fault.focal;
-    bundle.cameras[0].measured.lens.fy *= fault.focal;
+    bundle.cameras[0].measured.lens.pinhole.fx *= fault.focal;
+    bundle.cameras[0].measured.lens.pinhole.fy *= fault.focal;
     const PortCheck check = check_ports(bundle, {});
     ASSERT_TRUE(check.tells());
     EXPECT_FALSE(check.fits()) << check.residual;

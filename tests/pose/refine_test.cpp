@@ -156,16 +156,6 @@ TEST(BringToMetres, TakesTheScaleOfKnownPositions) {
   for (const double error : reprojection_errors(bundle)) ASSERT_LT(error, 1e-6);
 }
 
-TEST(Refine, MovesObservationsBeforeItJudgesThem) {
-  const Bundle truth = survey(camera_behind(flat_port()), {.points = 200, .noise = 0.2});
-  Bundle bundle = truth;
-  const Eigen::Vector2d right = bundle.observations[7].pixel;
-  bundle.observations[7].pixel.x() += 100;
-  RefineOptions options = with_known_length(truth);
-  options.between_rounds = [&] { bundle.observations[7].pixel = right; };
-  EXPECT_EQ(refine(bundle, options).observations_after, truth.observations.size());
-}
-
 TEST(Refine, DropsOutliers) {
   const Bundle truth = survey(camera_behind(flat_port()), {.points = 600, .noise = 0.3});
   Bundle bundle = truth;

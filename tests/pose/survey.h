@@ -27,6 +27,11 @@ inline CameraModel camera_behind(std::optional<refractive::Port<double>> port) {
   return {1024, 768, {610, 615, 511.5, 383.5}, std::move(port)};
 }
 
+// The camera as bundle adjustment takes it.
+inline HousedCamera housed(const CameraModel& camera) {
+  return {{lens::find_model("PINHOLE"), camera.lens, {}, camera.width, camera.height}, camera.port};
+}
+
 // A camera at `centre` that looks at `target`, rotated about its axis by `roll` [rad].
 inline Pose looking_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target, double roll) {
   const Eigen::Vector3d z = (target - centre).normalized();
@@ -53,7 +58,7 @@ inline Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
   std::normal_distribution<double> noise(0, 1);
   const double d = options.distance;
   Bundle bundle;
-  bundle.cameras.push_back({camera, HousingChange<double>::Zero()});
+  bundle.cameras.push_back({housed(camera), HousingChange<double>::Zero()});
   for (int i = 0; i < options.images; ++i) {
     const double along = 0.9 * d * (i / (options.images - 1.0) - 0.5);
     const Eigen::Vector3d centre(along, uniform(-0.25, 0.25) * d, uniform(-0.2, 0.2) * d);
@@ -91,7 +96,7 @@ inline Bundle survey(const CameraModel& camera, const SurveyOptions& options) {
 inline Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
                            const SurveyOptions& options) {
   Bundle bundle = survey(first, options);
-  bundle.cameras.push_back({second, HousingChange<double>::Zero()});
+  bundle.cameras.push_back({housed(second), HousingChange<double>::Zero()});
   const auto seeing = make_camera<double>(second);
   std::mt19937_64 random(options.seed + 1);
   std::normal_distribution<double> noise(0, 1);
@@ -139,13 +144,12 @@ inline PoseErrors pose_errors(const Bundle& found, const Bundle& truth, bool wit
     from.col(i) = found.images[static_cast<std::size_t>(i)].pose.centre;
     to.col(i) = truth.images[static_cast<std::size_t>(i)].pose.centre;
   }
-  const SimilarityFit fit = best_similarity(from, to, with_scale);
+  const Similarity fit = best_similarity(from, to, with_scale);
   PoseErrors errors;
   errors.scale = fit.scale;
   double sum = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector3d moved = fit.scale * (fit.rotation * from.col(i)) + fit.translation;
-    sum += (moved - to.col(i)).squaredNorm();
+    sum += (fit(Eigen::Vector3d(from.col(i))) - to.col(i)).squaredNorm();
     const Eigen::Matrix3d between =
         found.images[static_cast<std::size_t>(i)].pose.rotation * fit.rotation.transpose() *
         truth.images[static_cast<std::size_t>(i)].pose.rotation.transpose();

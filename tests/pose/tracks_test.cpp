@@ -13,6 +13,7 @@ namespace {
 using testing::camera_behind;
 using testing::dome_port;
 using testing::flat_port;
+using testing::housed;
 using testing::survey;
 using Ray = refractive::AxialRay<double>;
 
@@ -116,19 +117,15 @@ TEST(Filter, ClosesRanksWhereAPointGoes) {
 TEST(Filter, DropsPointsSeenUnderNarrowAngles) {
   // Two cameras 0.1 m apart, points 1 m away: 5.7 degrees.
   Bundle bundle;
-  bundle.cameras.push_back({camera_behind(std::nullopt), HousingChange<double>::Zero()});
+  bundle.cameras.push_back({housed(camera_behind(std::nullopt)), HousingChange<double>::Zero()});
   for (const double x : {0.0, 0.1}) bundle.images.push_back({"", 0, {{}, {x, 0, 0}}});
   for (BundleImage& image : bundle.images) image.pose.rotation.setIdentity();
   bundle.points.push_back({{0.05, 0, 1}, 0});
-  const auto camera = make_camera<double>(bundle.cameras[0].now());
+  const PhotographCamera camera(bundle.cameras[0].now());
   for (std::size_t i = 0; i < 2; ++i) {
     Observation seen;
     seen.image = i;
-    seen.pixel = std::visit(
-        [&](const auto& c) {
-          return c.project(bundle.images[i].pose.to_camera(bundle.points[0].position)).pixel;
-        },
-        camera);
+    seen.pixel = camera.image(bundle.images[i].pose.to_camera(bundle.points[0].position)).pixel;
     bundle.observations.push_back(seen);
   }
   EXPECT_EQ(filter(bundle, {4, 5.7, 1}), 0u);

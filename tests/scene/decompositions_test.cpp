@@ -95,7 +95,7 @@ TEST(BestSimilarity, IsTheOneThatMovedThePoints) {
     const double scale = random.uniform(0.1, 10);
     const Vector3d translation = random.vector();
     const Matrix3Xd to = (scale * (rotation * from)).colwise() + translation;
-    const SimilarityFit fit = best_similarity(from, to);
+    const Similarity fit = best_similarity(from, to);
     // Roundings of 1e-15 of coordinates up to 20, for sets of points up to a hundred times as long
     // as wide.
     EXPECT_NEAR(fit.scale, scale, 1e-12 * scale);
@@ -108,7 +108,7 @@ TEST(BestSimilarity, WithoutScaleIsTheRotationAndTheShiftOfMeans) {
   Random random;
   const Matrix3Xd from = random.points(6);
   const Matrix3d rotation = random.rotation();
-  const SimilarityFit fit = best_similarity(from, 3 * (rotation * from), false);
+  const Similarity fit = best_similarity(from, 3 * (rotation * from), false);
   EXPECT_NEAR(fit.scale, 1, 1e-14);
   EXPECT_LT((fit.rotation - rotation).norm(), 1e-12);
   const Vector3d mean = rotation * from.rowwise().mean();
@@ -118,7 +118,7 @@ TEST(BestSimilarity, WithoutScaleIsTheRotationAndTheShiftOfMeans) {
 TEST(BestSimilarity, NeverReflects) {
   Random random;
   const Matrix3Xd from = random.points(6);
-  const SimilarityFit fit = best_similarity(from, Vector3d(1, 1, -1).asDiagonal() * from);
+  const Similarity fit = best_similarity(from, Vector3d(1, 1, -1).asDiagonal() * from);
   // About ten roundings of 1e-16.
   EXPECT_NEAR(fit.rotation.determinant(), 1, 1e-14);
 }

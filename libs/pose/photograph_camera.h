@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera of bundle adjustment: the lens itself, with its distortion, behind a port. Its pixels
+// are pixels of the photograph, with centres at integers. Camera frame, metres.
+#pragma once
+
+#include <optional>
+
+#include "lens/lens.h"
+#include "scene/camera_model.h"
+
+namespace axial::pose {
+
+// The lens in air and the port, as data.
+struct HousedCamera {
+  lens::Lens lens;
+  std::optional<refractive::Port<double>> port = {};  // empty: no port
+  // Must be the field of `lens`. It stays valid if both focal lengths change by one factor.
+  lens::Field field = field_of(lens);
+};
+
+// The image of a point.
+struct PhotographImage {
+  // Not visible: no light from the point reaches the lens, the lens has no image of this light, or
+  // the image lies outside the photograph widened by an eighth of its longer side. Everything else
+  // is then meaningless.
+  bool visible = false;
+  Eigen::Vector2d pixel;
+  Eigen::Vector2d tangents;     // (u, v) of the in-air direction (u, v, 1) of the light
+  Eigen::Matrix2d by_tangents;  // d(pixel)/d(tangents)
+  refractive::Matrix23<double> tangents_by_point;
+  Eigen::Vector3d origin;  // of the ray in water through the point [m]
+};
+
+class PhotographCamera {
+ public:
+  explicit PhotographCamera(HousedCamera camera);
+
+  // The image of X [camera frame] by the exact projection, with derivatives.
+  PhotographImage image(const Eigen::Vector3d& X) const;
+
+  // The ray in water of the pixel. A pixel at which the lens images no direction gets NaN.
+  refractive::AxialRay<double> ray(const Eigen::Vector2d& pixel) const;
+
+  const Eigen::Vector2d& principal_point() const { return principal_point_; }
+
+ private:
+  HousedCamera camera_;
+  TangentCamera inner_;
+  refractive::WidenedImage<double> widened_;
+  Eigen::Vector2d principal_point_;
+};
+
+}  // namespace axial::pose
