@@ -155,7 +155,7 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, LocalFrame fr
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder, bundle,
             adjust, unused);
   adjust.poses_known = options.poses == "known";
-  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust);
+  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 
@@ -228,9 +228,10 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
-    log_warning(
-        "{}", pose::warning_of(*freed, results.scale_lost ? std::numeric_limits<double>::infinity()
-                                                          : known.scale_sigma));
+    log_warning("{}", pose::warning_of(*freed,
+                                       results.scale_lost ? std::numeric_limits<double>::infinity()
+                                                          : known.scale_sigma,
+                                       option_of));
 }
 
 // A model, its lenses in air and its ports.

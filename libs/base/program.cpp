@@ -183,7 +183,13 @@ po::parsed_options parse_config(std::istream& in, const po::options_description&
 }
 
 void apply(CommonOptions& common) {
-  if (!common.log_file.empty()) log_to_file_too(in_working_folder(common, common.log_file));
+  if (!common.log_file.empty()) {
+    try {
+      log_to_file_too(in_working_folder(common, common.log_file));
+    } catch (const Error& error) {
+      fail("--log-file {}", error.what());
+    }
+  }
   if (common.archive_type < -1 || common.archive_type > 3)
     fail("--archive-type {}: must be from -1 to 3", common.archive_type);
   if (common.archive_type != -1)

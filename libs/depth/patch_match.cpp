@@ -104,7 +104,7 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
         else
           fail(
               "the warp homography is only for lenses without distortion: undistort the images "
-              "(InterfaceCOLMAP --undistort 1)");
+              "first, with InterfaceCOLMAP");
       },
       make_camera_list<float>(level.cameras, input.projection));
 }
