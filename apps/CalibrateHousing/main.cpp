@@ -41,7 +41,7 @@ io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
     if (!lens.port) fail("--housing is missing: the approximate port");
     return io::housing_with(io::to_housing_port(*lens.port));
   }
-  const io::Housing housing = io::read_housing(options.housing);
+  io::Housing housing = io::read_housing(options.housing);
   io::refuse_water_surfaces(housing, options.housing);
   return housing;
 }

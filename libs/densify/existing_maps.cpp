@@ -76,7 +76,7 @@ CameraModel camera_of_map(const Project& project, const Settings& settings, std:
   if (!same_shape(size, {scene_image.camera.width, scene_image.camera.height}))
     fail("{}: is {}x{}, but the camera of image {} is {}x{}", file, size.width, size.height,
          scene_image.path, scene_image.camera.width, scene_image.camera.height);
-  const CameraModel camera = scene_image.camera.resized(size.width, size.height);
+  CameraModel camera = scene_image.camera.resized(size.width, size.height);
   constexpr double kMostPixels = 1;
   if (const double shift = largest_shift(map, camera, scene_image.pose); !(shift < kMostPixels))
     fail(

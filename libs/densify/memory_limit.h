@@ -9,7 +9,7 @@
 
 namespace axial::densify {
 
-inline constexpr std::uint64_t kMegabyte = 1000 * 1000;
+inline constexpr std::uint64_t kMegabyte = 1'000'000;
 
 // The program with its libraries, stacks, small blocks, and the portions of fusion [bytes].
 inline constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;

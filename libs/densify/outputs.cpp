@@ -84,7 +84,7 @@ void check_outputs(const Settings& settings) {
 void check_outputs(const Project& project, const Settings& settings) {
   std::vector<fs::path> inputs = scene_files(settings);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
-    inputs.push_back(project.scene.images[i].path);
+    inputs.emplace_back(project.scene.images[i].path);
     inputs.push_back(project.views[i].mask);
   }
   require_no_inputs(cloud_outputs(settings), inputs, settings.name_of("output"));

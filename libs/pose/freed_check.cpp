@@ -103,7 +103,7 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
           (best && found >= best->rms_found))
         continue;
       const double sigma = observed_pixel_sigma(trial, freeing);
-      const double n = static_cast<double>(part.observations.size());
+      const auto n = static_cast<double>(part.observations.size());
       FreedNumber freed = moved_most(part, trial, freeing);
       freed.rms_stated = stated;
       freed.rms_found = found;

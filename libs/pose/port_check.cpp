@@ -134,6 +134,7 @@ PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_erro
   // tolerance is wider.
   const std::vector<PortChange> changes = likely_changes(bundle);
   std::vector<double> residuals;
+  residuals.reserve(changes.size());
   for (const PortChange& change : changes)
     residuals.push_back(track_residual(changed(bundle, change)));
   const double least = *std::ranges::min_element(residuals);

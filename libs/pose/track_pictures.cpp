@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pose/track_pictures.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,6 +62,29 @@ Tangents tangents_at(const Eigen::Vector3d& point, const Eigen::Vector3d& first,
   const double step = 2e-3 * (point - first).norm();  // a pixel or two
   return {point, step * u, step * sight.cross(u)};
 }
+
+// How an image of a bundle sees points.
+struct PhotographedBy {
+  const CameraVariant<double>& camera;
+  const Pose& pose;
+  const io::ColmapCamera& lens;
+  const refractive::PinholeLens<double>& pinhole;  // see in_photograph()
+
+  std::optional<Eigen::Vector2d> see(const Eigen::Vector3d& x) const {
+    const auto image_of =
+        std::visit([&](const auto& seen_by) { return seen_by.project(pose.to_camera(x)); }, camera);
+    if (!image_of.visible) return {};
+    return in_photograph(lens, pinhole, image_of.pixel);
+  }
+
+  std::optional<Patch> patch(const Tangents& at) const {
+    const auto centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
+    if (!centre || !u || !v) return {};
+    Patch result{*centre, {}};
+    result.along << *u - *centre, *v - *centre;
+    return result;
+  }
+};
 
 cv::Mat1f grey_picture(const std::filesystem::path& file, cv::Size size) {
   try {
@@ -185,48 +209,34 @@ std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_obs
   const Cameras cameras = cameras_of(bundle);
   std::map<std::uint32_t, const io::ColmapCamera*> lenses;
   for (const io::ColmapCamera& camera : sample_.cameras) lenses[camera.id] = &camera;
+  const auto patch = [&](std::size_t image, std::size_t observation, const Tangents& at) {
+    const BundleImage& from = bundle.images[image];
+    // The lens that observations were undistorted with does not change with the bundle's cameras.
+    const PhotographedBy photographed{cameras[from.camera], from.pose,
+                                      *lenses.at(sample_.images[image].camera),
+                                      in_air_.cameras[in_air_.images[image].camera].measured.lens};
+    std::optional<Patch> result = photographed.patch(at);
+    if (!result || !at_observations) return result;
+    const auto seen = in_photograph(photographed.lens, photographed.pinhole,
+                                    in_air_.observations[observation].pixel);
+    if (!seen) return std::optional<Patch>();
+    result->centre = *seen;
+    return result;
+  };
   std::vector<double> values;
-  std::size_t compared = 0;
   for (const Pair& pair : pairs_) {
     if (pair.pictures[0].empty() || pair.pictures[1].empty()) continue;
     for (const auto& [point, i, j] : pair.shared) {
-      const auto patch = [&](std::size_t image, std::size_t observation,
-                             const Tangents& at) -> std::optional<Patch> {
-        const BundleImage& from = bundle.images[image];
-        const io::ColmapCamera& lens = *lenses.at(sample_.images[image].camera);
-        // The lens that observations were undistorted with does not change with the bundle's
-        // cameras.
-        const auto& pinhole = in_air_.cameras[in_air_.images[image].camera].measured.lens;
-        const auto see = [&](const Eigen::Vector3d& x) -> std::optional<Eigen::Vector2d> {
-          const auto image_of =
-              std::visit([&](const auto& camera) { return camera.project(from.pose.to_camera(x)); },
-                         cameras[from.camera]);
-          if (!image_of.visible) return {};
-          return in_photograph(lens, pinhole, image_of.pixel);
-        };
-        const auto centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
-        if (!centre || !u || !v) return {};
-        Patch result{*centre, {}};
-        result.along << *u - *centre, *v - *centre;
-        if (at_observations) {
-          const auto seen = in_photograph(lens, pinhole, in_air_.observations[observation].pixel);
-          if (!seen) return {};
-          result.centre = *seen;
-        }
-        return result;
-      };
       const Tangents at =
           tangents_at(bundle.points[point].position, bundle.images[pair.first].pose.centre,
                       bundle.images[pair.second].pose.centre);
       const auto a = patch(pair.first, i, at), b = patch(pair.second, j, at);
       if (!a || !b) continue;
-      const auto value = correlation(pair.pictures[0], *a, pair.pictures[1], *b);
-      if (!value) continue;
-      ++compared;
-      values.push_back(*value);
+      if (const auto value = correlation(pair.pictures[0], *a, pair.pictures[1], *b))
+        values.push_back(*value);
     }
   }
-  if (compared < kLeastPoints) return {};
+  if (values.size() < kLeastPoints) return {};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;

@@ -136,9 +136,9 @@ bool JsonPlace::has(const char* key) const {
 
 void JsonPlace::require_object(std::initializer_list<const char*> known) const {
   if (!json.is_object()) fail("{} is not an object in braces", where);
-  for (const auto& [key, value] : json.items())
-    if (std::ranges::none_of(known, [&](const char* name) { return key == name; }))
-      fail("{}: unknown key '{}'", where, key);
+  for (const auto& item : json.items())
+    if (std::ranges::none_of(known, [&](const char* name) { return item.key() == name; }))
+      fail("{}: unknown key '{}'", where, item.key());
 }
 
 JsonPlace JsonPlace::at(const std::string& key) const {

@@ -175,9 +175,12 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
     for (const ColmapTrackElement& element : point.track)
       sparse.views.push_back({index_of.at(element.image), 0.0f});
     std::ranges::sort(sparse.views, {}, &SparseView::image);
-    const auto repeated = std::ranges::unique(sparse.views, {}, &SparseView::image);
-    repetitions += repeated.size();
-    sparse.views.erase(repeated.begin(), repeated.end());
+    // Not std::ranges::unique, whose result clang 14 cannot compile.
+    const auto repeated =
+        std::unique(sparse.views.begin(), sparse.views.end(),
+                    [](const SparseView& a, const SparseView& b) { return a.image == b.image; });
+    repetitions += static_cast<std::size_t>(sparse.views.end() - repeated);
+    sparse.views.erase(repeated, sparse.views.end());
     scene.points.push_back(std::move(sparse));
     scene.point_colors.push_back(point.color);
   }
