@@ -183,6 +183,7 @@ PlanePoint<T> LensDistortion<T>::straightened(const Vector2<T>& d, const T& radi
     constexpr int kMostSteps = 60;
     const T rounding = T(1e-31) * radius * radius;
     for (int k = 0; k < kMostSteps; ++k) {
+      // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): step() changes e.
       const Vector2<T> before = e;
       step();
       if (!((e - before).squaredNorm() > rounding)) break;

@@ -61,7 +61,7 @@ class PixelLookup {
 
   // Precondition: p lies inside the table, as the results of round() do.
   const Cell& cell(const IntegerPixel& p) const {
-    const std::size_t stride = static_cast<std::size_t>(high_u_ - low_ + 1);
+    const auto stride = static_cast<std::size_t>(high_u_ - low_ + 1);
     return cells_[static_cast<std::size_t>(p.v - low_) * stride +
                   static_cast<std::size_t>(p.u - low_)];
   }

@@ -75,7 +75,7 @@ auto roots(std::span<const T> monic) {
 // `z_water` [m] above the outer plane (axis frame). It comes directly from the eigenvalues, without
 // further iterations. Empty if there is no such t: total reflection, z_water <= 0, rho < 0, or an
 // argument that is not finite. `T` is float or double.
-template <class T>
+template <class T>  // NOLINTNEXTLINE(readability-function-size): one derivation, half of it names
 std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T& rho,
                                        const T& z_water) {
   using namespace polynomial;

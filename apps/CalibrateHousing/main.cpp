@@ -41,7 +41,7 @@ io::Housing load_housing(const Options& options, const io::ColmapCamera& lens) {
     if (!lens.port) fail("--housing is missing: the approximate port");
     return io::housing_with(io::to_housing_port(*lens.port));
   }
-  const io::Housing housing = io::read_housing(options.housing);
+  io::Housing housing = io::read_housing(options.housing);
   io::refuse_water_surfaces(housing, options.housing);
   return housing;
 }
@@ -80,7 +80,7 @@ void set_unknown(Options& options, const refractive::Port<double>& port) {
   camera.cameras[0].measured.port = port;
   pose::AdjustOptions& adjust = options.calibrate.adjust;
   adjust.points_known = true;
-  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust);
+  pose::set_free_numbers(options.refine_list, options.sigmas, camera, adjust, option_of);
   check_limits(options, port);
   if (adjust.free[pose::kFocalNumber])
     fail("--refine {}: the focal length cannot be refined, it stays as calibrated in air",
@@ -156,7 +156,8 @@ int run(int argc, char** argv) {
   set_unknown(options, port);
   const std::vector<fs::path> photographs = calibrate::photographs_in(options.input);
   check_outputs(options, photographs);
-  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth);
+  const auto views = calibrate::find_views(photographs, options.board, lens, options.bit_depth,
+                                           option_of("bit_depth"));
   const auto calibration = calibrate::calibrate(
       lens, port, views, calibrate::corners_of(options.board), options.calibrate);
   const std::vector<std::string> lines = report_lines(calibration, port_name);

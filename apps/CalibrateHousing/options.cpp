@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/setting_names.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 
@@ -71,7 +72,7 @@ void require_positive(const char* option, double value) {
 void check(const Options& options, double max_normal_degrees) {
   if (options.lens.empty()) fail("--lens is missing: the lens calibrated in air");
   if (options.output.empty()) fail("--output-file is missing: the housing file to write");
-  io::check_bit_depth(options.bit_depth);
+  io::check_bit_depth(options.bit_depth, option_of("bit_depth"));
   require_positive("max-error", options.calibrate.max_error);
   require_positive("max-distance-sigma", options.limits.place);
   require_positive("max-normal-sigma", max_normal_degrees);
@@ -80,6 +81,17 @@ void check(const Options& options, double max_normal_degrees) {
 }
 
 }  // namespace
+
+std::string option_of(std::string_view setting) {
+  constexpr SettingName kOptions[] = {{"refine", "--refine"},
+                                      {"normal_sigma", "--normal-sigma"},
+                                      {"distance_sigma", "--distance-sigma"},
+                                      {"centre_sigma", "--centre-sigma"},
+                                      {"thickness_sigma", "--thickness-sigma"},
+                                      {"index_sigma", "--index-sigma"},
+                                      {"bit_depth", "--bit-depth"}};
+  return name_in(kOptions, setting);
+}
 
 Options parse_command_line(int argc, const char* const* argv) {
   Options options;

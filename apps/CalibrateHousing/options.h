@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/program.h"
@@ -29,5 +30,8 @@ struct Options {
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+// The option for a setting of pose::set_free_numbers or of calibrate::find_views.
+std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "dense_config.h"
 #include "io/images/bit_depth.h"
+#include "option_names.h"
 #include "without_effect.h"
 
 namespace axial::apps {
@@ -200,7 +201,7 @@ void check_values(const Settings& settings, const Raw& raw) {
   check_range("estimate-normals", settings.estimate_normals, 0u, 2u);
   check_range("estimate-roi", raw.estimate_roi, 0, 2);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
-  io::check_bit_depth(settings.bit_depth);
+  io::check_bit_depth(settings.bit_depth, option_of("bit_depth"));
   check_range("roi-border", settings.roi_border, -1e6, 1e6);
   check_range("export-number-views", settings.export_number_views, -255, 255);
   check_range("estimate-scale", settings.estimate_scale, 0.0, 1e6);
@@ -291,6 +292,7 @@ void convert(const Raw& raw, Options& options) {
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
+  settings.name_of = option_of;
 }
 
 ProgramOptions described_program() {

@@ -2,12 +2,12 @@
 #include "options.h"
 
 #include <cmath>
-#include <ranges>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 
@@ -24,8 +24,8 @@ std::vector<double> parse_tolerances(const std::string& text) {
   const std::string wanted = "must be positive lengths in metres, separated by commas";
   if (text.empty()) fail("--tolerance is empty: {}", wanted);
   std::vector<double> values;
-  for (const auto& word : std::views::split(std::string_view(text), ',')) {
-    const auto value = parse_finite<double>(std::string_view(word.begin(), word.end()));
+  for (const std::string_view word : split(text, ',')) {
+    const auto value = parse_finite<double>(word);
     if (!value || !(*value > 0)) fail("--tolerance {}: {}", text, wanted);
     values.push_back(*value);
   }

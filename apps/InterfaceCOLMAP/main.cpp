@@ -44,7 +44,7 @@ std::size_t count_distorted(const Scene& scene) {
 // ports into models whose poses it computed without refraction. The files do not tell this, but the
 // tracks do; then this function warns and sets `warned`.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model, bool& warned) {
-  const io::Housing carried = io::housing_of(model.cameras);
+  io::Housing carried = io::housing_of(model.cameras);
   if (!options.housing_file.empty()) {
     io::Housing housing = io::read_housing(options.housing_file, model);
     io::warn_of_other_ports(housing, options.housing_file.string(), carried,

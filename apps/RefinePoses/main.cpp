@@ -35,8 +35,7 @@ using LensesInAir = std::vector<io::ColmapCamera>;
 LensesInAir load_lenses(const Options& options, const io::ColmapModel& model) {
   if (options.lens.empty() && io::housing_of(model.cameras).ports.empty())
     fail("--lens is missing: the lens calibrated in air");
-  const LensesInAir lenses =
-      options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
+  LensesInAir lenses = options.lens.empty() ? model.cameras : io::read_colmap_cameras(options.lens);
   if (lenses.empty()) fail("{}: no camera", options.lens.string());
   return lenses;
 }
@@ -66,7 +65,7 @@ io::Housing carried_housing(const io::ColmapModel& model, const LensesInAir& len
 // differ.
 io::Housing load_housing(const Options& options, const io::ColmapModel& model,
                          const LensesInAir& lenses) {
-  const io::Housing carried = carried_housing(model, lenses);
+  io::Housing carried = carried_housing(model, lenses);
   const std::string of_model = "the model in " + options.model.string();
   const std::string of_lens = options.lens.empty() ? of_model : options.lens.string();
   if (!options.housing.empty()) {
@@ -139,6 +138,7 @@ void check_output(const Options& options, const fs::path& model) {
 // Known positions place the model, so its local frame must be near them.
 LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
   std::vector<Eigen::Vector3d> centres;
+  centres.reserve(positions.size());
   for (const pose::KnownPosition& known : positions) centres.push_back(known.metres);
   const LocalFrame frame = frame_of(centres, {});
   if (frame.is_world()) return frame;
@@ -148,14 +148,14 @@ LocalFrame enter_local_frame(std::vector<pose::KnownPosition>& positions) {
 
 // Sets the known and unknown numbers of `options.refine.adjust`. `frame_of_model`: the frame of
 // `bundle`. Returns the frame that the bundle will be in.
-LocalFrame set_known(Options& options, const pose::Bundle& bundle, LocalFrame frame_of_model,
+LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFrame& frame_of_model,
                      UnusedInput& unused) {
   pose::AdjustOptions& adjust = options.refine.adjust;
   adjust = {};
   add_known(options.scale_from, options.scale_sigma, options.parsed.common.working_folder, bundle,
             adjust, unused);
   adjust.poses_known = options.poses == "known";
-  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust);
+  pose::set_free_numbers(options.refine_list, options.sigmas, bundle, adjust, option_of);
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 
@@ -226,9 +226,10 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))
-    log_warning(
-        "{}", pose::warning_of(*freed, results.scale_lost ? std::numeric_limits<double>::infinity()
-                                                          : known.scale_sigma));
+    log_warning("{}", pose::warning_of(*freed,
+                                       results.scale_lost ? std::numeric_limits<double>::infinity()
+                                                          : known.scale_sigma,
+                                       option_of));
 }
 
 // A model, its lenses in air and its ports.

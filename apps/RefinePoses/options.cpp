@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/setting_names.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 
@@ -80,6 +81,19 @@ void declare_estimate(OptionList& visible, Options& options) {
 }
 
 }  // namespace
+
+std::string option_of(std::string_view setting) {
+  constexpr SettingName kOptions[] = {{"refine", "--refine"},
+                                      {"normal_sigma", "--normal-sigma"},
+                                      {"distance_sigma", "--distance-sigma"},
+                                      {"centre_sigma", "--centre-sigma"},
+                                      {"thickness_sigma", "--thickness-sigma"},
+                                      {"index_sigma", "--index-sigma"},
+                                      {"focal_sigma", "--focal-sigma"},
+                                      {"distances", "--scale-from"},
+                                      {"poses_known", "--poses known"}};
+  return name_in(kOptions, setting);
+}
 
 Options parse_command_line(int argc, const char* const* argv) {
   Texts texts;

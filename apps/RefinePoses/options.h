@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "base/program.h"
 #include "pose/free_numbers.h"
@@ -28,5 +29,8 @@ struct Options {
 
 // Parses and checks the command line. `parsed.run` is false if nothing is left to do.
 Options parse_command_line(int argc, const char* const* argv);
+
+// The option for a setting of pose::set_free_numbers.
+std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

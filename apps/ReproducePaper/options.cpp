@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <sstream>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "base/version.h"
 #include "experiments/chained.h"
 #include "experiments/results.h"
@@ -55,8 +55,8 @@ experiments::Words words_of(const std::string& text) {
 
 std::vector<int> seeds_of(const std::string& text) {
   std::vector<int> seeds;
-  for (const auto& word : std::views::split(std::string_view(text), ',')) {
-    const auto seed = parse_number<int>(std::string_view(word.begin(), word.end()));
+  for (const std::string_view word : split(text, ',')) {
+    const auto seed = parse_number<int>(word);
     if (!seed || *seed < 0) fail("--seeds {}: must be whole numbers, separated by commas", text);
     seeds.push_back(*seed);
   }

@@ -2,7 +2,7 @@
 #include "base/atomic_file.h"
 
 #include <fcntl.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): ::kill is not in <csignal>
 #include <unistd.h>
 
 #include <algorithm>

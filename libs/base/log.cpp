@@ -55,14 +55,14 @@ bool may_hold_a_log(const std::filesystem::path& file) {
 
 void log_to_file_too(const std::filesystem::path& file) {
   if (!may_hold_a_log(file))
-    fail("--log-file {}: is not a log file, and nothing is added to it", file.string());
+    fail("{}: is not a log file, and nothing is added to it", file.string());
   try {
     const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     sink->set_pattern("%Y-%m-%d %H:%M:%S [%n] %v");
     spdlog::default_logger()->sinks().push_back(sink);
     file_sink() = sink;
   } catch (const spdlog::spdlog_ex& error) {
-    fail("--log-file {}: cannot be written: {}", file.string(), error.what());
+    fail("{}: cannot be written: {}", file.string(), error.what());
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file for the log, in addition to standard output (--log-file).
+// A file for the log, in addition to standard output.
 #pragma once
 
 #include <filesystem>

@@ -183,7 +183,13 @@ po::parsed_options parse_config(std::istream& in, const po::options_description&
 }
 
 void apply(CommonOptions& common) {
-  if (!common.log_file.empty()) log_to_file_too(in_working_folder(common, common.log_file));
+  if (!common.log_file.empty()) {
+    try {
+      log_to_file_too(in_working_folder(common, common.log_file));
+    } catch (const Error& error) {
+      fail("--log-file {}", error.what());
+    }
+  }
   if (common.archive_type < -1 || common.archive_type > 3)
     fail("--archive-type {}: must be from -1 to 3", common.archive_type);
   if (common.archive_type != -1)
@@ -203,6 +209,72 @@ bool given_in(const po::variables_map& values, const std::string& name) {
   return values.count(name) > 0 && !values[name].defaulted();
 }
 
+// All options of a program, by the places that may give them.
+struct KnownOptions {
+  KnownOptions(CommonOptions& common, const ProgramOptions& program) {
+    const po::options_description visible = described(program.visible);
+    const po::options_description hidden = described(program.hidden);
+    command_line.add(common_options(common, program, working_folder)).add(visible).add(hidden);
+    config.add(visible).add(hidden);
+  }
+  KnownOptions(const KnownOptions&) = delete;  // common_options() refers to working_folder
+
+  bool has_input() const { return command_line.find_nothrow("input-file", false) != nullptr; }
+  bool lacks_input(const po::variables_map& values) const {
+    return has_input() && !values.count("input-file");
+  }
+
+  std::string working_folder;
+  po::options_description command_line, config;
+};
+
+void read_command_line(int argc, const char* const* argv, const ProgramOptions& program,
+                       const KnownOptions& known, po::variables_map& values) {
+  po::positional_options_description positional;
+  positional.add("input-file", -1);
+  po::command_line_parser parser(words_of(argc, argv, known.command_line, program.visible));
+  parser.options(known.command_line);
+  if (known.has_input()) parser.positional(positional);
+  const po::parsed_options arguments = parser.run();
+  refuse_stray_arguments(arguments);
+  refuse_negative(arguments, known.command_line);
+  po::store(arguments, values);
+}
+
+fs::path working_folder_of(const po::variables_map& values) {
+  std::string name;
+  if (values.count("working-folder")) name = values["working-folder"].as<std::string>();
+  fs::path folder = fs::absolute(name.empty() ? "." : name);
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) fail("--working-folder {}: is not a folder", name);
+  return folder;
+}
+
+// Adds the values of the cfg file that the command line does not give.
+void read_config(const fs::path& working_folder, const po::options_description& config,
+                 po::variables_map& values) {
+  const fs::path cfg = working_folder / values["config-file"].as<std::string>();
+  if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
+    try {
+      const po::parsed_options in_file = parse_config(in, config);
+      refuse_negative(in_file, config);
+      po::store(in_file, values);
+    } catch (const po::error& error) {
+      fail("{}: {}", cfg.string(), as_message(error.what()));
+    }
+  } else if (given_in(values, "config-file")) {
+    fail("{}: cannot be opened", cfg.string());
+  }
+}
+
+void print_help(const ProgramOptions& program) {
+  po::options_description shown;
+  std::string unused_folder;
+  CommonOptions unused;
+  shown.add(common_options(unused, program, unused_folder)).add(described(program.visible));
+  std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
+}
+
 }  // namespace
 
 bool given(const ParsedOptions& parsed, const std::string& name) {
@@ -216,62 +288,21 @@ fs::path in_working_folder(const CommonOptions& common, const std::string& path)
 
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program) {
   ParsedOptions parsed;
+  KnownOptions known(parsed.common, program);
   po::variables_map values;
-  std::string working_folder;
-  const po::options_description visible = described(program.visible);
-  const po::options_description hidden = described(program.hidden);
-  po::options_description command_line;
-  command_line.add(common_options(parsed.common, program, working_folder));
-  command_line.add(visible).add(hidden);
-  po::options_description config;
-  config.add(visible).add(hidden);
-  po::positional_options_description positional;
-  positional.add("input-file", -1);
-
   try {
-    po::command_line_parser parser(words_of(argc, argv, command_line, program.visible));
-    parser.options(command_line);
-    const bool has_input = command_line.find_nothrow("input-file", false) != nullptr;
-    if (has_input) parser.positional(positional);
-    const po::parsed_options arguments = parser.run();
-    refuse_stray_arguments(arguments);
-    refuse_negative(arguments, command_line);
-    po::store(arguments, values);
+    read_command_line(argc, argv, program, known, values);
     if (values.count("version")) {
       std::cout << program.version << std::endl;
       return parsed;
     }
-
-    if (values.count("working-folder")) working_folder = values["working-folder"].as<std::string>();
-    std::error_code error;
-    parsed.common.working_folder = fs::absolute(working_folder.empty() ? "." : working_folder);
-    if (!fs::is_directory(parsed.common.working_folder, error))
-      fail("--working-folder {}: is not a folder", working_folder);
-
-    const fs::path cfg = parsed.common.working_folder / values["config-file"].as<std::string>();
-    if (std::ifstream in(cfg); in && fs::is_regular_file(cfg)) {
-      try {
-        const po::parsed_options in_file = parse_config(in, config);
-        refuse_negative(in_file, config);
-        po::store(in_file, values);
-      } catch (const po::error& cfg_error) {
-        fail("{}: {}", cfg.string(), as_message(cfg_error.what()));
-      }
-    } else if (given_in(values, "config-file")) {
-      fail("{}: cannot be opened", cfg.string());
-    }
+    parsed.common.working_folder = working_folder_of(values);
+    read_config(parsed.common.working_folder, known.config, values);
     po::notify(values);
     for (const auto& [name, value] : values)
       if (given_in(values, name)) parsed.given.insert(name);
-
-    const bool help = values.count("help") > 0;
-    const bool no_input = has_input && !values.count("input-file");
-    if (help || no_input) {
-      po::options_description shown;
-      std::string unused_folder;
-      CommonOptions unused;
-      shown.add(common_options(unused, program, unused_folder)).add(visible);
-      std::cout << program.name << ": " << program.description << "\n\n" << shown << std::flush;
+    if (const bool help = values.count("help") > 0; help || known.lacks_input(values)) {
+      print_help(program);
       parsed.exit_code = help ? 0 : 1;
       if (!help) std::cerr << program.name << ": no input file given (-i FILE)\n";
       return parsed;

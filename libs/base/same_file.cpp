@@ -23,7 +23,7 @@ std::optional<Identity> identity_of(const std::filesystem::path& path) {
 }  // namespace
 
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
-                       std::span<const std::filesystem::path> inputs, const std::string& option) {
+                       std::span<const std::filesystem::path> inputs, const std::string& setting) {
   std::map<Identity, const std::filesystem::path*> known;
   for (const std::filesystem::path& input : inputs)
     if (const auto identity = identity_of(input)) known.emplace(*identity, &input);
@@ -31,15 +31,15 @@ void require_no_inputs(std::span<const std::filesystem::path> outputs,
     const auto identity = identity_of(output);
     const auto input = identity ? known.find(*identity) : known.end();
     if (input == known.end()) continue;
-    fail("{} {}: is {}, which is read and would be overwritten", option, output.string(),
+    fail("{} {}: is {}, which is read and would be overwritten", setting, output.string(),
          output == *input->second ? "an input" : "the input " + input->second->string());
   }
 }
 
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
-                          const std::string& option) {
-  if (identity_of(output)) require_no_inputs({&output, 1}, inputs, option);
+                          const std::string& setting) {
+  if (identity_of(output)) require_no_inputs({&output, 1}, inputs, setting);
 }
 
 }  // namespace axial

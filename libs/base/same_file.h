@@ -8,15 +8,16 @@
 
 namespace axial {
 
-// Throws an Error that names `option`, `output` and the input if `output` exists and is one of
+// Throws an Error that names `setting`, `output` and the input if `output` exists and is one of
 // `inputs`. Files are compared by device and inode, so that links are found too. Inputs that do not
 // exist and empty paths are ignored. For an input that is a folder, only the folder itself is
 // compared and not the files in it.
 void require_not_an_input(const std::filesystem::path& output,
-                          std::span<const std::filesystem::path> inputs, const std::string& option);
+                          std::span<const std::filesystem::path> inputs,
+                          const std::string& setting);
 
 // The same for each of several outputs.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
-                       std::span<const std::filesystem::path> inputs, const std::string& option);
+                       std::span<const std::filesystem::path> inputs, const std::string& setting);
 
 }  // namespace axial

@@ -10,16 +10,20 @@
 
 namespace axial {
 
-// Treats unused input as an error, or with --allow-missing as a warning.
+// Treats unused input as an error, or where it is allowed as a warning.
 class UnusedInput {
  public:
   // Adds the option --allow-missing to `list`, bound to `allowed`. `allowed` must exist until the
   // options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
-  explicit UnusedInput(bool allowed) : allowed_(allowed) {}
+  // For a program with this option.
+  explicit UnusedInput(bool allowed);
 
-  // Reports one unused input. `line` names the option, the input and the reason. Throws an Error
+  // For a library: `setting` is the name of the setting that allows unused input.
+  UnusedInput(bool allowed, std::string setting);
+
+  // Reports one unused input. `line` names the setting, the input and the reason. Throws an Error
   // with this line, or if allowed logs it as a warning and keeps it.
   void report(const std::string& line);
 
@@ -28,6 +32,7 @@ class UnusedInput {
 
  private:
   bool allowed_;
+  std::string setting_;
   std::vector<std::string> lines_;
 };
 

@@ -85,7 +85,7 @@ double nearest(const pose::Bundle& bundle) {
 
 void add_edges(const Calibration& calibration, std::vector<std::string>& missing) {
   const io::ColmapCamera& lens = calibration.bundle.lenses[0];
-  const double width = static_cast<double>(lens.width), height = static_cast<double>(lens.height);
+  const auto width = static_cast<double>(lens.width), height = static_cast<double>(lens.height);
   double left = width, right = width, upper = height, lower = height;  // free margins
   for (const pose::Observation& observation : calibration.bundle.bundle.observations) {
     const Eigen::Vector2d& at =

@@ -53,6 +53,7 @@ std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board
     return {};
   refine(photograph, size, corners);
   std::vector<Corner> found;
+  found.reserve(corners.size());
   for (const cv::Point2f& p : corners) found.push_back({found.size(), {p.x, p.y}});
   return found;
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "calibrate/board.h"
@@ -18,9 +19,10 @@ std::vector<std::filesystem::path> photographs_in(std::span<const std::filesyste
 
 // The board's corners in every photograph, in the order of `photographs`; without corners where the
 // board is not found. A view has the name of its photograph's file. Error that names the first
-// photograph that cannot be read or whose size differs from the lens's. `bit_depth`: as for
-// io::common_bit_depth.
+// photograph that cannot be read or whose size differs from the lens's. `bit_depth` and its
+// name in messages: as for io::common_bit_depth.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
-                             const io::ColmapCamera& lens, int bit_depth = 0);
+                             const io::ColmapCamera& lens, int bit_depth = 0,
+                             const std::string& bit_depth_name = "bit_depth");
 
 }  // namespace axial::calibrate

@@ -145,7 +145,7 @@ SupportCamera::SupportCamera(const CameraModel& model, const Pose& pose)
 PointSupport SupportCamera::support(std::uint32_t pixel, double depth, double cost,
                                     const Eigen::Vector3d& point) const {
   const std::uint32_t y = pixel / width_, x = pixel - y * width_;
-  const double angle = static_cast<double>(angles_[(y >> shift_) * columns_ + (x >> shift_)]);
+  const auto angle = static_cast<double>(angles_[(y >> shift_) * columns_ + (x >> shift_)]);
   return {point, (point - centre_).normalized(), depth * angle, depth, cost};
 }
 

@@ -36,7 +36,7 @@ int nearest(double x) {
 }
 
 // Sorts the points into cells of one pixel. Within a cell they keep their order.
-Cells sorted_into_cells(std::vector<ProjectedPoint> points, int width, int height) {
+Cells sorted_into_cells(const std::vector<ProjectedPoint>& points, int width, int height) {
   Cells cells{width, height, {}, {}};
   const auto cell_of = [&](const ProjectedPoint& p) {
     return cells.cell(nearest(p.u), nearest(p.v));
@@ -85,7 +85,7 @@ Cells project_all(const Scene& scene, const SceneImage& image,
         }
       },
       make_camera<double>(image.camera));
-  return sorted_into_cells(std::move(points), width, height);
+  return sorted_into_cells(points, width, height);
 }
 
 // Calls visit(p, q) for every point p that has a view in this image, and every other point q in the

@@ -41,8 +41,8 @@ std::size_t distinct_views(const SparsePoint& point) {
 
 // The output path with `suffix`. Error if it is a file that was read.
 fs::path checked_output(const Settings& settings, const std::string& suffix) {
-  const fs::path path = beside_output(settings, suffix);
-  require_not_an_input(path, scene_files(settings), "--output-file");
+  fs::path path = beside_output(settings, suffix);
+  require_not_an_input(path, scene_files(settings), settings.name_of("output"));
   return path;
 }
 

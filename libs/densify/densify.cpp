@@ -96,9 +96,9 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
   log_info("{}: {} points", ply.string(), points);
   if (settings.fuse && points == 0)
     log_warning(
-        "The cloud is empty: no point was seen by {} views (see --number-views-fuse), or masks and "
-        "the region of interest exclude all points",
-        settings.fusion.min_views);
+        "The cloud is empty: no point was seen by {} views (see {}), or masks and the region of "
+        "interest exclude all points",
+        settings.fusion.min_views, settings.name_of("fusion.min_views"));
   export_pinholes(project, settings, plan, existing, ply);
   if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
   return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,

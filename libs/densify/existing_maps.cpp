@@ -76,7 +76,7 @@ CameraModel camera_of_map(const Project& project, const Settings& settings, std:
   if (!same_shape(size, {scene_image.camera.width, scene_image.camera.height}))
     fail("{}: is {}x{}, but the camera of image {} is {}x{}", file, size.width, size.height,
          scene_image.path, scene_image.camera.width, scene_image.camera.height);
-  const CameraModel camera = scene_image.camera.resized(size.width, size.height);
+  CameraModel camera = scene_image.camera.resized(size.width, size.height);
   constexpr double kMostPixels = 1;
   if (const double shift = largest_shift(map, camera, scene_image.pose); !(shift < kMostPixels))
     fail(
@@ -135,12 +135,11 @@ void check_overwriting(const Project& project, const Settings& settings, const E
   const bool fusable = std::ranges::all_of(foreign, [&](std::size_t image) {
     return is_plain_pinhole(project.scene.images[image].camera);
   });
-  fail(
-      "{}: was written by another program ({} of {} depth maps were): {}move it away, or give "
-      "--overwrite-dmaps 1",
-      file, foreign.size(), project.references.size(),
-      fusable ? "fuse the existing depth maps (--fusion-mode -1), "
-              : "it counts as the depth map of a pinhole camera: ");
+  fail("{}: was written by another program ({} of {} depth maps were): {}move it away, or give {}",
+       file, foreign.size(), project.references.size(),
+       fusable ? "fuse the existing depth maps (" + settings.name_of("make_maps false") + "), "
+               : "it counts as the depth map of a pinhole camera: ",
+       settings.name_of("overwrite_dmaps true"));
 }
 
 void keep_images_with_maps(Project& project, const Settings& settings, const ExistingMaps& maps) {
@@ -159,7 +158,7 @@ void keep_images_with_maps(Project& project, const Settings& settings, const Exi
     kept.push_back(image);
   }
   if (kept.empty())
-    fail("--fusion-mode -1: no depth map found: {} does not exist",
+    fail("{}: no depth map found: {} does not exist", settings.name_of("make_maps false"),
          depth_map_path(project, settings, project.references.front()).string());
   const std::string line = fmt::format("{} of {} images have a depth map, {} by other programs",
                                        kept.size(), project.references.size(), foreign);

@@ -68,7 +68,7 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 
 ImageStore::ImageStore(const Project& project, const Settings& settings, std::size_t capacity)
     : project_(project),
-      labels_(settings.ignore_mask_label),
+      labels_(settings),
       cache_([&](std::size_t image) { return load(project, settings, image, labels_); }, capacity) {
 }
 

@@ -20,19 +20,21 @@ std::size_t masks_of_scene(const Scene& scene) {
 
 void tell_of_unused(const Project& project, const Settings& settings) {
   if (!settings.mask_folder.empty())
-    log_warning("--mask-path {}: is not used, because --ignore-mask-label is {}",
-                settings.mask_folder.string(), settings.ignore_mask_label);
+    log_warning("{} {}: is not used, because {} is {}", settings.name_of("mask_folder"),
+                settings.mask_folder.string(), settings.name_of("ignore_mask_label"),
+                settings.ignore_mask_label);
   else if (const std::size_t named = masks_of_scene(project.scene))
-    log_info("{}: contains masks of {} images, which are used only with --ignore-mask-label",
-             settings.input.string(), named);
+    log_info("{}: contains masks of {} images, which are used only with {}",
+             settings.input.string(), named, settings.name_of("ignore_mask_label"));
 }
 
 void warn_of_ignored_masks(const Project& project, const Settings& settings,
                            const std::vector<io::FoundMask>& masks) {
   const std::size_t named = settings.mask_folder.empty() ? 0 : masks_of_scene(project.scene);
   if (named > 0)
-    log_warning("--mask-path {}: is used instead of the masks that {} names for {} images",
-                settings.mask_folder.string(), settings.input.string(), named);
+    log_warning("{} {}: is used instead of the masks that {} names for {} images",
+                settings.name_of("mask_folder"), settings.mask_folder.string(),
+                settings.input.string(), named);
   const io::IgnoredMasks ignored = io::ignored_masks(masks);
   if (ignored.count > 0)
     log_warning("{}: is used; {} differs and is ignored ({} images have two different masks)",
@@ -56,8 +58,8 @@ void choose_masks(Project& project, const Settings& settings) {
     project.views[images[k]].mask = masks[k].path;
     if (!masks[k].path.empty()) continue;
     if (!settings.mask_folder.empty())
-      fail("--mask-path {}: no mask for image {}: looked for {}", settings.mask_folder.string(),
-           requests[k].image.string(), masks[k].looked_for);
+      fail("{} {}: no mask for image {}: looked for {}", settings.name_of("mask_folder"),
+           settings.mask_folder.string(), requests[k].image.string(), masks[k].looked_for);
     log_warning("{}: no mask: looked for {}", requests[k].image.string(), masks[k].looked_for);
   }
   warn_of_ignored_masks(project, settings, masks);
@@ -82,8 +84,8 @@ void LabelCheck::warn_if_absent(const Project& project) const {
   if (others_.count() > kMost) labels += fmt::format(" and {} more", others_.count() - kMost);
   const auto first =
       std::ranges::find_if(project.views, [](const View& view) { return !view.mask.empty(); });
-  log_warning("--ignore-mask-label {}: no mask has this label; {} and the other masks have {}",
-              label_, first->mask.string(), labels);
+  log_warning("{} {}: no mask has this label; {} and the other masks have {}", setting_, label_,
+              first->mask.string(), labels);
 }
 
 }  // namespace axial::densify

@@ -6,6 +6,7 @@
 #include <bitset>
 #include <mutex>
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "densify/project.h"
 
@@ -19,7 +20,8 @@ void choose_masks(Project& project, const Settings& settings);
 // Collects labels of masks to tell whether any mask has the label to ignore. Thread-safe.
 class LabelCheck {
  public:
-  explicit LabelCheck(int label) : label_(label) {}
+  explicit LabelCheck(const Settings& settings)
+      : label_(settings.ignore_mask_label), setting_(settings.name_of("ignore_mask_label")) {}
 
   void add(const cv::Mat1w& labels);
 
@@ -29,6 +31,7 @@ class LabelCheck {
 
  private:
   const int label_;
+  const std::string setting_;  // the name of the setting of the label
   std::atomic<bool> seen_ = false;
   std::mutex mutex_;
   std::bitset<65536> others_;

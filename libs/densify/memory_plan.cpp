@@ -82,8 +82,8 @@ MemoryPlan plan_memory(const Project& project, const Settings& settings) {
   const std::uint64_t fixed = bytes.scene + kProgramBytes;
   const std::uint64_t least = fixed + least_bytes(bytes, lists, 1);
   if (limit < least)
-    fail("--max-memory {}: {} MB are too little, this scene needs {} MB", settings.max_memory,
-         limit / kMegabyte, least / kMegabyte + 1);
+    fail("{} {}: {} MB are too little, this scene needs {} MB", settings.name_of("max_memory"),
+         settings.max_memory, limit / kMegabyte, least / kMegabyte + 1);
   const MemoryPlan plan = share_out(bytes, lists, limit - fixed, thread_count());
   log_details(
       "Memory {} MB, at least {}: {} images at a time, {} kept, {} depths, {} maps, {} in fusion",

@@ -25,7 +25,7 @@ struct MemoryPlan {
 // The plan for a project as load_project returns it. It fits the project's largest image and
 // longest lists of sources and neighbours. Caches have at most 48 entries: images are processed in
 // order, where more entries hardly help, and the memory of a run must not grow with the number of
-// images. Error that names --max-memory, its value and the necessary value if not even one image at
+// images. Error that names max_memory, its value and the necessary value if not even one image at
 // a time fits, or if the scene does not fit while it is written (when no images are cached).
 MemoryPlan plan_memory(const Project& project, const Settings& settings);
 

@@ -43,13 +43,13 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 }
 
 // Error if the output is a file that the reconstruction reads, writes or resumes.
-void check_side_output(const char* option, const fs::path& output,
+void check_side_output(const std::string& setting, const fs::path& output,
                        const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
   if (output.empty()) return;
-  require_not_an_input(output, inputs, option);
+  require_not_an_input(output, inputs, setting);
   for (const fs::path& other : outputs)
     if (is_one_file(output, other))
-      fail("{} {}: is also the file name of the run's {}", option, output.string(),
+      fail("{} {}: is also the file name of the run's {}", setting, output.string(),
            other.filename().string());
 }
 
@@ -67,14 +67,14 @@ std::vector<fs::path> scene_files(const Settings& settings) {
 }
 
 void check_outputs(const Settings& settings) {
-  require_no_inputs(cloud_outputs(settings), scene_files(settings), "--output-file");
+  require_no_inputs(cloud_outputs(settings), scene_files(settings), settings.name_of("output"));
   if (!settings.neighbour_lists_output.empty())
     require_not_an_input(settings.neighbour_lists_output, scene_files(settings),
-                         "--output-view-neighbors-file");
+                         settings.name_of("neighbour_lists_output"));
   require_writable(settings.output);
   require_writable(cloud_file(settings));
   if (!settings.report.empty()) {
-    require_not_an_input(settings.report, scene_files(settings), "--report-file");
+    require_not_an_input(settings.report, scene_files(settings), settings.name_of("report"));
     require_writable(settings.report);
   }
   require_writable(settings.working_folder / "depth0000.dmap");
@@ -84,18 +84,18 @@ void check_outputs(const Settings& settings) {
 void check_outputs(const Project& project, const Settings& settings) {
   std::vector<fs::path> inputs = scene_files(settings);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
-    inputs.push_back(project.scene.images[i].path);
+    inputs.emplace_back(project.scene.images[i].path);
     inputs.push_back(project.views[i].mask);
   }
-  require_no_inputs(cloud_outputs(settings), inputs, "--output-file");
+  require_no_inputs(cloud_outputs(settings), inputs, settings.name_of("output"));
   std::vector<fs::path> outputs = depth_outputs(project, settings);
-  require_no_inputs(outputs, inputs, "--working-folder");
+  require_no_inputs(outputs, inputs, settings.name_of("working_folder"));
   for (const fs::path& file : cloud_outputs(settings)) outputs.push_back(file);
   outputs.push_back(io::housing_beside(settings.output));
   outputs.push_back(io::geo_offset_beside(settings.output));
-  check_side_output("--report-file", settings.report, inputs, outputs);
-  check_side_output("--output-view-neighbors-file", settings.neighbour_lists_output, inputs,
-                    outputs);
+  check_side_output(settings.name_of("report"), settings.report, inputs, outputs);
+  check_side_output(settings.name_of("neighbour_lists_output"), settings.neighbour_lists_output,
+                    inputs, outputs);
 }
 
 }  // namespace axial::densify

@@ -11,7 +11,7 @@ namespace axial::densify {
 std::vector<std::filesystem::path> scene_files(const Settings& settings);
 
 // Called before the scene is read. Also removes unfinished files of runs that were stopped. Error
-// that names a file that cannot be written, or the option and both files where an output is one of
+// that names a file that cannot be written, or the setting and both files where an output is one of
 // scene_files().
 void check_outputs(const Settings& settings);
 

@@ -230,9 +230,9 @@ class Export {
     const std::size_t count = project_.references.size();
     if (cut > 0)
       log_warning(
-          "--pinhole-export: {} of {} images have a wider field of view than a pinhole can show: "
+          "{}: {} of {} images have a wider field of view than a pinhole can show: "
           "their edges are cut off",
-          cut, count);
+          settings_.name_of("pinhole_export"), cut, count);
     log_info(
         "{}: {} pinhole images, {:.1f} % of their pixels on a known surface: OpenMVS's programs "
         "can use scene.mvs, scene.ply and the depth maps in this folder",

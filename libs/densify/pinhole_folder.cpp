@@ -27,7 +27,7 @@ fs::path exported_name(const SceneImage& image, const fs::path& photographs) {
 
 namespace {
 
-void check_names(const Project& project) {
+void check_names(const Project& project, const Settings& settings) {
   const fs::path photographs = io::common_image_folder(project.scene);
   std::map<fs::path, const std::string*> taken;
   for (const std::size_t image : project.references) {
@@ -35,17 +35,18 @@ void check_names(const Project& project) {
     const fs::path name = exported_name(project.scene.images[image], photographs);
     for (const fs::path& file : {name, io::mask_beside(name)})
       if (const auto [other, added] = taken.try_emplace(file, &path); !added)
-        fail("--pinhole-export: {} and {} would both be exported as images/{}", *other->second,
-             path, file.string());
+        fail("{}: {} and {} would both be exported as images/{}",
+             settings.name_of("pinhole_export"), *other->second, path, file.string());
   }
 }
 
 void check_folder(const Project& project, const Settings& settings) {
   const fs::path& folder = settings.pinhole_export;
+  const std::string setting = settings.name_of("pinhole_export");
   std::error_code error;
   if (!fs::exists(folder, error)) return;
   if (!fs::is_directory(folder, error))
-    fail("--pinhole-export {}: is a file, not a folder", folder.string());
+    fail("{} {}: is a file, not a folder", setting, folder.string());
   // The folders that contain inputs, at any depth.
   std::set<fs::path> inputs;
   const auto add = [&](fs::path above) {
@@ -57,13 +58,12 @@ void check_folder(const Project& project, const Settings& settings) {
   for (const SceneImage& image : project.scene.images) add(fs::path(image.path).parent_path());
   for (const fs::path& input : inputs)
     if (fs::equivalent(folder, input, error))
-      fail("--pinhole-export {}: contains inputs of this run", folder.string());
+      fail("{} {}: contains inputs of this run", setting, folder.string());
   if (fs::exists(folder / kPinholeMarker, error)) {
     if (!io::read_json(folder / kPinholeMarker).is_object())
       fail("{}: is not the list of an earlier export", (folder / kPinholeMarker).string());
   } else if (!fs::is_empty(folder, error))
-    fail("--pinhole-export {}: contains other files: give an empty or a new folder",
-         folder.string());
+    fail("{} {}: contains other files: give an empty or a new folder", setting, folder.string());
 }
 
 }  // namespace
@@ -91,11 +91,12 @@ void check_pinhole_export(const Project& project, const Settings& settings) {
   if (settings.pinhole_export.empty()) return;
   if (all_pinholes(project))
     fail(
-        "--pinhole-export {}: no image of {} has a port or a distorted lens: OpenMVS can use the "
-        "other results of this run directly",
-        settings.pinhole_export.string(), settings.input.string());
+        "{} {}: no image of {} has a port or a distorted lens: OpenMVS can use the other "
+        "results of this run directly",
+        settings.name_of("pinhole_export"), settings.pinhole_export.string(),
+        settings.input.string());
   check_folder(project, settings);
-  check_names(project);
+  check_names(project, settings);
   require_writable_folder(settings.pinhole_export);
 }
 

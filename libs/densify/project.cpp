@@ -51,8 +51,8 @@ std::optional<io::Housing> attach_housing(Scene& scene, const LocalFrame& frame,
   std::error_code error;
   if (!fs::exists(file, error)) {
     if (demanded || !settings.housing.empty())
-      fail("{}: housing file not found; --refractive needs a housing file (see --housing)",
-           file.string());
+      fail("{}: housing file not found; {} needs a housing file (see {})", file.string(),
+           settings.name_of("refractive"), settings.name_of("housing"));
     return {};
   }
   const io::Housing housing = io::read_housing(file);
@@ -67,13 +67,14 @@ std::optional<io::Housing> attach_housing(Scene& scene, const LocalFrame& frame,
   }
   if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
   if (flat < images && settings.camera == CameraChoice::flat_port)
-    fail("{}: only {} of {} images have a flat port, but --camera-model is flatport", file.string(),
-         flat, images);
+    fail("{}: only {} of {} images have a flat port, but {}", file.string(), flat, images,
+         settings.name_of("camera is flat_port"));
   log_info("Housing {}: {} of {} images behind a port", file.filename().string(), wet, images);
   if (wet > 0) return housing;
   if (!settings.housing.empty() && !housing.ports.empty())
-    UnusedInput(settings.allow_missing)
-        .report(fmt::format("--housing {}: gives no image a port", file.string()));
+    UnusedInput(settings.allow_missing, settings.name_of("allow_missing"))
+        .report(fmt::format("{} {}: gives no image a port", settings.name_of("housing"),
+                            file.string()));
   return {};
 }
 
@@ -103,7 +104,8 @@ void find_bit_depth(Project& project, const Settings& settings) {
     photographs.emplace_back(project.scene.images[i].path);
     headers.push_back(project.views[i].file);
   }
-  project.bit_depth = io::common_bit_depth(photographs, headers, settings.bit_depth);
+  project.bit_depth =
+      io::common_bit_depth(photographs, headers, settings.bit_depth, settings.name_of("bit_depth"));
 }
 
 void load_views(Project& project, const Settings& settings) {

@@ -42,9 +42,10 @@ void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
   const std::uint64_t cap = memory_limit(settings), least = bytes + kProgramBytes;
   if (bytes > kProgramBytes && cap < least)
     fail(
-        "--max-memory {}: {} MB are too little, this scene needs at least {} MB for reading and "
-        "for scoring its views",
-        settings.max_memory, cap / kMegabyte, least / kMegabyte + 1);
+        "{} {}: {} MB are too little, this scene needs at least {} MB for reading and for "
+        "scoring its views",
+        settings.name_of("max_memory"), settings.max_memory, cap / kMegabyte,
+        least / kMegabyte + 1);
 }
 
 }  // namespace

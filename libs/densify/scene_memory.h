@@ -7,7 +7,7 @@
 
 namespace axial::densify {
 
-// Error that names --max-memory, its value and the least necessary value if the scene of
+// Error that names max_memory, its value and the least necessary value if the scene of
 // settings.input is too large to be read and its views scored. The estimate uses the scene's
 // counts, before the scene is read. Small scenes that need less than the program itself pass here;
 // plan_memory then reports the whole need.

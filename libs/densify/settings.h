@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/setting_names.h"
 #include "cloud/fuse.h"
 #include "depth/filters.h"
 #include "depth/options.h"
@@ -77,6 +78,9 @@ struct Settings {
   Pictures pictures = Pictures::none;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
   unsigned max_threads = 0;      // 0: as many as cores
+
+  // How errors and warnings name the fields of this struct.
+  SettingNames name_of = own_name;
 };
 
 // Whether the cloud takes colours from the images.

@@ -179,7 +179,7 @@ void draw_neighbour(const DepthMap& neighbour, const DepthMap& reference, Canvas
 void weigh_contradictions(const DepthMap& neighbour, const DepthMap& reference,
                           const std::vector<Ray>& rays, float same_surface, Canvas& canvas) {
   const Motion motion(reference.pose, neighbour.pose);
-  const float* depths = reference.depth.ptr<float>();
+  const auto* depths = reference.depth.ptr<float>();
   std::visit(
       [&](const auto& camera) {
         for (std::size_t pixel = 0; pixel < rays.size(); ++pixel) {
@@ -217,8 +217,8 @@ struct Adjuster {
   Votes votes_at(int y, int x, std::size_t pixel) const {
     const float depth = reference.depth(y, x);
     Votes votes(depth, confidence_at(reference, y, x));
-    for (std::size_t n = 0; n < canvases.size(); ++n) {
-      const Splat& splat = canvases[n].at(pixel);
+    for (const Canvas& canvas : canvases) {
+      const Splat& splat = canvas.at(pixel);
       if (!(splat.depth > 0)) continue;
       if (std::abs(depth - splat.depth) < options.max_difference * depth) {
         votes.weighted_depth += splat.depth * splat.confidence;

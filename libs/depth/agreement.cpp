@@ -133,7 +133,7 @@ struct CellMedian {
 };
 
 CellMedian median_of_cell(std::vector<double>& values) {
-  const double count = static_cast<double>(values.size());
+  const auto count = static_cast<double>(values.size());
   const double middle = median(values);
   for (double& value : values) value = std::abs(value - middle);
   return {std::abs(middle), 1.2533 * 1.4826 * median(values) / std::sqrt(count)};

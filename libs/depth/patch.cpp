@@ -30,7 +30,7 @@ void PatchSampler::gather_window(const cv::Mat1b& image, int x, int y,
   for (int j = 0; j < kSide; ++j) {
     const int texel_y = y - kPatchRadius + j * kPatchStep;
     const bool row_inside = kWhole || (texel_y >= 0 && texel_y < image.rows);
-    const std::uint8_t* row = image.ptr<std::uint8_t>(row_inside ? texel_y : y);
+    const auto* row = image.ptr<std::uint8_t>(row_inside ? texel_y : y);
     for (std::size_t i = 0; i < kSide; ++i, ++k) {
       const int texel_x = x - kPatchRadius + static_cast<int>(i) * kPatchStep;
       const bool inside = kWhole || (row_inside && texel_x >= 0 && texel_x < image.cols);

@@ -95,6 +95,7 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
         if (options.warp == Warp::affine)
           run_sweeps_with<AffineWarp>(input, level, cameras, maps, options, first, sweeps, planes);
         else if constexpr (requires { cameras[0].lens(); })
+          // NOLINTNEXTLINE(bugprone-branch-clone): both branches are empty in other templates.
           run_sweeps_with<HomographyWarp>(input, level, cameras, maps, options, first, sweeps,
                                           planes);
         else if constexpr (std::is_same_v<decltype(cameras[0]), const AnyCamera<float>&>)
@@ -104,7 +105,7 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
         else
           fail(
               "the warp homography is only for lenses without distortion: undistort the images "
-              "(InterfaceCOLMAP --undistort 1)");
+              "first, with InterfaceCOLMAP");
       },
       make_camera_list<float>(level.cameras, input.projection));
 }
@@ -112,7 +113,7 @@ void run_sweeps(const MatchInput& input, const Level& level, std::span<const Dep
 std::vector<Eigen::Vector3f> points_in_camera(const MatchInput& input) {
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3f& point : input.sparse_points)
-    points.push_back(input.reference->pose.to_camera(point.cast<double>()).cast<float>());
+    points.emplace_back(input.reference->pose.to_camera(point.cast<double>()).cast<float>());
   return points;
 }
 

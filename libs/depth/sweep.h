@@ -141,6 +141,7 @@ class Sweep {
     std::uint64_t& scores;  // counted up
   };
 
+  // NOLINTNEXTLINE(readability-function-size): the inner loop, whose time is measured.
   void visit(Strip& strip, int x, int y, int step) {
     PlanePixel& current = map_.at(x, y);
     if (input_.mask && !(*input_.mask)(y, x)) return clear(current);

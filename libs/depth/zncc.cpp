@@ -18,8 +18,8 @@ QuadImage::QuadImage(const cv::Mat1b& image)
   };
   std::uint32_t* words = words_.data();
   for (int y = 0; y < height_; ++y, words += width_) {
-    const std::uint8_t* row = image.ptr<std::uint8_t>(y);
-    const std::uint8_t* below = image.ptr<std::uint8_t>(y + 1 < height_ ? y + 1 : y);
+    const auto* row = image.ptr<std::uint8_t>(y);
+    const auto* below = image.ptr<std::uint8_t>(y + 1 < height_ ? y + 1 : y);
     const int last = width_ - 1;  // separate, so that the loop can be vectorised
     for (int x = 0; x < last; ++x) words[x] = word(row[x], row[x + 1], below[x], below[x + 1]);
     words[last] = word(row[last], row[last], below[last], below[last]);

@@ -52,7 +52,7 @@ CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapMode
     result.names.push_back(image.name);
     source.push_back(image.pose.centre);
     target.push_back(found->second.centre);
-    apart.push_back(found->second.rotation.transpose() * image.pose.rotation);
+    apart.emplace_back(found->second.rotation.transpose() * image.pose.rotation);
   }
   if (source.size() < 3)
     fail("the models have {} images with the same name, a similarity needs at least 3",

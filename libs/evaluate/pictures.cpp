@@ -94,7 +94,7 @@ std::vector<Rgb> error_colors(std::span<const float> errors, double upper) {
   std::vector<Rgb> colors(errors.size(), Rgb{0, 0, 0});
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!std::isfinite(errors[i])) continue;
-    const cv::Vec3b bgr = table(0, level(static_cast<double>(errors[i]), 0, upper));
+    const cv::Vec3b& bgr = table(0, level(static_cast<double>(errors[i]), 0, upper));
     colors[i] = {bgr[2], bgr[1], bgr[0]};
   }
   return colors;

@@ -100,6 +100,7 @@ Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                         sizeof impl_->faces[0], impl_->faces.size());
   check(impl_->device);
+  // NOLINTNEXTLINE(bugprone-undefined-memory-manipulation): a Vector3f is three floats.
   std::memcpy(vertices, impl_->vertices.data(), impl_->vertices.size() * sizeof(Eigen::Vector3f));
   std::memcpy(faces, impl_->faces.data(), impl_->faces.size() * sizeof impl_->faces[0]);
   rtcCommitGeometry(geometry);

@@ -66,8 +66,7 @@ Json to_json(const SceneOptions& options) {
 
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options) {
   const std::string key = Fingerprint().add(io::to_text(to_json(options))).hex().substr(0, 8);
-  const SimulatedScene scene{chain.work /
-                             fmt::format("{}-{}-{}", options.preset, options.seed, key)};
+  SimulatedScene scene{chain.work / fmt::format("{}-{}-{}", options.preset, options.seed, key)};
   step(scene.folder, {to_json(options), content_of_programs({"SimulateUnderwater"})}, [&] {
     Words arguments = options_of(options);
     arguments += {"-o", scene.folder.string()};
@@ -165,7 +164,7 @@ double densify_seconds(const fs::path& dense) {
 
 fs::path fused_again(const Chain& chain, const fs::path& dense, const std::string& name,
                      const DenseOptions& options, const Words& fusion) {
-  const fs::path folder = dense / name;
+  fs::path folder = dense / name;
   Words densify = densify_words(dense, options);
   densify += fusion;
   densify += {"-o", (folder / "scene_dense.mvs").string()};

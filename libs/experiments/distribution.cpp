@@ -18,7 +18,7 @@ double Distribution::quantile(double q) const {
   const double width = upper_ / static_cast<double>(counts_.size());
   double below = 0;
   for (std::size_t k = 0; k < counts_.size(); ++k) {
-    const double here = static_cast<double>(counts_[k]);
+    const auto here = static_cast<double>(counts_[k]);
     if (here > 0 && below + here >= wanted)
       return width * (static_cast<double>(k) + (wanted - below) / here);
     below += here;

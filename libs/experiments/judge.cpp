@@ -182,6 +182,7 @@ Json depth_errors(const fs::path& dense, const SimulatedScene& scene, const std:
                   double tolerance) {
   const std::vector<fs::path> files = files_ending_in(dense, ".dmap");
   std::vector<DepthMap> maps;
+  maps.reserve(files.size());
   for (const fs::path& file : files) maps.push_back(io::read_dmap(file).map);
   std::vector<evaluate::DepthEvaluation> evaluations;
   std::vector<evaluate::ClassifiedMap> classified;

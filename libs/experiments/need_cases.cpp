@@ -109,7 +109,7 @@ std::string title_of(const NeedCase& one) {
     return fmt::format(fmt::runtime(format), one.value);
   };
   if (one.series == "port_distance_mm") return value("lens to glass {:g} mm");
-  const std::string scaled =
+  std::string scaled =
       fmt::format("everything but the port, times {:g}", one.scene.scale / usual_scene().scale);
   if (one.series == "scale") return scaled;
   if (one.series == "tilt_degrees") return value("tilt {:g}\u00b0");

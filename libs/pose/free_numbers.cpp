@@ -16,15 +16,16 @@ using Words = std::set<std::string>;
 using Flat = refractive::FlatPort<double>;
 using Dome = refractive::DomePort<double>;
 
-Words words_of(const std::string& list) {
+// In the functions below, `asked` is the list with its name, for messages.
+
+Words words_of(const std::string& list, const std::string& asked) {
   const Words known{"normal", "distance", "centre", "thickness", "index", "focal"};
   Words words;
   std::istringstream in(list);
   for (std::string word; std::getline(in, word, ',');) {
     if (word == "center") word = "centre";
     if (!known.contains(word))
-      fail("--refine {}: '{}' is not one of normal, distance, centre, thickness, index, focal",
-           list, word);
+      fail("{}: '{}' is not one of normal, distance, centre, thickness, index, focal", asked, word);
     words.insert(word);
   }
   return words;
@@ -43,41 +44,50 @@ bool all_behind_domes(const Bundle& bundle) {
   });
 }
 
-void check_ports(const std::string& refine, const Words& words, const Bundle& bundle) {
+void check_ports(const std::string& asked, const Words& words, const Bundle& bundle) {
   const bool in_air = std::ranges::any_of(
       bundle.cameras, [](const BundleCamera& camera) { return !camera.measured.port; });
   if (in_air && words.size() > words.count("focal"))
-    fail("--refine {}: there are images in air, which have no port", refine);
+    fail("{}: there are images in air, which have no port", asked);
   const bool of_flat = words.contains("normal") || words.contains("distance");
   if (of_flat && !any_behind<Flat>(bundle))
-    fail("--refine {}: there is a dome, which has a centre instead, and no flat port", refine);
+    fail("{}: there is a dome, which has a centre instead, and no flat port", asked);
   if (words.contains("centre") && !any_behind<Dome>(bundle))
-    fail(
-        "--refine {}: there is a flat port, which has a normal and a distance instead, and no dome",
-        refine);
+    fail("{}: there is a flat port, which has a normal and a distance instead, and no dome", asked);
 }
 
-void check_known(const std::string& refine, const Words& words, const Sigmas& sigmas,
-                 const AdjustOptions& adjust) {
+void check_known(const std::string& asked, const Words& words, const Sigmas& sigmas,
+                 const AdjustOptions& adjust, SettingNames name_of) {
   const bool metric = adjust.points_known || adjust.poses_known || !adjust.distances.empty() ||
                       !adjust.positions.empty();
   if (words.contains("distance") && !(sigmas.distance > 0) && !metric)
     fail(
-        "--refine {}: the distance needs --distance-sigma, --scale-from or --poses known, because "
-        "the photographs show only its ratio to other lengths",
-        refine);
+        "{}: the distance needs {}, {} or {}, because the photographs show only its ratio to other "
+        "lengths",
+        asked, name_of("distance_sigma"), name_of("distances"), name_of("poses_known"));
   if (words.contains("thickness") && !(sigmas.thickness > 0))
-    fail(
-        "--refine {}: the thickness needs --thickness-sigma, because photographs hardly "
-        "distinguish it from the distance",
-        refine);
+    fail("{}: the thickness needs {}, because photographs hardly distinguish it from the distance",
+         asked, name_of("thickness_sigma"));
+}
+
+void check_sigma(const Words& words, const std::string& word, double sigma, SettingNames name_of) {
+  const std::string setting = name_of(word + "_sigma");
+  if (!(sigma >= 0 && std::isfinite(sigma))) fail("{} {}: must be 0 or more", setting, sigma);
+  if (sigma > 0 && !words.contains(word))
+    fail("{} {}: {} does not name {}", setting, sigma, name_of("refine"), word);
+}
+
+void check_sigmas(const Words& words, const Sigmas& sigmas, SettingNames name_of) {
+  check_sigma(words, "normal", sigmas.normal_degrees, name_of);
+  check_sigma(words, "distance", sigmas.distance, name_of);
+  check_sigma(words, "centre", sigmas.centre, name_of);
+  check_sigma(words, "thickness", sigmas.thickness, name_of);
+  check_sigma(words, "index", sigmas.index, name_of);
+  check_sigma(words, "focal", sigmas.focal, name_of);
 }
 
 void set(const Words& words, const std::string& word, double sigma, double scale,
          std::initializer_list<std::size_t> numbers, Unknowns& unknowns) {
-  if (!(sigma >= 0 && std::isfinite(sigma))) fail("--{}-sigma {}: must be 0 or more", word, sigma);
-  if (sigma > 0 && !words.contains(word))
-    fail("--{}-sigma {}: --refine does not name {}", word, sigma, word);
   if (!words.contains(word)) return;
   for (const std::size_t number : numbers) {
     unknowns.free[number] = true;
@@ -131,9 +141,11 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas) {
 }
 
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                      AdjustOptions& adjust) {
-  const Words words = words_of(refine);
-  check_ports(refine, words, bundle);
+                      AdjustOptions& adjust, SettingNames name_of) {
+  const std::string asked = name_of("refine") + " " + refine;
+  const Words words = words_of(refine, asked);
+  check_ports(asked, words, bundle);
+  check_sigmas(words, sigmas, name_of);
   Unknowns flat, dome;
   set(words, "normal", sigmas.normal_degrees, 1 / kDegrees, {0, 1}, flat);
   set(words, "distance", sigmas.distance, 1, {2}, flat);
@@ -147,7 +159,7 @@ void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bun
   static_cast<Unknowns&>(adjust) = others ? flat : dome;
   adjust.of_domes.reset();
   if (domes && others) adjust.of_domes = dome;
-  check_known(refine, words, sigmas, adjust);
+  check_known(asked, words, sigmas, adjust, name_of);
 }
 
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/option_list.h"
+#include "base/setting_names.h"
 #include "pose/adjust.h"
 
 namespace axial::pose {
@@ -23,8 +24,8 @@ struct Sigmas {
 // itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// Sets the unknowns of `adjust` from the value of --refine, a comma-separated list of normal,
-// distance, centre, thickness, index and focal. Normal and distance apply to flat ports, centre to
+// Sets the unknowns of `adjust` from `refine`, a comma-separated list of normal, distance, centre,
+// thickness, index and focal. Normal and distance apply to flat ports, centre to
 // domes, the other words to all cameras.
 //
 // Error for an unknown word; for normal or distance without a flat port; for centre without a dome;
@@ -32,10 +33,14 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas);
 // of a number that `refine` does not name; for a thickness without a standard deviation, since its
 // effect looks like that of the distance; for a distance of a flat port where neither its standard
 // deviation nor any length is known, since photographs show only the ratio of lengths.
+//
+// Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
+// "thickness_sigma", "index_sigma" and "focal_sigma", and as ways to a known length "distances" and
+// "poses_known" of AdjustOptions.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
-                      AdjustOptions& adjust);
+                      AdjustOptions& adjust, SettingNames name_of = own_name);
 
-// The words of --refine for the place of the port: "normal,distance" or "centre".
+// The words of `refine` for the place of the port: "normal,distance" or "centre".
 std::string place_words(const refractive::Port<double>& port);
 
 enum class Quantity { angle, place, index, thickness, focal };

@@ -103,7 +103,7 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
           (best && found >= best->rms_found))
         continue;
       const double sigma = observed_pixel_sigma(trial, freeing);
-      const double n = static_cast<double>(part.observations.size());
+      const auto n = static_cast<double>(part.observations.size());
       FreedNumber freed = moved_most(part, trial, freeing);
       freed.rms_stated = stated;
       freed.rms_found = found;
@@ -116,7 +116,7 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
   return best;
 }
 
-std::string warning_of(const FreedNumber& freed, double scale_sigma) {
+std::string warning_of(const FreedNumber& freed, double scale_sigma, SettingNames name_of) {
   const auto value = [&](double number) {
     return fmt::format("{:.4g}{}{}", number, freed.unit.empty() ? "" : " ", freed.unit);
   };
@@ -129,9 +129,9 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma) {
   return fmt::format(
       "Lens, port and scale do not fit the photographs: with {} at {} (given: {}, {} standard "
       "deviations away), errors are {:.3f} px instead of {:.3f} px (RMS). {}Measure this value "
-      "again, or adjust it with --refine",
+      "again, or adjust it with {}",
       freed.name, value(freed.found), value(freed.stated), deviations, freed.rms_found,
-      freed.rms_stated, lengths);
+      freed.rms_stated, lengths, name_of("refine"));
 }
 
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits) {

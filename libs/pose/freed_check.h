@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/setting_names.h"
 #include "pose/refine.h"
 
 namespace axial::pose {
@@ -33,8 +34,10 @@ std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options);
 
 // The warning that names the number. `scale_sigma`: the relative standard deviation of lengths that
-// the adjustment reports; infinite if it reports none.
-std::string warning_of(const FreedNumber& freed, double scale_sigma);
+// the adjustment reports; infinite if it reports none. `name_of` names the setting "refine", the
+// list of numbers to adjust.
+std::string warning_of(const FreedNumber& freed, double scale_sigma,
+                       SettingNames name_of = own_name);
 
 // One line for each reason that dropped more than a quarter of the observations (observations that
 // repeat a point in an image do not count). Only large errors question the housing; few

@@ -135,6 +135,7 @@ PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_erro
   // tolerance is wider.
   const std::vector<PortChange> changes = likely_changes(bundle);
   std::vector<double> residuals;
+  residuals.reserve(changes.size());
   for (const PortChange& change : changes)
     residuals.push_back(track_residual(changed(bundle, change)));
   const double least = *std::ranges::min_element(residuals);
@@ -192,14 +193,14 @@ std::string advice_for(const PortChange& change) {
     case Of::port_left_out:
       return "RefinePoses, with the lens calibrated in air, computes refractive poses from them";
     case Of::thin_port:
-      return "give --housing";
+      return "give the housing";
     case Of::scale:
-      return "scale the model to metres with AlignModel or RefinePoses --scale-from; the port's "
+      return "scale the model to metres with AlignModel or RefinePoses; the port's "
              "lengths must also be in metres";
     case Of::focal:
       return "use the lens calibrated in air, at this image size";
     default:
-      return "check lens, port and scale; RefinePoses --refine can adjust values that were "
+      return "check lens, port and scale; RefinePoses can adjust values that were "
              "measured with low precision";
   }
 }

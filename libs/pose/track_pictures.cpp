@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pose/track_pictures.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,6 +39,18 @@ Tangents tangents_at(const Eigen::Vector3d& point, const Eigen::Vector3d& first,
   const Eigen::Vector3d u = sight.unitOrthogonal();
   const double step = 2e-3 * (point - first).norm();  // a pixel or two
   return {point, step * u, step * sight.cross(u)};
+}
+
+// The patch of a photograph that the camera at `pose` sees at the tangents. Empty if the camera
+// does not see them.
+std::optional<Patch> patch_of(const PhotographCamera& camera, const Pose& pose,
+                              const Tangents& at) {
+  const auto see = [&](const Eigen::Vector3d& x) { return camera.image(pose.to_camera(x)); };
+  const PhotographImage centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
+  if (!centre.visible || !u.visible || !v.visible) return {};
+  Patch result{centre.pixel, {}};
+  result.along << u.pixel - centre.pixel, v.pixel - centre.pixel;
+  return result;
 }
 
 cv::Mat1f grey_picture(const std::filesystem::path& file, cv::Size size) {
@@ -161,38 +174,26 @@ std::optional<double> TrackPictures::behind(const Bundle& bundle) const {
 
 std::optional<double> TrackPictures::agreement(const Bundle& bundle, bool at_observations) const {
   const std::vector<PhotographCamera> cameras = cameras_now(bundle);
+  const auto patch = [&](std::size_t image, std::size_t observation, const Tangents& at) {
+    const BundleImage& from = bundle.images[image];
+    std::optional<Patch> result = patch_of(cameras[from.camera], from.pose, at);
+    if (result && at_observations) result->centre = in_air_.observations[observation].pixel;
+    return result;
+  };
   std::vector<double> values;
-  std::size_t compared = 0;
   for (const Pair& pair : pairs_) {
     if (pair.pictures[0].empty() || pair.pictures[1].empty()) continue;
     for (const auto& [point, i, j] : pair.shared) {
-      const auto patch = [&](std::size_t image, std::size_t observation,
-                             const Tangents& at) -> std::optional<Patch> {
-        const BundleImage& from = bundle.images[image];
-        const auto see = [&](const Eigen::Vector3d& x) -> std::optional<Eigen::Vector2d> {
-          const PhotographImage seen = cameras[from.camera].image(from.pose.to_camera(x));
-          if (!seen.visible) return {};
-          return seen.pixel;
-        };
-        const auto centre = see(at.point), u = see(at.point + at.u), v = see(at.point + at.v);
-        if (!centre || !u || !v) return {};
-        Patch result{*centre, {}};
-        result.along << *u - *centre, *v - *centre;
-        if (at_observations) result.centre = in_air_.observations[observation].pixel;
-        return result;
-      };
       const Tangents at =
           tangents_at(bundle.points[point].position, bundle.images[pair.first].pose.centre,
                       bundle.images[pair.second].pose.centre);
       const auto a = patch(pair.first, i, at), b = patch(pair.second, j, at);
       if (!a || !b) continue;
-      const auto value = correlation(pair.pictures[0], *a, pair.pictures[1], *b);
-      if (!value) continue;
-      ++compared;
-      values.push_back(*value);
+      if (const auto value = correlation(pair.pictures[0], *a, pair.pictures[1], *b))
+        values.push_back(*value);
     }
   }
-  if (compared < kLeastPoints) return {};
+  if (values.size() < kLeastPoints) return {};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;

@@ -123,6 +123,28 @@ std::vector<bool> connected_images(const Bundle& bundle, std::size_t limit, bool
   return chosen;
 }
 
+// Leaves out images and cameras without observations: they would be unknowns of the adjustment.
+Bundle only_observed(Bundle part) {
+  std::vector<std::size_t> image_place(part.images.size(), kNone),
+      camera_place(part.cameras.size(), kNone);
+  Bundle result{{}, {}, std::move(part.points), std::move(part.observations)};
+  for (Observation& observation : result.observations) {
+    std::size_t& image = image_place[observation.image];
+    if (image == kNone) {
+      image = result.images.size();
+      result.images.push_back(part.images[observation.image]);
+      std::size_t& camera = camera_place[result.images.back().camera];
+      if (camera == kNone) {
+        camera = result.cameras.size();
+        result.cameras.push_back(part.cameras[result.images.back().camera]);
+      }
+      result.images.back().camera = camera;
+    }
+    observation.image = image;
+  }
+  return result;
+}
+
 }  // namespace
 
 io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits) {
@@ -161,25 +183,7 @@ Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behi
     observation.point = place[observation.point];
     part.observations.push_back(observation);
   }
-  // Leaves out images and cameras without observations: they would be unknowns of the adjustment.
-  std::vector<std::size_t> image_place(bundle.images.size(), kNone),
-      camera_place(bundle.cameras.size(), kNone);
-  Bundle result{{}, {}, std::move(part.points), std::move(part.observations)};
-  for (Observation& observation : result.observations) {
-    std::size_t& image = image_place[observation.image];
-    if (image == kNone) {
-      image = result.images.size();
-      result.images.push_back(bundle.images[observation.image]);
-      std::size_t& camera = camera_place[result.images.back().camera];
-      if (camera == kNone) {
-        camera = result.cameras.size();
-        result.cameras.push_back(bundle.cameras[result.images.back().camera]);
-      }
-      result.images.back().camera = camera;
-    }
-    observation.image = image;
-  }
-  return result;
+  return only_observed(std::move(part));
 }
 
 }  // namespace axial::pose

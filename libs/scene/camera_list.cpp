@@ -57,7 +57,7 @@ CameraList<T> make_camera_list(std::span<const CameraModel> models, ProjectionMe
   if (distorted && method == ProjectionMethod::line_search)
     fail(
         "the projection line-search is only for lenses without distortion: undistort the images "
-        "(InterfaceCOLMAP --undistort 1)");
+        "first, with InterfaceCOLMAP");
   if (!flat && !dome) {
     if (distorted) return with_distortion<T>(models);
     std::vector<refractive::PinholeCamera<T>> cameras;

@@ -51,7 +51,7 @@ LocalFrame frame_of(const Scene& scene) {
   std::vector<Eigen::Vector3d> centres, points;
   for (const SceneImage& image : scene.images)
     if (image.calibrated) centres.push_back(image.pose.centre);
-  for (const SparsePoint& point : scene.points) points.push_back(point.position.cast<double>());
+  for (const SparsePoint& point : scene.points) points.emplace_back(point.position.cast<double>());
   return frame_of(centres, points);
 }
 

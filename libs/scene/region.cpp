@@ -26,6 +26,7 @@ ViewingCentre viewing_centre(const std::vector<const Pose*>& poses) {
   Eigen::Vector3d middle, direction = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
+    values.reserve(poses.size());
     for (const Pose* pose : poses) values.push_back(pose->centre(axis));
     middle(axis) = median(std::move(values));
   }

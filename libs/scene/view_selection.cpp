@@ -10,7 +10,7 @@ namespace {
 
 // The reason why an image is unsuitable as a source view; null if it is suitable.
 const char* unsuitable_for(const ViewScore& view, const ViewSelectionOptions& options) {
-  const double scale = static_cast<double>(view.scale), angle = static_cast<double>(view.angle);
+  const auto scale = static_cast<double>(view.scale), angle = static_cast<double>(view.angle);
   if (angle < options.min_angle) return "seen under too small an angle";
   if (angle > options.max_angle) return "seen under too large an angle";
   if (scale < options.min_scale || scale > options.max_scale) return "of too different a scale";

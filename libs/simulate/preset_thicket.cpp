@@ -60,7 +60,8 @@ void add_rope(Terrain& terrain, double thickness, RandomSequence& random) {
   Tube rope;
   for (int i = 0; i < kPoints; ++i) {
     const double t = 2.0 * i / (kPoints - 1) - 1;
-    rope.spine.push_back(middle + kHalf * t * along + Eigen::Vector3d(0, 0, sag * (t * t - 0.3)));
+    rope.spine.emplace_back(middle + kHalf * t * along +
+                            Eigen::Vector3d(0, 0, sag * (t * t - 0.3)));
     rope.radii.push_back(0.5 * thickness);
   }
   terrain.tubes.push_back(std::move(rope));

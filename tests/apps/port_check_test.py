@@ -116,7 +116,7 @@ class Import(ProgramTest):
         self.warns("The poses were computed without the port", medium="air", housing={})
 
     def test_a_housing_that_is_forgotten(self):
-        self.warns("give --housing")
+        self.warns("give the housing")
 
     def test_the_same_line_for_any_number_of_threads(self):
         wrong = {"n_water": 1.49}

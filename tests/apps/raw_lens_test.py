@@ -84,7 +84,7 @@ class OpencvLens(LensTest):
     def test_what_cannot_be_done_is_said(self):
         self.import_scene("water", "wrong")
         for option in (("--projection", "line-search"), ("--warp", "homography")):
-            self.refuses("--undistort 1", "DensifyPointCloud", "-i", "scene.mvs", "-w",
+            self.refuses("undistort the images first", "DensifyPointCloud", "-i", "scene.mvs", "-w",
                          self.path("wrong"), "--refractive", *option, *QUICK)
         write(self.path("wrong", "scene.lenses.json"), '{ "version": 1 }\n')
         self.refuses("scene.lenses.json", "DensifyPointCloud", "-i", "scene.mvs", "-w",

@@ -10,9 +10,11 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/log.h"
 #include "io/images/image.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
@@ -25,6 +27,9 @@ namespace axial::densify {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
 
 CameraModel camera() {
   CameraModel model;
@@ -146,7 +151,7 @@ TEST_F(Densify, ThreadsAndMemoryDoNotChangeTheCloud) {
   use_folder("other");
   const std::uint64_t least = least_memory(settings_);
   settings_.max_memory = least - 1;
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }), testing::HasSubstr("are too little"));
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr("are too little"));
   settings_.max_memory = least;
   for (const unsigned threads : {0u, 1u}) {
     use_folder("threads" + std::to_string(threads));
@@ -184,14 +189,52 @@ TEST_F(Densify, ExportsAndListsMakeNoDepthMaps) {
 TEST_F(Densify, RefusesToOverwriteInputs) {
   const std::string scene = read_file(settings_.input);
   settings_.output = settings_.input;
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }),
-              testing::HasSubstr(settings_.input.string()));
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr(settings_.input.string()));
   EXPECT_EQ(read_file(settings_.input), scene);
   use_folder("out");
   settings_.other_inputs = {folder_ / "out" / "dense.ply"};
   write_atomically(settings_.other_inputs.front(), "the caller's");
-  EXPECT_THAT(test::error_of([&] { densify(settings_); }), testing::HasSubstr("dense.ply"));
+  EXPECT_THAT(test::error_of([&] { densify(settings_); }), HasSubstr("dense.ply"));
   EXPECT_EQ(read_file(settings_.other_inputs.front()), "the caller's");
+}
+
+TEST_F(Densify, ErrorsNameSettingsInTheWordsOfTheCaller) {
+  fs::create_directories(folder_ / "no_masks");
+  Settings memory = settings_, output = settings_, report = settings_, lists = settings_,
+           masks = settings_, housing = settings_, maps = settings_, pinholes = settings_;
+  memory.max_memory = 1;
+  output.output = settings_.input;
+  report.report = settings_.input;
+  lists.neighbour_lists_output = settings_.input;
+  masks.mask_folder = folder_ / "no_masks";
+  masks.ignore_mask_label = 0;
+  housing.refractive = true;
+  maps.make_maps = false;
+  pinholes.pinhole_export = folder_ / "pinholes";
+  const std::pair<std::string, Settings*> cases[] = {
+      {"max_memory 1: ", &memory},  {"output ", &output},
+      {"report ", &report},         {"neighbour_lists_output ", &lists},
+      {"mask_folder ", &masks},     {"refractive needs", &housing},
+      {"make_maps false: ", &maps}, {"pinhole_export ", &pinholes}};
+  for (const auto& [words, settings] : cases) {
+    const auto error = [&] { return test::error_of([&] { densify(*settings); }); };
+    EXPECT_THAT(error(), AllOf(HasSubstr(words), Not(ContainsRegex("--[a-z]"))));
+    settings->name_of = [](std::string_view setting) { return fmt::format("<{}", setting); };
+    EXPECT_THAT(error(), HasSubstr("<" + words));
+  }
+}
+
+TEST_F(Densify, WarningsNameSettingsInTheWordsOfTheCaller) {
+  settings_.mask_folder = folder_;
+  settings_.neighbour_lists_output = folder_ / "lists.txt";
+  const LogCapture log;
+  densify(settings_);
+  EXPECT_THAT(log.text(), HasSubstr("mask_folder " + folder_.string() +
+                                    ": is not used, because ignore_mask_label is -1\n"));
+  EXPECT_THAT(log.text(), Not(ContainsRegex("--[a-z]")));
+  settings_.name_of = [](std::string_view setting) { return fmt::format("<{}>", setting); };
+  densify(settings_);
+  EXPECT_THAT(log.text(), HasSubstr("because <ignore_mask_label> is -1\n"));
 }
 
 }  // namespace

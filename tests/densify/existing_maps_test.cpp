@@ -71,10 +71,10 @@ TEST_F(ExistingMapsTest, ForeignMapsAreOverwrittenOnlyIfAllowed) {
     return test::error_of([&] { check_overwriting(project_, settings_, found()); });
   };
   EXPECT_THAT(error(), AllOf(HasSubstr(file(1).string()), HasSubstr("1 of 3"),
-                             HasSubstr("--fusion-mode -1"), HasSubstr("--overwrite-dmaps 1")));
+                             HasSubstr("make_maps false"), HasSubstr("overwrite_dmaps true")));
   // A foreign map counts as that of a pinhole: behind a port it cannot be fused.
   project_.scene.images[1].camera = test::behind_port(test::dry_camera());
-  EXPECT_THAT(error(), AllOf(Not(HasSubstr("--fusion-mode -1")), HasSubstr("--overwrite-dmaps 1")));
+  EXPECT_THAT(error(), AllOf(Not(HasSubstr("make_maps false")), HasSubstr("overwrite_dmaps true")));
   settings_.overwrite_dmaps = true;
   EXPECT_NO_THROW(check_overwriting(project_, settings_, found()));
 }

@@ -225,7 +225,7 @@ TEST(MemoryPlan, RefusesLessThanTheLeastAndNamesIt) {
   from.settings.max_memory = 100;
   const std::string error = test::error_of([&] { plan_memory(from.project, from.settings); });
   EXPECT_THAT(error,
-              testing::StartsWith("--max-memory 100: 100 MB are too little, this scene needs "));
+              testing::StartsWith("max_memory 100: 100 MB are too little, this scene needs "));
   const std::uint64_t needed = std::stoull(error.substr(error.find("needs ") + 6));
   // The need contains what the process has allocated, which may differ a little at the next call.
   from.settings.max_memory = needed + 1;

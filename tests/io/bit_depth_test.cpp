@@ -57,9 +57,8 @@ TEST(BitDepth, IsFoundOverTheWholeSetAndStatedOnce) {
     for (const fs::path& path : paths) headers.push_back(read_image_header(path));
     const LogCapture log;
     EXPECT_EQ(common_bit_depth(paths, headers, 0), most);
-    EXPECT_EQ(
-        log.text(),
-        fmt::format("The values of 5 images of 16 bits use {} bits (see --bit-depth)\n", most));
+    EXPECT_EQ(log.text(),
+              fmt::format("The values of 5 images of 16 bits use {} bits (see bit_depth)\n", most));
     EXPECT_EQ(common_bit_depth(paths, headers, 14), 14);
   }
   fs::remove_all(folder);
@@ -72,12 +71,13 @@ TEST(BitDepth, EightBitFilesAreNotRead) {
   EXPECT_EQ(common_bit_depth(nowhere, headers, 0), 16);
   EXPECT_EQ(log.text(), "");
   common_bit_depth(nowhere, headers, 12);
-  EXPECT_THAT(log.text(), HasSubstr("--bit-depth 12: is not used"));
+  EXPECT_THAT(log.text(), HasSubstr("bit_depth 12: is not used"));
 }
 
 TEST(BitDepth, OptionIsChecked) {
   for (const int wrong : {-1, 7, 17})
-    EXPECT_THAT(test::error_of([&] { check_bit_depth(wrong); }), HasSubstr("--bit-depth"));
+    EXPECT_THAT(test::error_of([&] { check_bit_depth(wrong); }),
+                testing::StartsWith(fmt::format("bit_depth {}: ", wrong)));
   for (const int right : {0, 8, 16}) EXPECT_NO_THROW(check_bit_depth(right));
 }
 

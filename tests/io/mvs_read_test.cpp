@@ -172,7 +172,7 @@ TEST_F(MvsTest, RefusesOtherFiles) {
     test::put(file_, bytes);
     return error_of([&] { read_mvs(file_, folder_); });
   };
-  EXPECT_THAT(message(std::string_view("MVS\0\1\0\0\0", 8)), HasSubstr("--archive-type -1"));
+  EXPECT_THAT(message(std::string_view("MVS\0\1\0\0\0", 8)), HasSubstr("archive type -1"));
   EXPECT_THAT(message(""), HasSubstr("empty"));
   EXPECT_THAT(message("garbage that is no scene"), HasSubstr("version 0"));
   EXPECT_THAT(message(bytes_of({}) + "x"), HasSubstr("1 bytes follow"));

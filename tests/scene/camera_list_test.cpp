@@ -121,7 +121,7 @@ TEST(CameraList, RefusesWhatCannotBeMatched) {
   const std::vector<CameraModel> barrel{with_barrel(test::behind_port(dry))};
   EXPECT_THAT(
       test::error_of([&] { make_camera_list<float>(barrel, ProjectionMethod::line_search); }),
-      HasSubstr("--undistort 1"));
+      HasSubstr("undistort the images first"));
 }
 
 }  // namespace

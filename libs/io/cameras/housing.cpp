@@ -248,7 +248,7 @@ void attach_ports(Scene& scene, const Housing& housing, const std::string& file)
     } else {
       fail(
           "{}: housing.cameras names ports by COLMAP camera, which a scene does not contain: add "
-          "an entry for {} under housing.images (InterfaceCOLMAP --housing writes these entries)",
+          "an entry for {} under housing.images (InterfaceCOLMAP writes these entries)",
           file, image.path);
     }
   }

@@ -171,7 +171,7 @@ void warn_of_ports_in_scene(const Scene& scene, const Housing& housing, const st
   }
   for (const auto& [name, seen] : ports)
     if (const auto port = housing.ports.find(name); port != housing.ports.end()) {
-      const std::string where = file + ": housing.ports." + name;
+      const std::string where = fmt::format("{}: housing.ports.{}", file, name);
       std::visit(SceneCheck{seen, where}, port->second);
     }
 }

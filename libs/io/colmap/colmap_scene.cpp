@@ -175,6 +175,7 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
     for (const ColmapTrackElement& element : point.track)
       sparse.views.push_back({index_of.at(element.image), 0.0f});
     std::ranges::sort(sparse.views, {}, &SparseView::image);
+    // Not std::ranges::unique, whose result clang 14 cannot compile.
     const auto repeated =
         std::unique(sparse.views.begin(), sparse.views.end(),
                     [](const SparseView& a, const SparseView& b) { return a.image == b.image; });

@@ -45,23 +45,23 @@ void declare_bit_depth(OptionList& list, int& bit_depth) {
                         "as the largest value in all images needs)");
 }
 
-void check_bit_depth(int bit_depth) {
+void check_bit_depth(int bit_depth, const std::string& setting) {
   if (bit_depth != 0 && (bit_depth < 8 || bit_depth > 16))
-    fail("--bit-depth {}: must be 0, or from 8 to 16", bit_depth);
+    fail("{} {}: must be 0, or from 8 to 16", setting, bit_depth);
 }
 
 int common_bit_depth(std::span<const fs::path> photographs, std::span<const ImageHeader> headers,
-                     int asked) {
+                     int asked, const std::string& setting) {
   std::vector<fs::path> wide;
   for (std::size_t i = 0; i < photographs.size(); ++i)
     if (headers[i].bits > 8) wide.push_back(photographs[i]);
   if (wide.empty()) {
-    if (asked != 0) log_warning("--bit-depth {}: is not used: no image has 16 bits", asked);
+    if (asked != 0) log_warning("{} {}: is not used: no image has 16 bits", setting, asked);
     return 16;
   }
   if (asked != 0) return asked;
   const int bits = largest_bits(wide, decodes_that_fit(headers));
-  log_info("The values of {} images of 16 bits use {} bits (see --bit-depth)", wide.size(), bits);
+  log_info("The values of {} images of 16 bits use {} bits (see {})", wide.size(), bits, setting);
   return bits;
 }
 

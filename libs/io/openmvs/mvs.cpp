@@ -228,8 +228,8 @@ MvsCamera normalised_record(const CameraModel& model) {
       denormalised(camera.k, {model.width, model.height}).lens;
   if (std::hypot(read.cx - lens.cx, read.cy - lens.cy) > 1e-6)
     fail(
-        "--normalize 1: a principal point at ({}, {}) of {}x{} pixels would be read as another "
-        "point",
+        "Normalised intrinsics: a principal point at ({}, {}) of {}x{} pixels would be read as "
+        "another point",
         lens.cx, lens.cy, model.width, model.height);
   return camera;
 }

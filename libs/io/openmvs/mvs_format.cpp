@@ -223,8 +223,8 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   if (bytes.empty()) fail("{}: is empty", file);
   if (bytes.starts_with("MVS\0"sv))
     fail(
-        "{}: is a native OpenMVS project, which only OpenMVS can read: save it again with OpenMVS "
-        "and --archive-type -1",
+        "{}: is a native OpenMVS project, which only OpenMVS can read: save it again "
+        "with OpenMVS as an interchange scene (archive type -1)",
         file);
   if (!bytes.starts_with("MVSI")) {
     if (!has_mvs_extension(file))

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The names of settings in messages. A library does not know the options of programs. So its
+// messages name a setting as its header does, unless the caller supplies other names.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace axial {
+
+// Returns the words for `setting` in a message. `setting` is the name of a field or of a parameter
+// ("max_memory"), or this name with a value ("make_maps false").
+using SettingNames = std::string (*)(std::string_view setting);
+
+// Returns `setting` itself.
+inline std::string own_name(std::string_view setting) {
+  return std::string(setting);
+}
+
+struct SettingName {
+  std::string_view setting, name;
+};
+
+// Returns the name of `setting` in `table`, or `setting` itself if the table does not contain it.
+inline std::string name_in(std::span<const SettingName> table, std::string_view setting) {
+  for (const SettingName& entry : table)
+    if (entry.setting == setting) return std::string(entry.name);
+  return own_name(setting);
+}
+
+}  // namespace axial

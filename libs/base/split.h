@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace axial {
+
+// Returns the words of a list: "1,2," has the words "1", "2" and "". An empty text has no words.
+// The words refer to the characters of `text`.
+inline std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> words;
+  if (text.empty()) return words;
+  for (std::size_t end; (end = text.find(separator)) != std::string_view::npos;) {
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  words.push_back(text);
+  return words;
+}
+
+}  // namespace axial

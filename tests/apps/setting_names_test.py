@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Messages of libraries name settings, and programs give these settings the names of options
+(libs/base/setting_names.h): no library names an option, and the programs' tables are complete."""
+
+import pathlib
+import re
+import tempfile
+import unittest
+
+from programs import main
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Files that parse or declare the options that they name.
+DECLARE_OPTIONS = {"libs/base/program.cpp", "libs/base/unused_input.cpp"}
+COMMAND_LINES = "libs/experiments/"  # puts together command lines of programs
+
+# The program's table of each library, and the functions of the library that ask for names.
+TABLES = {"apps/DensifyPointCloud/option_names.cpp": "libs/densify",
+          "apps/RefinePoses/options.cpp": "libs/pose"}
+
+
+def literals(text):
+    """The string literals of C++ source, without those in comments."""
+    token = r'//[^\n]*|/\*.*?\*/|\'(?:\\.|[^\'\\\n])\'|R"\((?P<raw>.*?)\)"|"(?P<plain>(?:\\.|[^"\\\n])*)"'
+    for found in re.finditer(token, text, re.S):
+        literal = found["plain"] if found["raw"] is None else found["raw"]
+        if literal is not None:
+            yield literal
+
+
+def options_in_libraries(root, declare_options):
+    """One line for each option that a library names, and for each exception that is none."""
+    found, needed = [], set()
+    for folder in ("libs", "refractive"):
+        for file in sorted((root / folder).rglob("*")):
+            name = file.relative_to(root).as_posix()
+            if file.suffix not in (".h", ".cpp") or name.startswith(COMMAND_LINES):
+                continue
+            text = file.read_text(encoding="utf-8")
+            named = [literal for literal in literals(text) if re.search(r"--[a-z{]", literal)]
+            if name in declare_options and named:
+                needed.add(name)
+            else:
+                found += [f'{name} names an option: "{literal}"' for literal in named]
+    return found + [f"{name} names no option" for name in sorted(declare_options - needed)]
+
+
+def table(file):
+    """The rows of a program's table: the option of each setting."""
+    text = file.read_text(encoding="utf-8")
+    return dict(re.findall(r'\{"([^"]+)",\s*"(--[^"]+)"\}', text))
+
+
+def names_asked_for(folder):
+    """The settings that a library's messages name."""
+    text = "\n".join(path.read_text(encoding="utf-8") for path in folder.rglob("*")
+                     if path.suffix in (".h", ".cpp"))
+    return set(re.findall(r'name_of\("([^"]+)"\)', text))
+
+
+class SettingNames(unittest.TestCase):
+    def test_libraries_name_no_options(self):
+        self.assertEqual(options_in_libraries(ROOT, DECLARE_OPTIONS), [])
+
+    def test_programs_have_an_option_for_each_setting(self):
+        for program, library in TABLES.items():
+            asked = names_asked_for(ROOT / library)
+            self.assertGreater(len(asked), 4, library)
+            self.assertEqual(asked - set(table(ROOT / program)), set(), program)
+
+    def test_the_options_exist(self):
+        page = (ROOT / "docs" / "options-reference.md").read_text(encoding="utf-8")
+        sections = dict(re.findall(r"^## (\w+)\n(.*?)(?=^## |\Z)", page, re.M | re.S))
+        general = re.findall(r"`(--[a-z-]+)", page.split("\n## ")[1])
+        for program in (*TABLES, "apps/CalibrateHousing/options.cpp"):
+            rows = table(ROOT / program)
+            self.assertGreater(len(rows), 4, program)
+            known = set(re.findall(r"`(--[a-z-]+)", sections[program.split("/")[1]])) | set(general)
+            for option in rows.values():
+                self.assertIn(option.split()[0], known, program)
+
+
+class OptionsInLibraries(unittest.TestCase):
+    """A tree of one library that names an option somewhere."""
+
+    def expect(self, faults, name, text, declare_options=frozenset()):
+        with tempfile.TemporaryDirectory(prefix="axial_") as folder:
+            file = pathlib.Path(folder) / name
+            file.parent.mkdir(parents=True)
+            file.write_text(text, encoding="utf-8")
+            found = options_in_libraries(pathlib.Path(folder), set(declare_options))
+            self.assertEqual(len(found), faults, found)
+
+    def test_a_message_with_an_option_is_a_fault(self):
+        for text in ('fail("--mask-path {}: is no folder", x);', 'fail("{} (see --bit-depth)", x);',
+                     'fail("--{}-sigma", x);', 'char c = \'"\'; f("a \\" --b");'):
+            self.expect(1, "libs/a/a.cpp", text)
+            self.expect(1, "refractive/a.h", text)
+
+    def test_comments_and_other_text_may_name_options(self):
+        for text in ('// "--mask-path"\n', "/* --mask\n-path */", 'f("a -- b", i--);',
+                     "--count;", '"Housing {}: {}"'):
+            self.expect(0, "libs/a/a.h", text)
+        self.expect(0, "libs/experiments/chain.cpp", 'run("--refractive");')
+
+    def test_an_exception_without_need_is_a_fault(self):
+        self.expect(0, "libs/a/a.cpp", 'f("--a");', {"libs/a/a.cpp"})
+        self.expect(1, "libs/a/a.cpp", 'f("a");', {"libs/a/a.cpp"})
+
+
+if __name__ == "__main__":
+    main()
