@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Compiler flags, precompiled headers, and the functions add_axial_library(), add_axial_app(),
-# add_axial_tests() and add_axial_test(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
+# add_axial_tests(), add_axial_test() and add_axial_test_support(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
 
 add_library(axial_flags INTERFACE)
 target_compile_features(axial_flags INTERFACE cxx_std_20)
@@ -12,20 +12,16 @@ target_compile_options(axial_flags INTERFACE
   # No code reads errno or uses floating-point traps. The results are the same, and square roots
   # need no branch.
   -fno-math-errno -fno-trapping-math)
-if(AXIAL_FUZZ)
-  # clang's sanitizers, with the counters of executed code that libFuzzer needs.
-  target_compile_options(axial_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
-    -fno-sanitize=null,alignment,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
-elseif(AXIAL_SANITIZE)
+if(AXIAL_SANITIZE)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "AXIAL_SANITIZE needs clang++ (CMAKE_CXX_COMPILER), for libFuzzer")
+  endif()
   # The checks for null pointers and alignment are off, because they would take a quarter of the
   # compile time: AddressSanitizer detects null pointers anyway, and Eigen asserts alignment itself.
-  # AddressSanitizer's checks are calls instead of inline code. This saves a tenth of the compile
-  # time, which is more than the tests then need in addition. (-O0 would save a third, but tests of
-  # Eigen's matrices would take five times as long.)
-  target_compile_options(axial_flags INTERFACE -fsanitize=address,undefined
-    -fno-sanitize=null,alignment -fno-sanitize-recover=all -fno-omit-frame-pointer
-    --param=asan-instrumentation-with-call-threshold=0)
+  # "fuzzer-no-link" adds the counters of executed code that the fuzz tests need. Warnings are those of
+  # the release build: two compilers would not agree on them.
+  target_compile_options(axial_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+    -fno-sanitize=null,alignment,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -w)
   target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
@@ -146,6 +142,24 @@ endfunction()
 # sanitizers. The unit tests of the other folders are numeric and are built in release.
 set(AXIAL_SANITIZED_FOLDERS base lens io scene picture cloud)
 
+# add_axial_test_support(pose_survey SOURCES survey.cpp LINK pose) adds a library for the tests of several
+# programs, so that its sources are compiled once. Tests link it by its name.
+function(add_axial_test_support name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(axial_${name} STATIC EXCLUDE_FROM_ALL ${ARG_SOURCES})
+  axial_unity(axial_${name})
+  axial_set_up_test(axial_${name})
+  axial_link(axial_${name} ${ARG_LINK})
+endfunction()
+
+function(axial_set_up_test target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${target} PRIVATE AXIAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(${target} PRIVATE axial_test_flags ${AXIAL_PARSED_LIBRARIES} GTest::gmock)
+  target_precompile_headers(${target} REUSE_FROM axial_parsed_for_tests)
+endfunction()
+
 # add_axial_tests(io TESTS dmap_test ply_test [APART json_test] LINK io)
 # adds tests/io/dmap_test.cpp, ... as one program, and their tests as the CTest cases
 # "io/Suite.Test", or with the sanitizers "sanitized/io/Suite.Test". APART: see "Unity builds" above.
@@ -218,12 +232,8 @@ endfunction()
 function(axial_add_test_program target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${target} ${ARG_SOURCES})
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/libs ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_definitions(${target} PRIVATE AXIAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-    AXIAL_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  target_link_libraries(${target} PRIVATE axial_test_flags ${AXIAL_PARSED_LIBRARIES} rapidcheck GTest::gmock
-    GTest::gtest_main)
-  target_precompile_headers(${target} REUSE_FROM axial_parsed_for_tests)
+  axial_set_up_test(${target})
+  target_link_libraries(${target} PRIVATE rapidcheck GTest::gtest_main)
   axial_link(${target} ${ARG_LINK})
   add_dependencies(axial_tests ${target})
 endfunction()

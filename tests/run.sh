@@ -3,12 +3,13 @@
 # Installs missing packages, builds, and runs all tests under CTest. Each unit test is built once:
 # the tests of base, lens, io, scene, picture and cloud with AddressSanitizer and
 # UndefinedBehaviorSanitizer ("sanitized/..."), the other tests in the release build, like the
-# programs. A third build, by clang, gives every file reader wrong input for 5 seconds ("fuzz/...").
+# programs. The build with sanitizers also gives every file reader wrong input for 5 seconds
+# ("fuzz/...").
 #
 #   bash tests/run.sh [--all] [CTEST-OPTION...]
 #
-# --all: builds every unit test in the first two builds. Other arguments go to ctest: tests/run.sh -R io/.
-# One CTest run covers all builds, so its summary at the end counts all tests.
+# --all: builds every unit test in both builds. Other arguments go to ctest: tests/run.sh -R io/.
+# One CTest run covers both builds, so its summary at the end counts all tests.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CTEST_OUTPUT_ON_FAILURE=1
@@ -25,11 +26,8 @@ for preset in release sanitize; do
   echo "=== Building ($preset)"
   cmake --preset "$preset" -DAXIAL_TESTS=ON -DAXIAL_EVERY_TEST=$every --log-level=WARNING
 done
-echo "=== Building (fuzz)"
-cmake --preset fuzz --log-level=WARNING
 cmake --build --preset release
 cmake --build --preset sanitize --target axial_tests
-cmake --build --preset fuzz
 
-printf 'subdirs(release sanitize fuzz)\n' >build/CTestTestfile.cmake
+printf 'subdirs(release sanitize)\n' >build/CTestTestfile.cmake
 exec ctest --test-dir build --parallel "$(nproc)" --no-tests=error "$@"

@@ -2,16 +2,10 @@
 // The fixture of the tests of RefinePoses on files.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 
-#include "base/atomic_file.h"
-#include "io/cameras/housing.h"
 #include "io/colmap/colmap.h"
-#include "pose/adjust.h"
 #include "pose/colmap_survey.h"
-#include "pose/refine.h"
 #include "pose/survey.h"
 #include "support/program_run.h"
 
@@ -23,40 +17,17 @@ class RefinePoses : public test::ProgramTest {
  protected:
   Bundle truth_ = testing::survey(testing::camera_behind(testing::flat_port(2)), {.noise = 0.2});
 
-  void SetUp() override {
-    ProgramTest::SetUp();
-    write_input();
-    io::write_housing(folder_ / "housing.json", testing::housing());
-  }
+  void SetUp() override;
 
   // Writes the survey as a COLMAP model, and the lens.
-  void write_input() {
-    Bundle absorbed = truth_;
-    for (BundleCamera& camera : absorbed.cameras) camera.measured.port.reset();
-    AdjustOptions options;
-    options.free[kFocalNumber] = true;
-    options.loss_sigmas = 10;
-    adjust(absorbed, options);
-    scale_places(absorbed, 7.3);
-    write("sparse", testing::model_of(absorbed));
-    io::ColmapModel lens;
-    lens.cameras = {testing::kLens};
-    write("lens", lens);
-  }
+  void write_input();
 
-  void write(const std::string& name, const io::ColmapModel& model) {
-    make_folder(folder_ / name);
-    io::write_colmap_text(folder_ / name, model);
-  }
+  void write(const std::string& name, const io::ColmapModel& model);
 
-  test::Outcome run(const std::string& arguments) const {
-    return run_program("RefinePoses", arguments);
-  }
+  test::Outcome run(const std::string& arguments) const;
 
-  std::string baseline() const {
-    return fmt::format("images:image0.jpg,image11.jpg,{}",
-                       (truth_.images[0].pose.centre - truth_.images[11].pose.centre).norm());
-  }
+  // --scale-from with the true distance of two images.
+  std::string baseline() const;
 };
 
 // The options for the files of the fixture.
