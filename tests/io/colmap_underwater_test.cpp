@@ -141,6 +141,15 @@ TEST_F(Underwater, ResolvesNumberEleven) {
               HasSubstr("RAD_TAN_THIN_PRISM_FISHEYE"));
 }
 
+// COLMAP has used the numbers above 11 since. COLMAP-Underwater has no such camera models.
+TEST_F(Underwater, RefusesNumbersAboveEleven) {
+  EXPECT_EQ(read_binary(underwater_bytes({{2, kPinhole, 0, kFlat}})).at(0).model, "SIMPLE_RADIAL");
+  EXPECT_THAT(error_of([&] {
+                read_binary(underwater_bytes({{12, kPinhole, 0, kFlat}}));
+              }),
+              HasSubstr("cameras.bin"));
+}
+
 ColmapModel model_with_ports() {
   ColmapModel model;
   model.cameras = {{1, "PINHOLE", 1024, 768, kPinhole},

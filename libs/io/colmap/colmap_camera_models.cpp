@@ -56,7 +56,8 @@ Eigen::Matrix3d rotation_from(double w, double x, double y, double z) {
 }  // namespace
 
 std::string_view colmap_model_name(int id, Dialect dialect) {
-  if (id == kSharedId && dialect == Dialect::underwater) return kUnderwaterModel;
+  if (dialect == Dialect::underwater && id >= kSharedId)
+    return id == kSharedId ? kUnderwaterModel : std::string_view();
   const auto found = std::ranges::find(kModels, id, &Model::id);
   return id < 0 || found == kModels.end() ? std::string_view() : found->name;
 }
