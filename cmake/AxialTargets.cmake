@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Compiler flags, precompiled headers, and the functions add_axial_library(), add_axial_app(),
-# add_axial_tests(), add_axial_test() and add_axial_test_support(). With them, the CMakeLists.txt of a folder only lists its files and libraries.
+# add_axial_tests(), add_axial_test() and add_axial_test_support(). With them, the CMakeLists.txt of a
+# folder only lists its files and libraries.
 
 add_library(axial_flags INTERFACE)
 target_compile_features(axial_flags INTERFACE cxx_std_20)
@@ -18,11 +19,13 @@ if(AXIAL_SANITIZE)
   endif()
   # The checks for null pointers and alignment are off, because they would take a quarter of the
   # compile time: AddressSanitizer detects null pointers anyway, and Eigen asserts alignment itself.
+  # The check of virtual tables needs type information that libraries of Debian may lack.
   # "fuzzer-no-link" adds the counters of executed code that the fuzz tests need. Warnings are those of
   # the release build: two compilers would not agree on them.
   target_compile_options(axial_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize=null,alignment,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -w)
   target_link_options(axial_flags INTERFACE -fsanitize=address,undefined)
+  target_compile_definitions(axial_flags INTERFACE AXIAL_SANITIZED)
 endif()
 
 # Precompiled headers: the external headers that most files include are parsed once for all files,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The names of settings in messages. A library does not know the options of programs. So its
-// messages name a setting as its header does, unless the caller supplies other names.
+// The names of settings in messages. A library does not know the options of programs. Messages of a
+// library use the names in the headers of the library, unless the caller supplies other names.
 #pragma once
 
 #include <span>

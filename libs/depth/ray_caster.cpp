@@ -15,16 +15,14 @@ using refractive::LensPinholeCamera;
 using refractive::PinholeCamera;
 
 template <InLanes Camera>
-RayCaster<Camera>::RayCaster(const Camera& camera, lanes::InstructionSet set) {
+std::unique_ptr<const lanes::SceneTables> ray_tables(const Camera& camera) {
   auto tables = std::make_unique<lanes::SceneTables>();
   tables->kind = kind_of(camera);
   tables->reference = visit_kind(camera, [](const auto& kind) { return fields_of(kind); });
-  scorer_ = lanes::make_scorer(*tables, set);
-  tables_ = std::move(tables);
+  return tables;
 }
 
-template <InLanes Camera>
-void RayCaster<Camera>::rays(int x, int y, RayTile& tile) const {
+void LaneRayCaster::rays(int x, int y, RayTile& tile) const {
   static_assert(kRayTile == lanes::kLanes);
   lanes::LaneRays rays;
   scorer_->rays(static_cast<float>(x), static_cast<float>(y), rays);
@@ -38,12 +36,12 @@ void RayCaster<Camera>::rays(int x, int y, RayTile& tile) const {
   }
 }
 
-template class RayCaster<PinholeCamera<float>>;
-template class RayCaster<FlatPortCamera<float>>;
-template class RayCaster<DomePortCamera<float>>;
-template class RayCaster<LensPinholeCamera<float>>;
-template class RayCaster<LensFlatPortCamera<float>>;
-template class RayCaster<LensDomePortCamera<float>>;
-template class RayCaster<AnyCamera<float>>;
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const PinholeCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const FlatPortCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const DomePortCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const LensPinholeCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const LensFlatPortCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const LensDomePortCamera<float>&);
+template std::unique_ptr<const lanes::SceneTables> ray_tables(const AnyCamera<float>&);
 
 }  // namespace axial::depth

@@ -29,19 +29,30 @@ class RayCaster {
   Camera camera_;
 };
 
-// The version with SIMD. Its rays are bit-identical to those of the camera's ray(). Precondition:
-// `set` is available.
-template <InLanes Camera>
-class RayCaster<Camera> {
+// The version with SIMD. Its rays are bit-identical to those of the camera's ray().
+class LaneRayCaster {
  public:
-  explicit RayCaster(const Camera& camera,
-                     lanes::InstructionSet set = lanes::fastest_instruction_set());
+  // Precondition: `set` is available.
+  LaneRayCaster(std::unique_ptr<const lanes::SceneTables> tables, lanes::InstructionSet set)
+      : tables_(std::move(tables)), scorer_(lanes::make_scorer(*tables_, set)) {}
 
   void rays(int x, int y, RayTile& tile) const;
 
  private:
   std::unique_ptr<const lanes::SceneTables> tables_;
   std::unique_ptr<const lanes::Scorer> scorer_;
+};
+
+// The numbers of `camera` as the SIMD code takes them.
+template <InLanes Camera>
+std::unique_ptr<const lanes::SceneTables> ray_tables(const Camera& camera);
+
+template <InLanes Camera>
+class RayCaster<Camera> : public LaneRayCaster {
+ public:
+  explicit RayCaster(const Camera& camera,
+                     lanes::InstructionSet set = lanes::fastest_instruction_set())
+      : LaneRayCaster(ray_tables(camera), set) {}
 };
 
 // Calls visit(x, ray) for the first `width` pixels of row y, from left to right.

@@ -41,12 +41,15 @@ std::optional<ImagedDirection> direction_at(const Lens& lens, const Eigen::Vecto
 
 // How far from its axis a lens images directions.
 struct Field {
-  // The largest |(u, v)| up to which directions that move away from the axis also move outwards in
-  // the image, on any side of the axis. It does not depend on the focal lengths. Where another side
-  // folds back earlier, the determinant of the derivative is not positive beyond the fold.
+  // The largest |(u, v)| at which the lens has not folded back on at least one of 16 sides of the
+  // axis: directions that move away from the axis also move outwards in the image. It does not
+  // depend on the focal lengths. Where another side folds back earlier, callers test the
+  // determinant of the derivative. This test is sufficient if the sides fold back at similar
+  // angles.
   double reach = 0;
   // The largest |(u, v)| of the image corners, at most `reach` and at most the tangent of 85
-  // degrees. A corner that no direction projects to counts as this limit.
+  // degrees. A corner that no direction projects to counts as a corner at the smaller of these two
+  // limits.
   double corner = 0;
 };
 // Zeros for a lens without a model.

@@ -70,20 +70,22 @@ void check_known(const std::string& asked, const Words& words, const Sigmas& sig
          asked, name_of("thickness_sigma"));
 }
 
-void check_sigma(const Words& words, const std::string& word, double sigma, SettingNames name_of) {
-  const std::string setting = name_of(word + "_sigma");
+// `setting` and `refine` are the names of the settings in messages.
+void check_sigma(const Words& words, const std::string& word, double sigma,
+                 const std::string& setting, const std::string& refine) {
   if (!(sigma >= 0 && std::isfinite(sigma))) fail("{} {}: must be 0 or more", setting, sigma);
   if (sigma > 0 && !words.contains(word))
-    fail("{} {}: {} does not name {}", setting, sigma, name_of("refine"), word);
+    fail("{} {}: {} does not name {}", setting, sigma, refine, word);
 }
 
 void check_sigmas(const Words& words, const Sigmas& sigmas, SettingNames name_of) {
-  check_sigma(words, "normal", sigmas.normal_degrees, name_of);
-  check_sigma(words, "distance", sigmas.distance, name_of);
-  check_sigma(words, "centre", sigmas.centre, name_of);
-  check_sigma(words, "thickness", sigmas.thickness, name_of);
-  check_sigma(words, "index", sigmas.index, name_of);
-  check_sigma(words, "focal", sigmas.focal, name_of);
+  const std::string refine = name_of("refine");
+  check_sigma(words, "normal", sigmas.normal_degrees, name_of("normal_sigma"), refine);
+  check_sigma(words, "distance", sigmas.distance, name_of("distance_sigma"), refine);
+  check_sigma(words, "centre", sigmas.centre, name_of("centre_sigma"), refine);
+  check_sigma(words, "thickness", sigmas.thickness, name_of("thickness_sigma"), refine);
+  check_sigma(words, "index", sigmas.index, name_of("index_sigma"), refine);
+  check_sigma(words, "focal", sigmas.focal, name_of("focal_sigma"), refine);
 }
 
 void set(const Words& words, const std::string& word, double sigma, double scale,

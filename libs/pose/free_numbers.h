@@ -35,8 +35,8 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas);
 // deviation nor any length is known, since photographs show only the ratio of lengths.
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
-// "thickness_sigma", "index_sigma" and "focal_sigma", and as ways to a known length "distances" and
-// "poses_known" of AdjustOptions.
+// "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also names
+// the settings that make lengths known: "distances" and "poses_known" of AdjustOptions.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of = own_name);
 

@@ -14,7 +14,8 @@ namespace axial::pose {
 struct HousedCamera {
   lens::Lens lens;
   std::optional<refractive::Port<double>> port = {};  // empty: no port
-  // Must be the field of `lens`. It stays valid if both focal lengths change by one factor.
+  // The field of `lens`. If both focal lengths change by one factor, `reach` stays exact and
+  // `corner` becomes an estimate, which only affects the speed.
   lens::Field field = field_of(lens);
 };
 

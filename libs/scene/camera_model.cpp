@@ -28,7 +28,7 @@ struct TangentsBehindPort {
   double usual;
 
   TangentCamera operator()(const refractive::FlatPort<double>& port) const {
-    constexpr double kGrazing = 50;  // 88.9 degrees
+    constexpr double kGrazing = 50;  // 88.8 degrees
     const double tilt = std::acos(std::clamp(port.normal.z(), -1.0, 1.0));
     const double angle = std::min(std::atan(usual) + tilt, std::atan(kGrazing));
     const refractive::FlatPortField<double> field(refractive::FlatPortOptics<double>(port),

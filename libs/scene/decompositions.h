@@ -43,7 +43,8 @@ struct Similarity {
   Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
     return scale * (rotation * x) + translation;
   }
-  // The pose of the moved camera. It sees moved points in the same directions.
+  // The pose of the camera after the map. From it, mapped points lie in the same directions as the
+  // points before.
   Pose operator()(const Pose& pose) const {
     return {pose.rotation * rotation.transpose(), (*this)(pose.centre)};
   }

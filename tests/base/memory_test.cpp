@@ -83,7 +83,7 @@ TEST(AvailableMemory, NamesTheFileThatDoesNotSay) {
 }
 
 TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
 #endif
   constexpr std::size_t kBytes = 64 << 20;
@@ -96,7 +96,7 @@ TEST(ResidentMemory, RisesAndFallsWithLargeBlocks) {
 }
 
 TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
 #endif
   constexpr std::size_t kSmall = 16 << 10;  // small freed blocks may be kept, and then still count
@@ -113,7 +113,7 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
 
 // Other blocks lie between the large ones, so that a heap could not shrink.
 TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
 #endif
   map_large_blocks();
@@ -135,7 +135,7 @@ TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
 // The other thread keeps its last block, which lies at the top of the heap. If that thread had a
 // heap of its own, this heap could not shrink.
 TEST(ShareOneHeap, ServesOneThreadFromWhatAnotherHasFreed) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer's allocator is not the C library's";
 #endif
   share_one_heap();
@@ -157,7 +157,7 @@ TEST(ShareOneHeap, ServesOneThreadFromWhatAnotherHasFreed) {
 
 // Every second one of many small blocks is freed. The C library would keep the freed blocks.
 TEST(ReturnFreedMemory, LetsGoOfWhatWasFreed) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
 #endif
   constexpr std::size_t kBlocks = 2000, kBytes = 64 << 10;

@@ -87,7 +87,7 @@ constexpr std::uint64_t kSmallBlocks = 12u << 20;
 // runs slow that have little memory.
 template <class Run>
 void expect_within(std::uint64_t bound, double use, const Run& run) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
   GTEST_SKIP() << "the sanitizer keeps freed blocks to itself";
 #endif
   run();  // starts threads and loads code

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A survey with known poses and points, imaged by any camera: exact tracks with a given noise.
+// A survey with known poses and points, imaged by pinholes behind any port: exact tracks with a
+// given noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +28,7 @@ inline CameraModel camera_behind(std::optional<refractive::Port<double>> port) {
   return {1024, 768, {610, 615, 511.5, 383.5}, std::move(port)};
 }
 
-// The camera as bundle adjustment takes it.
+// `camera`, a pinhole without distortion, in the form that bundle adjustment needs.
 inline HousedCamera housed(const CameraModel& camera) {
   return {{lens::find_model("PINHOLE"), camera.lens, {}, camera.width, camera.height}, camera.port};
 }

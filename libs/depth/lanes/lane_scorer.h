@@ -11,7 +11,7 @@
 
 // Inlines all calls, so that values stay in registers. Not under the sanitizers, where this one
 // large function would take minutes to compile.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef AXIAL_SANITIZED
 #define AXIAL_FLATTEN
 #else
 #define AXIAL_FLATTEN [[gnu::flatten]]
