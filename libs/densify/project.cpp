@@ -9,74 +9,18 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/unused_input.h"
 #include "densify/fingerprint.h"
 #include "densify/masks.h"
 #include "densify/neighbour_lists.h"
 #include "densify/scene_memory.h"
-#include "io/cameras/geo_offset.h"
-#include "io/cameras/housing.h"
-#include "io/cameras/other_ports.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
-#include "io/openmvs/mvs.h"
 #include "io/openmvs/point_source.h"
 
 namespace axial::densify {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Image paths in a scene count from the working folder. If a scene was moved with its images, they
-// are found relative to its file.
-void find_images(Scene& scene, const Settings& settings) {
-  const auto find = [&](std::string& path) {
-    std::error_code error;
-    if (path.empty() || fs::exists(path, error)) return;
-    const fs::path relative = fs::path(path).lexically_relative(settings.working_folder);
-    const fs::path beside = settings.input.parent_path() / relative;
-    if (fs::exists(beside, error)) path = beside.string();
-  };
-  for (SceneImage& image : scene.images) {
-    find(image.path);
-    find(image.mask_path);
-  }
-}
-
-std::optional<io::Housing> attach_housing(Scene& scene, const LocalFrame& frame,
-                                          const Settings& settings) {
-  if (settings.camera == CameraChoice::pinhole) return {};
-  const bool demanded = settings.refractive || settings.camera == CameraChoice::flat_port;
-  const fs::path file = housing_file(settings);
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    if (demanded || !settings.housing.empty())
-      fail("{}: housing file not found; {} needs a housing file (see {})", file.string(),
-           settings.name_of("refractive"), settings.name_of("housing"));
-    return {};
-  }
-  const io::Housing housing = io::read_housing(file);
-  io::warn_of_housing_beside(scene, settings.input, housing, file);
-  io::attach_ports(scene, io::in_frame(frame, housing), file.string());
-  std::size_t images = 0, wet = 0, flat = 0;
-  for (const SceneImage& image : scene.images) {
-    const auto& port = image.camera.port;
-    images += image.calibrated ? 1 : 0;
-    wet += port ? 1 : 0;
-    flat += port && std::holds_alternative<refractive::FlatPort<double>>(*port) ? 1 : 0;
-  }
-  if (wet == 0 && demanded) fail("{}: gives no image a port", file.string());
-  if (flat < images && settings.camera == CameraChoice::flat_port)
-    fail("{}: only {} of {} images have a flat port, but {}", file.string(), flat, images,
-         settings.name_of("camera is flat_port"));
-  log_info("Housing {}: {} of {} images behind a port", file.filename().string(), wet, images);
-  if (wet > 0) return housing;
-  if (!settings.housing.empty() && !housing.ports.empty())
-    UnusedInput(settings.allow_missing, settings.name_of("allow_missing"))
-        .report(fmt::format("{} {}: gives no image a port", settings.name_of("housing"),
-                            file.string()));
-  return {};
-}
 
 cv::Size size_to_work_on(const SceneImage& image, const cv::Size& file_size,
                          const Settings& settings) {
@@ -175,22 +119,6 @@ void select_views(Project& project, const Settings& settings, const SceneObserve
     fail("{}: no image has neighbours to be matched with", settings.input.string());
 }
 
-void attach_lenses(Scene& scene, const Settings& settings) {
-  if (io::attach_lenses_beside(scene, settings.input))
-    log_info("{}: {} images have distorted lenses and are matched without resampling",
-             io::lenses_beside(settings.input).filename().string(),
-             std::ranges::count_if(scene.images, [](const SceneImage& image) {
-               return image.camera.distortion.has_value();
-             }));
-}
-
-void warn_of_missing_lenses(const Settings& settings) {
-  const fs::path file = io::lenses_beside(settings.input);
-  std::error_code error;
-  if (!fs::exists(file, error))
-    log_warning("{}: file not found: the images count as undistorted", file.string());
-}
-
 }  // namespace
 
 bool all_pinholes(const Project& project) {
@@ -198,22 +126,31 @@ bool all_pinholes(const Project& project) {
       project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
 }
 
+namespace {
+
+io::SceneFiles scene_files_of(const Settings& settings) {
+  io::SceneFiles files{settings.input, settings.working_folder, settings.housing};
+  files.ports = settings.camera == CameraChoice::pinhole     ? io::PortChoice::ignored
+                : settings.camera == CameraChoice::flat_port ? io::PortChoice::flat
+                : settings.refractive                        ? io::PortChoice::required
+                                                             : io::PortChoice::automatic;
+  files.allow_missing = settings.allow_missing;
+  files.name_of = settings.name_of;
+  return files;
+}
+
+}  // namespace
+
 fs::path housing_file(const Settings& settings) {
-  return settings.housing.empty() ? io::housing_beside(settings.input) : settings.housing;
+  return io::housing_file(scene_files_of(settings));
 }
 
 Project load_scene(const Settings& settings) {
   require_memory_to_read(settings);
   Project project;
-  project.scene = io::read_mvs(settings.input, settings.working_folder);
-  project.frame = io::enter_local_frame(project.scene, settings.input);
-  find_images(project.scene, settings);
-  attach_lenses(project.scene, settings);
+  static_cast<io::SceneWithCameras&>(project) =
+      io::read_scene_with_cameras(scene_files_of(settings));
   project.lenses = io::lenses_of(project.scene, settings.output);
-  project.housing = attach_housing(project.scene, project.frame, settings);
-  if (project.housing) warn_of_missing_lenses(settings);
-  log_info("Scene {}: {} images, {} points", settings.input.filename().string(),
-           project.scene.images.size(), project.scene.points.size());
   if (!settings.point_cloud.empty())
     io::use_point_cloud(project.scene, project.frame, settings.point_cloud);
   return project;
@@ -229,14 +166,7 @@ Project load_project(const Settings& settings, const SceneObserver& observer) {
 }
 
 void write_cameras_beside_output(const Project& project, const Settings& settings) {
-  if (!project.frame.is_world() || settings.output != settings.input)
-    io::write_geo_offset_beside(settings.output, project.frame);
-  io::write_lenses_beside(settings.output, project.lenses, project.housing.has_value());
-  const fs::path file = io::housing_beside(settings.output);
-  std::error_code error;
-  if (fs::equivalent(file, housing_file(settings), error)) return;
-  if (project.housing) return io::write_housing(file, *project.housing);
-  if (fs::remove(file, error)) log_info("{} removed: the scene has no ports", file.string());
+  io::write_cameras_beside(settings.output, project, project.lenses, scene_files_of(settings));
 }
 
 }  // namespace axial::densify

@@ -6,17 +6,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "densify/scene_facts.h"
 #include "densify/settings.h"
-#include "io/cameras/housing.h"
 #include "io/cameras/lenses.h"
 #include "io/images/image.h"
-#include "scene/local_frame.h"
-#include "scene/scene.h"
+#include "io/openmvs/scene_with_cameras.h"
 #include "scene/view_selection.h"
 
 namespace axial::densify {
@@ -34,11 +31,8 @@ struct View {
   bool masked() const { return !mask.empty() || file.alpha; }
 };
 
-struct Project {
-  Scene scene;                         // in `frame`, with ports and neighbour scores
-  LocalFrame frame;                    // the frame of the scene's coordinates
-  std::optional<io::Housing> housing;  // the source of the ports; in world coordinates
-  io::SceneLenses lenses;              // to write beside the output
+struct Project : io::SceneWithCameras {  // the scene also has neighbour scores
+  io::SceneLenses lenses;                // to write beside the output
   std::vector<ViewPreparation> preparations;
   std::vector<View> views;                         // one for each image of the scene
   std::vector<std::vector<ViewScore>> neighbours;  // filtered

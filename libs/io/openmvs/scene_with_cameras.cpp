@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/openmvs/scene_with_cameras.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/unused_input.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/other_ports.h"
+#include "io/openmvs/mvs.h"
+
+namespace axial::io {
+namespace fs = std::filesystem;
+
+namespace {
+
+// Image paths in a scene count from the working folder. If a scene was moved with its images, they
+// are found relative to its file.
+void find_images(Scene& scene, const SceneFiles& files) {
+  const auto find = [&](std::string& path) {
+    std::error_code error;
+    if (path.empty() || fs::exists(path, error)) return;
+    const fs::path relative = fs::path(path).lexically_relative(files.working_folder);
+    const fs::path beside = files.scene.parent_path() / relative;
+    if (fs::exists(beside, error)) path = beside.string();
+  };
+  for (SceneImage& image : scene.images) {
+    find(image.path);
+    find(image.mask_path);
+  }
+}
+
+struct PortCount {
+  std::size_t images = 0, wet = 0, flat = 0;  // calibrated, behind a port, behind a flat port
+};
+
+PortCount count_ports(const Scene& scene) {
+  PortCount count;
+  for (const SceneImage& image : scene.images) {
+    const auto& port = image.camera.port;
+    count.images += image.calibrated ? 1 : 0;
+    count.wet += port ? 1 : 0;
+    count.flat += port && std::holds_alternative<refractive::FlatPort<double>>(*port) ? 1 : 0;
+  }
+  return count;
+}
+
+// Error if the ports of the scene are not the demanded ones. `file`: their source.
+void check_ports(const PortCount& count, const SceneFiles& files, const fs::path& file) {
+  const bool demanded = files.ports == PortChoice::required || files.ports == PortChoice::flat;
+  if (count.wet == 0 && demanded) fail("{}: gives no image a port", file.string());
+  if (count.flat < count.images && files.ports == PortChoice::flat)
+    fail("{}: only {} of {} images have a flat port, but {}", file.string(), count.flat,
+         count.images, files.name_of("camera is flat_port"));
+}
+
+std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
+                                      const SceneFiles& files) {
+  if (files.ports == PortChoice::ignored) return {};
+  const fs::path file = housing_file(files);
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    if (files.ports != PortChoice::automatic || !files.housing.empty())
+      fail("{}: housing file not found; {} needs a housing file (see {})", file.string(),
+           files.name_of("refractive"), files.name_of("housing"));
+    return {};
+  }
+  const Housing housing = read_housing(file);
+  warn_of_housing_beside(scene, files.scene, housing, file);
+  attach_ports(scene, in_frame(frame, housing), file.string());
+  const PortCount count = count_ports(scene);
+  check_ports(count, files, file);
+  log_info("Housing {}: {} of {} images behind a port", file.filename().string(), count.wet,
+           count.images);
+  if (count.wet > 0) return housing;
+  if (!files.housing.empty() && !housing.ports.empty())
+    UnusedInput(files.allow_missing, files.name_of("allow_missing"))
+        .report(
+            fmt::format("{} {}: gives no image a port", files.name_of("housing"), file.string()));
+  return {};
+}
+
+void attach_lenses(Scene& scene, const SceneFiles& files) {
+  if (attach_lenses_beside(scene, files.scene))
+    log_info("{}: {} images have distorted lenses; they are used without resampling",
+             lenses_beside(files.scene).filename().string(),
+             std::ranges::count_if(scene.images, [](const SceneImage& image) {
+               return image.camera.distortion.has_value();
+             }));
+}
+
+void warn_of_missing_lenses(const SceneFiles& files) {
+  const fs::path file = lenses_beside(files.scene);
+  std::error_code error;
+  if (!fs::exists(file, error))
+    log_warning("{}: file not found: the images count as undistorted", file.string());
+}
+
+}  // namespace
+
+fs::path housing_file(const SceneFiles& files) {
+  return files.housing.empty() ? housing_beside(files.scene) : files.housing;
+}
+
+SceneWithCameras read_scene_with_cameras(const SceneFiles& files) {
+  SceneWithCameras result;
+  Scene& scene = result.scene;
+  scene = read_mvs(files.scene, files.working_folder);
+  result.frame = enter_local_frame(scene, files.scene);
+  find_images(scene, files);
+  attach_lenses(scene, files);
+  result.housing = attach_housing(scene, result.frame, files);
+  if (result.housing) warn_of_missing_lenses(files);
+  log_info("Scene {}: {} images, {} points", files.scene.filename().string(), scene.images.size(),
+           scene.points.size());
+  return result;
+}
+
+void write_cameras_beside(const fs::path& output, const SceneWithCameras& scene,
+                          const SceneLenses& lenses, const SceneFiles& files) {
+  if (!scene.frame.is_world() || output != files.scene)
+    write_geo_offset_beside(output, scene.frame);
+  write_lenses_beside(output, lenses, scene.housing.has_value());
+  const fs::path file = housing_beside(output);
+  std::error_code error;
+  if (fs::equivalent(file, housing_file(files), error)) return;
+  if (scene.housing) return write_housing(file, *scene.housing);
+  if (fs::remove(file, error)) log_info("{} removed: the scene has no ports", file.string());
+}
+
+}  // namespace axial::io
