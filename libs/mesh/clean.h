@@ -14,7 +14,7 @@ struct CleanOptions {
   double spurious = 20;  // remove components with a diameter below this many mean edge lengths
   bool spikes = true;    // remove faces that hang on the mesh by one edge or one corner
   std::size_t close_holes = 30;  // close holes of at most this many edges; 0: none
-  unsigned smooth = 2;           // iterations of smoothing
+  unsigned smooth = 0;           // steps of smoothing
   double edge_length = 0;        // length of the edges after remeshing [m]; 0: no remeshing
 };
 

@@ -45,6 +45,16 @@ Mesh from_halfedges(HalfedgeMesh& mesh) {
   return result;
 }
 
+Eigen::Vector3d mean_of_neighbours(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const auto neighbour : mesh.vertices_around_target(mesh.halfedge(vertex))) {
+    sum += position(mesh, neighbour);
+    ++count;
+  }
+  return sum / count;
+}
+
 void move_to(HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex, const Eigen::Vector3d& to) {
   const Eigen::Vector3f rounded = to.cast<float>();
   mesh.point(vertex) = {rounded.x(), rounded.y(), rounded.z()};

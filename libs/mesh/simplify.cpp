@@ -19,7 +19,7 @@ void decimate(HalfedgeMesh& mesh, std::size_t faces) {
   namespace sms = CGAL::Surface_mesh_simplification;
   // A closed surface loses two faces and three edges by a collapse.
   const sms::Count_stop_predicate<HalfedgeMesh> stop(faces * 3 / 2);
-  const sms::GarlandHeckbert_policies<HalfedgeMesh, HalfedgeKernel> policies(mesh);
+  const sms::GarlandHeckbert_plane_policies<HalfedgeMesh, HalfedgeKernel> policies(mesh);
   sms::edge_collapse(
       mesh, stop,
       CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));

@@ -25,6 +25,7 @@ inline Eigen::Vector3d position(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_i
   const HalfedgeKernel::Point_3& p = mesh.point(vertex);
   return {p.x(), p.y(), p.z()};
 }
+Eigen::Vector3d mean_of_neighbours(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex);
 // Positions stay representable as float, because a mesh is written as float: a check of the
 // half-edge mesh then holds for the file.
 void move_to(HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex, const Eigen::Vector3d& to);
@@ -39,7 +40,7 @@ void separate_copies(HalfedgeMesh& mesh);
 // Makes the mesh free of self-intersections. Vertices of faces that intersect return to their
 // positions in `before`, of which there is one per vertex, or none; if that does not help, the
 // faces are removed. Returns the number of removed faces.
-std::size_t untangle(HalfedgeMesh& mesh, std::span<const Eigen::Vector3d> before);
+std::size_t untangle(HalfedgeMesh& mesh);
 // Removes faces with two border edges, until there are none, and splits the vertices at which only
 // corners of faces meet. Returns the number of removed faces.
 std::size_t remove_spikes(HalfedgeMesh& mesh);
