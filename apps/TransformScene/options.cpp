@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/not_built.h"
 #include "base/version.h"
 
 namespace axial::apps {
@@ -18,17 +19,10 @@ struct Texts {
   std::string align, transform, positions, transform_out;
 };
 
-// An OpenMVS option that scripts pass but that is not implemented: only its default is accepted.
-struct NotBuilt {
-  const char* name;
-  std::string value;
-  const char* accepted;
-};
-
 std::vector<NotBuilt> not_built() {
-  return {{"transfer-texture-file", "", ""},
-          {"indices-file", "", ""},
-          {"sample-mesh", "-300000", "-300000"}};
+  return {{"transfer-texture-file", "", {""}},
+          {"indices-file", "", {""}},
+          {"sample-mesh", "-300000", {"-300000"}}};
 }
 
 void declare_files(OptionList& list, Texts& texts) {
@@ -142,13 +136,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   declare_moves(program.visible, options, texts);
   declare_other_work(program.visible, options);
   std::vector<NotBuilt> refused = not_built();
-  for (NotBuilt& option : refused)
-    program.visible.add_with_default(option.name, &option.value,
-                                     "not built yet: accepts only the default");
+  declare_not_built(program.visible, refused);
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
-  for (const NotBuilt& option : refused)
-    if (option.value != option.accepted) fail("--{} {}: not built yet", option.name, option.value);
+  refuse_not_built(refused);
   set_paths(texts, options);
   check(options);
   warn_of_no_effect(options);
