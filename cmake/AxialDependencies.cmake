@@ -17,9 +17,15 @@ find_package(Ceres REQUIRED)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and
-# the arithmetic of the rest of the project.
+# the arithmetic of the rest of the project. The compiler takes numbers in CGAL's headers for
+# uninitialised that are not.
 set_target_properties(CGAL PROPERTIES INTERFACE_COMPILE_OPTIONS "")
-set(AXIAL_CGAL_OPTIONS -frounding-math)
+set(AXIAL_CGAL_OPTIONS -frounding-math -Wno-maybe-uninitialized)
+find_path(MAXFLOW_INCLUDE_DIR maxflow.h PATH_SUFFIXES maxflow-3.0 REQUIRED)
+find_library(MAXFLOW_LIBRARY maxflow REQUIRED)
+add_library(maxflow INTERFACE IMPORTED GLOBAL)
+target_include_directories(maxflow SYSTEM INTERFACE ${MAXFLOW_INCLUDE_DIR})
+target_link_libraries(maxflow INTERFACE ${MAXFLOW_LIBRARY})
 if(AXIAL_TESTS)
   find_package(GTest REQUIRED)
   find_package(rapidcheck REQUIRED)
