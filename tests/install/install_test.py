@@ -15,7 +15,7 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
-            "InterfaceCOLMAP", "RefinePoses", "ReproducePaper", "SimulateUnderwater",
+            "InterfaceCOLMAP", "ReconstructMesh", "RefinePoses", "ReproducePaper", "SimulateUnderwater",
             "TransformScene"]
 
 
