@@ -127,8 +127,7 @@ void check_scale(const Options& options, const io::SceneWithCameras& scene,
   for (const SceneImage& image : scene.scene.images) {
     if (!image.camera.port || image.port_name.empty()) continue;
     const auto port = scene.housing->ports.find(image.port_name);
-    if (port == scene.housing->ports.end() ||
-        std::holds_alternative<WaterSurface>(port->second))
+    if (port == scene.housing->ports.end() || std::holds_alternative<WaterSurface>(port->second))
       continue;
     fail(
         "{}: the transformation has the scale {:.9g}, but the lengths of port '{}' are known in "

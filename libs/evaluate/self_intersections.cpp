@@ -58,20 +58,53 @@ bool intersect(const Mesh& mesh, const Face& first, const Face& second) {
          CGAL::do_intersect(tb, Kernel::Segment_3(a1, a2));
 }
 
-// Pairs of faces whose boxes meet.
-std::vector<std::array<std::uint32_t, 2>> candidates(const Mesh& mesh) {
+std::vector<Box> boxes_of(const Mesh& mesh) {
   std::vector<Box> boxes;
   boxes.reserve(mesh.faces.size());
   for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) {
     const auto [p, q, r] = corners_of(mesh, mesh.faces[i]);
     boxes.emplace_back(p.bbox() + q.bbox() + r.bbox(), i);
   }
-  std::vector<std::array<std::uint32_t, 2>> pairs;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-    pairs.push_back({a.info(), b.info()});
-  });
-  return pairs;
+  return boxes;
 }
+
+// Tests pairs of faces in portions, because a bad mesh may have very many whose boxes meet.
+class Pairs {
+ public:
+  explicit Pairs(const Mesh& mesh) : mesh_(mesh), found_(mesh.faces.size(), false) {}
+
+  void add(std::uint32_t a, std::uint32_t b) {
+    constexpr std::size_t kPortion = 1 << 20;
+    pairs_.push_back({a, b});
+    if (pairs_.size() == kPortion) test();
+  }
+
+  void test() {
+    std::vector<std::uint8_t> meet(pairs_.size(), 0);
+    parallel_for(
+        pairs_.size(),
+        [&](std::size_t i) {
+          const auto [a, b] = pairs_[i];
+          meet[i] = intersect(mesh_, mesh_.faces[a], mesh_.faces[b]) ? 1 : 0;
+        },
+        kPointGrain);
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      if (meet[i]) found_[pairs_[i][0]] = found_[pairs_[i][1]] = true;
+    pairs_.clear();
+  }
+
+  std::vector<std::uint32_t> faces() const {
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < found_.size(); ++i)
+      if (found_[i]) faces.push_back(i);
+    return faces;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<bool> found_;
+  std::vector<std::array<std::uint32_t, 2>> pairs_;
+};
 
 }  // namespace
 
@@ -81,22 +114,12 @@ bool is_degenerate(const Mesh& mesh, const Face& face) {
 }
 
 std::vector<std::uint32_t> self_intersecting_faces(const Mesh& mesh) {
-  const auto pairs = candidates(mesh);
-  std::vector<std::uint8_t> meet(pairs.size(), 0);
-  parallel_for(
-      pairs.size(),
-      [&](std::size_t i) {
-        const auto [a, b] = pairs[i];
-        meet[i] = intersect(mesh, mesh.faces[a], mesh.faces[b]) ? 1 : 0;
-      },
-      kPointGrain);
-  std::vector<std::uint32_t> faces;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (meet[i]) faces.insert(faces.end(), pairs[i].begin(), pairs[i].end());
-  std::ranges::sort(faces);
-  const auto rest = std::ranges::unique(faces);
-  faces.erase(rest.begin(), rest.end());
-  return faces;
+  std::vector<Box> boxes = boxes_of(mesh);
+  Pairs pairs(mesh);
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const Box& a, const Box& b) { pairs.add(a.info(), b.info()); });
+  pairs.test();
+  return pairs.faces();
 }
 
 }  // namespace axial::evaluate

@@ -7,6 +7,7 @@
 
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply_property.h"
+#include "io/ply/ply_transform.h"
 #include "reader.h"
 
 namespace axial::fuzz {
@@ -53,6 +54,15 @@ void read_parts(const fs::path& file) {
   io::read_vertex_property(file, "confidence");
   io::ply_place(file);
   io::read_cloud_ply(file, LocalFrame{{1e6, -2e6, 3}});
+}
+
+// The result is a file of the same vertices, which can be read again.
+void move_file(const fs::path& file) {
+  const PointCloud before = io::read_cloud_ply(file);
+  const FrameMove move{{2, Eigen::Matrix3d::Identity(), {1, 2, 3}}, {}, LocalFrame{{10, 0, 0}}};
+  const fs::path moved = file.parent_path() / "moved.ply";
+  io::transform_ply(file, moved, move);
+  require(io::read_cloud_ply(moved).size() == before.size(), "the moved file has other vertices");
 }
 
 PointCloud small_cloud() {
@@ -104,7 +114,8 @@ std::span<const Reader> ply_readers() {
   static constexpr std::array kReaders{
       Reader{"ply-cloud", "cloud.ply", read_cloud_file, write_cloud_seed},
       Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
-      Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed}};
+      Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed},
+      Reader{"ply-moved", "cloud.ply", move_file, write_cloud_seed}};
   return kReaders;
 }
 
