@@ -14,6 +14,11 @@ find_package(embree 3 REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as header-only library
 find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(Ceres REQUIRED)
+find_package(TinyGLTF REQUIRED)
+# These packages have no CMake files.
+find_path(MAXFLOW_INCLUDE_DIR maxflow/graph.h PATH_SUFFIXES maxflow-3.0 REQUIRED)
+find_library(MAXFLOW_LIBRARY maxflow REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_rect_pack.h REQUIRED)  # used as header-only library
 if(AXIAL_TESTS)
   find_package(GTest REQUIRED)
   find_package(rapidcheck REQUIRED)
