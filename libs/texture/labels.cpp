@@ -21,15 +21,6 @@ struct Choice {
   int cost;
 };
 
-float quality_of_95_percent(const FaceViews& views) {
-  std::vector<float> qualities;
-  qualities.reserve(views.sights.size());
-  for (const Sight& sight : views.sights) qualities.push_back(sight.quality);
-  const auto at = qualities.begin() + static_cast<std::ptrdiff_t>(qualities.size() * 95 / 100);
-  std::nth_element(qualities.begin(), at, qualities.end());
-  return std::max(*at, std::numeric_limits<float>::min());
-}
-
 // The neighbours of each face.
 struct Neighbours {
   std::vector<std::uint32_t> begin, faces;
@@ -56,15 +47,17 @@ class Expansion {
         label_(views.faces(), kNoView),
         cost_(views.faces(), 0),
         node_(views.faces(), -1) {
-    const float q95 = quality_of_95_percent(views);
-    for (std::uint32_t f = 0; f < views.faces(); ++f)
+    for (std::uint32_t f = 0; f < views.faces(); ++f) {
+      float best = 0;
+      for (const Sight& sight : views.of(f)) best = std::max(best, sight.quality);
       for (const Sight& sight : views.of(f)) {
-        const double share = std::min(1.0f, sight.quality / q95);
-        const int cost = static_cast<int>(std::lround((1 - share) * kSeam * ratio));
+        const double loss = best > 0 ? 1 - sight.quality / best : 0;
+        const int cost = static_cast<int>(std::lround(2 * ratio * kSeam * loss));
         if (sight.view >= choices_.size()) choices_.resize(sight.view + 1);
         choices_[sight.view].push_back({f, cost});
         if (label_[f] == kNoView || cost < cost_[f]) label_[f] = sight.view, cost_[f] = cost;
       }
+    }
     changed_.assign(choices_.size(), true);
   }
 

@@ -21,11 +21,11 @@ struct LabelOptions {
   int max_cycles = 3;  // expansions of each view, at most
 };
 
-// Minimises the sum over the faces of ratio * (1 - min(1, q / q95)), plus 1 for each pair of faces
-// of different views, where q is the quality of the chosen view and q95 the value that 95 % of all
-// sights do not exceed. The method is alpha expansion (Boykov, Veksler and Zabih, 2001) with
-// integer costs and minimum cuts by Boykov and Kolmogorov's library. A face that no view sees gets
-// kNoView and no seams.
+// Minimises the sum over the faces of 2 * ratio * (1 - q / best), plus 1 for each pair of faces of
+// different views, where q is the quality of the chosen view and `best` that of the best view of
+// the face. The method is alpha expansion (Boykov, Veksler and Zabih, 2001) with integer costs and
+// minimum cuts by Boykov and Kolmogorov's library. A face that no view sees gets kNoView and no
+// seams.
 std::vector<std::uint32_t> choose_views(const FaceViews& views, std::span<const FacePair> pairs,
                                         const LabelOptions& options);
 

@@ -21,7 +21,7 @@ struct Options {
   LabelOptions labels;
   LevelingOptions leveling;
   PackingOptions packing;
-  double sharpness_weight = 0.5;  // see paint()
+  double sharpness_weight = 0;  // see paint()
   Rgb empty_color{255, 127, 39};  // of faces that no view sees, and between the charts
 };
 
