@@ -103,7 +103,7 @@ class Observer {
   }
 
  private:
-  enum class Sees : std::uint8_t { unknown, yes, no };
+  enum class Sees : std::uint8_t { unknown, yes, no, outside };
 
   struct Vertex {
     Eigen::Vector2f pixel;
@@ -117,7 +117,7 @@ class Observer {
       const bool inside = image.visible && image.pixel.x() >= 0 && image.pixel.y() >= 0 &&
                           image.pixel.x() <= view_.camera.width - 1 &&
                           image.pixel.y() <= view_.camera.height - 1;
-      vertices_[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::no};
+      vertices_[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::outside};
     }
   }
 
@@ -144,24 +144,25 @@ class Observer {
   std::optional<Sight> look_at(std::uint32_t face) {
     const auto& [a, b, c] = mesh_.faces[face];
     for (const std::uint32_t corner : {a, b, c})
-      if (vertices_[corner].state == Sees::no) return {};
+      if (vertices_[corner].state == Sees::outside) return {};
     const std::array<Eigen::Vector2f, 3> corners{vertices_[a].pixel, vertices_[b].pixel,
                                                  vertices_[c].pixel};
+    const Eigen::Vector2f middle = (corners[0] + corners[1] + corners[2]) / 3;
+    const Eigen::Vector3d point = (position(a) + position(b) + position(c)) / 3;
+    const Eigen::Vector3d to_camera = (exit(middle) - point).normalized();
+    const Eigen::Vector3f smooth = (normals_[a] + normals_[b] + normals_[c]).normalized();
+    const double cosine = smooth.cast<double>().dot(to_camera);
     const Eigen::Vector2f u = corners[1] - corners[0], v = corners[2] - corners[0];
     const float area = 0.5f * (u.y() * v.x() - u.x() * v.y());  // y down: positive from outside
-    const Eigen::Vector3d middle = (position(a) + position(b) + position(c)) / 3;
-    const Eigen::Vector3d to_camera =
-        (exit((corners[0] + corners[1] + corners[2]) / 3) - middle).normalized();
-    const Eigen::Vector3d normal =
-        (position(b) - position(a)).cross(position(c) - position(a));
-    if (!(area > 0) || !(normal.dot(to_camera) > 0) || unusable_.touch(corners)) return {};
-    for (const std::uint32_t corner : {a, b, c})
-      if (!sees_vertex(corner)) return {};
-    const Eigen::Vector3f smooth = (normals_[a] + normals_[b] + normals_[c]).normalized();
-    const double cosine = std::max(1e-3, smooth.cast<double>().dot(to_camera));
+    const bool front =
+        area > 0 &&
+        (position(b) - position(a)).cross(position(c) - position(a)).dot(to_camera) > 0;
+    if ((!front && !(cosine > 0)) || area == 0 || unusable_.touch(corners)) return {};
     Sight sight;
-    sight.quality = static_cast<float>(area * cosine * cosine);
-    if (!look_inside(face, corners, area, sight)) return {};
+    sight.quality = static_cast<float>(std::abs(area) * std::pow(std::max(1e-3, cosine), 2));
+    sight.whole = front && sees_vertex(a) && sees_vertex(b) && sees_vertex(c) &&
+                  look_inside(face, corners, area, sight);
+    if (!sight.whole && hidden(point, middle)) return {};
     return sight;
   }
 
@@ -205,6 +206,22 @@ class Observer {
   std::vector<Vertex> vertices_;
 };
 
+// Removes sights of a part of a face where a view sees all of it.
+void prefer_whole(FaceViews& views) {
+  std::uint64_t next = 0, from = 0;
+  for (std::size_t f = 0; f < views.faces(); ++f) {
+    const std::uint64_t to = views.begin[f + 1];
+    const auto seen = std::span(views.sights).subspan(from, to - from);
+    const bool any = std::ranges::any_of(seen, &Sight::whole);
+    views.begin[f] = next;
+    for (const Sight& sight : seen)
+      if (sight.whole || !any) views.sights[next++] = sight;
+    from = to;
+  }
+  views.begin.back() = next;
+  views.sights.resize(next);
+}
+
 FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_views) {
   FaceViews result;
   result.begin.assign(faces + 1, 0);
@@ -220,6 +237,7 @@ FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_view
     }
     std::vector<SeenFace>().swap(of_views[v]);
   }
+  prefer_whole(result);
   return result;
 }
 

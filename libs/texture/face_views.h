@@ -18,6 +18,7 @@ struct Sight {
   std::uint32_t view = 0;
   float quality = 0;                   // higher is better
   std::array<std::uint8_t, 3> color{};  // mean colour of the face in this view, B G R
+  bool whole = true;                    // all of the face is seen
 };
 
 // The sights of all faces in one array; those of face f are at [begin[f], begin[f + 1]), in the
@@ -44,6 +45,8 @@ struct VisibilityOptions {
 //   - No pixel on it is unusable (ViewImage::usable).
 //   - No other face lies on the path of light from its corners, and from points on a grid inside
 //     larger faces, to the point where the light leaves the water (exit_point of the camera).
+// A face that no view sees in this way gets the views that see its middle, if there are any: other
+// faces may hide its corners, and it may be turned away if its neighbours are not.
 // The quality is its area in the image [px] times max(0.001, cos)^2, with the angle between the
 // path of light and the normal, which is smoothed over the neighbouring faces.
 // Error for a mesh that Occluders refuses, and an Error of `images`.

@@ -47,7 +47,7 @@ std::size_t remove_outliers(FaceViews& views, double threshold) {
         const std::span<Sight> sights =
             std::span(views.sights).subspan(views.begin[face], views.of(face).size());
         kept[face] = sights.size();
-        if (sights.size() < kFewest) return;
+        if (sights.size() < kFewest || !sights.front().whole) return;
         const std::vector<float> far = distances(sights);
         std::size_t n = 0;
         for (std::size_t i = 0; i < sights.size(); ++i)
