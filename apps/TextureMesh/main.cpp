@@ -25,8 +25,8 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
 void report(const TexturedMesh& mesh, const texture::Report& facts) {
   if (facts.new_faces > 0)
     log_info("{} faces were added by splitting faces whose image is not linear", facts.new_faces);
-  log_info("{} parts of photographs in {} textures; {} of {} faces are not seen",
-           facts.charts, mesh.textures.size(), facts.unseen_faces, mesh.mesh.faces.size());
+  log_info("{} parts of photographs in {} textures; {} of {} faces are not seen", facts.charts,
+           mesh.textures.size(), facts.unseen_faces, mesh.mesh.faces.size());
 }
 
 void require_writable_outputs(const Settings& settings) {

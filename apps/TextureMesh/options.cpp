@@ -75,8 +75,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
 }
 
 void declare_camera(OptionList& list, Raw& raw) {
-  list.add_switch("refractive", &raw.refractive,
-                  "cameras are behind ports: require a housing file")
+  list.add_switch("refractive", &raw.refractive, "cameras are behind ports: require a housing file")
       .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
       .add_with_default("camera-model", &raw.camera_model,
                         "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
@@ -169,15 +168,15 @@ fs::path without_known_extension(fs::path path) {
 
 void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
-  settings.scene = {path(raw.input), common.working_folder, path(raw.housing), ports_of(raw),
-                    settings.scene.allow_missing, option_of};
+  settings.scene = {path(raw.input), common.working_folder,        path(raw.housing),
+                    ports_of(raw),   settings.scene.allow_missing, option_of};
   settings.mesh = path(raw.mesh);
   if (settings.mesh.empty())
     settings.mesh = fs::path(settings.scene.scene).replace_extension(".ply");
   settings.output = without_known_extension(path(raw.output));
   if (settings.output.empty())
-    settings.output = settings.scene.scene.parent_path() /
-                      (settings.scene.scene.stem().string() + "_texture");
+    settings.output =
+        settings.scene.scene.parent_path() / (settings.scene.scene.stem().string() + "_texture");
   settings.views_file = path(raw.views_file);
   settings.mask_folder = path(raw.mask_path);
 }

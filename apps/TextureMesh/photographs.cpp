@@ -43,7 +43,8 @@ std::set<std::size_t> images_in(const fs::path& file, const Scene& scene) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::size_t> named = named_by(line, scene);
-    if (named.empty()) fail("{}: line {}: no image has the ID or the name {}", file.string(), number, line);
+    if (named.empty())
+      fail("{}: line {}: no image has the ID or the name {}", file.string(), number, line);
     images.insert(named.begin(), named.end());
   }
   return images;

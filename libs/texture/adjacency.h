@@ -10,7 +10,7 @@ namespace axial::texture {
 
 // Two faces with a common edge.
 struct FacePair {
-  std::uint32_t a = 0, b = 0;    // faces
+  std::uint32_t a = 0, b = 0;      // faces
   std::uint32_t from = 0, to = 0;  // the vertices of the edge, from < to
 };
 

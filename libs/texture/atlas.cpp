@@ -79,8 +79,7 @@ void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSou
     if (charts_of[v].empty()) return;
     const cv::Mat3b image = sharpened(images(v).color, sharpness);
     for (const std::uint32_t c : charts_of[v])
-      copy_part(image, charts.charts[c].rect,
-                atlas.textures[atlas.texture_of[c]](atlas.rects[c]));
+      copy_part(image, charts.charts[c].rect, atlas.textures[atlas.texture_of[c]](atlas.rects[c]));
   });
 }
 

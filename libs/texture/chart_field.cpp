@@ -20,7 +20,8 @@ constexpr std::array<std::array<int, 2>, 4> kBeside{{{0, -1}, {-1, 0}, {1, 0}, {
 // The pixels of a strip, in the order of their distance from its beginning, with their equations.
 class Strip {
  public:
-  Strip(const cv::Mat1b& covered, int width) : covered_(covered), width_(width), id_(covered.size(), -1) {}
+  Strip(const cv::Mat1b& covered, int width)
+      : covered_(covered), width_(width), id_(covered.size(), -1) {}
 
   void start(std::span<const ChartField::Sample> samples) {
     std::vector<int> counts;
@@ -33,8 +34,7 @@ class Strip {
       value_[i] += as_pixel(sample.value);
       ++counts[i];
     }
-    for (std::size_t i = 0; i < counts.size(); ++i)
-      value_[i] *= 1 / static_cast<float>(counts[i]);
+    for (std::size_t i = 0; i < counts.size(); ++i) value_[i] *= 1 / static_cast<float>(counts[i]);
     fixed_ = pixels_.size();
   }
 

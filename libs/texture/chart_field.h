@@ -33,8 +33,8 @@ class ChartField {
   };
 
   // Adds the solution of Laplace's equation in a strip of `width` pixels around the samples: near a
-  // sample the mean of the samples nearest to the same pixel, zero beyond the strip, no flow through
-  // the border of the covered pixels.
+  // sample the mean of the samples nearest to the same pixel, zero beyond the strip, no flow
+  // through the border of the covered pixels.
   void add_strip(std::span<const Sample> samples, int width);
 
   // Adds the field to `texture`, rounded, at the covered pixels.

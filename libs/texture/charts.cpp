@@ -145,8 +145,8 @@ std::vector<Seam> find_seams(const Charts& charts, const Mesh& mesh,
   for (const FacePair& pair : pairs) {
     const std::uint32_t a = charts.chart_of[pair.a], b = charts.chart_of[pair.b];
     if (a == b || a == kNoChart || b == kNoChart) continue;
-    seams.push_back({nodes_of_edge(charts, mesh, pair.a, pair),
-                     nodes_of_edge(charts, mesh, pair.b, pair)});
+    seams.push_back(
+        {nodes_of_edge(charts, mesh, pair.a, pair), nodes_of_edge(charts, mesh, pair.b, pair)});
   }
   return seams;
 }

@@ -35,10 +35,10 @@ struct Node {
 
 struct Charts {
   std::vector<Chart> charts;
-  std::vector<Node> nodes;              // by chart, then by vertex
-  std::vector<std::uint32_t> chart_of;  // one per face; kNoChart: no view sees it
+  std::vector<Node> nodes;                            // by chart, then by vertex
+  std::vector<std::uint32_t> chart_of;                // one per face; kNoChart: no view sees it
   std::vector<std::array<std::uint32_t, 3>> corners;  // one per face: nodes; unused without chart
-  std::vector<std::uint32_t> faces;       // the faces with a chart, by chart
+  std::vector<std::uint32_t> faces;                   // the faces with a chart, by chart
   std::vector<std::uint32_t> face_begin;  // those of chart c: [face_begin[c], face_begin[c + 1])
 
   std::span<const std::uint32_t> faces_of(std::size_t chart) const {

@@ -22,8 +22,8 @@ struct SeenFace {
 std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
   std::vector<Eigen::Vector3f> normals(mesh.vertices.size(), Eigen::Vector3f::Zero());
   for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3f normal = (mesh.vertices[b] - mesh.vertices[a])
-                                       .cross(mesh.vertices[c] - mesh.vertices[a]);
+    const Eigen::Vector3f normal =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
     for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
   }
   for (Eigen::Vector3f& normal : normals) normal.normalize();
@@ -64,8 +64,7 @@ class UnusablePixels {
     const auto cross = [](const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
       return a.x() * b.y() - a.y() * b.x();
     };
-    const float turn =
-        cross(corners[1] - corners[0], corners[2] - corners[0]) < 0 ? -1.0f : 1.0f;
+    const float turn = cross(corners[1] - corners[0], corners[2] - corners[0]) < 0 ? -1.0f : 1.0f;
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f edge = corners[(k + 1) % 3] - corners[k];
       constexpr float kReach = 1.42f;  // the diagonal of a pixel: all pixels of bilinear()
@@ -155,8 +154,7 @@ class Observer {
     const Eigen::Vector2f u = corners[1] - corners[0], v = corners[2] - corners[0];
     const float area = 0.5f * (u.y() * v.x() - u.x() * v.y());  // y down: positive from outside
     const bool front =
-        area > 0 &&
-        (position(b) - position(a)).cross(position(c) - position(a)).dot(to_camera) > 0;
+        area > 0 && (position(b) - position(a)).cross(position(c) - position(a)).dot(to_camera) > 0;
     if ((!front && !(cosine > 0)) || area == 0 || unusable_.touch(corners)) return {};
     Sight sight;
     sight.quality = static_cast<float>(std::abs(area) * std::pow(std::max(1e-3, cosine), 2));

@@ -16,7 +16,7 @@ namespace axial::texture {
 // A view that sees a face.
 struct Sight {
   std::uint32_t view = 0;
-  float quality = 0;                   // higher is better
+  float quality = 0;                    // higher is better
   std::array<std::uint8_t, 3> color{};  // mean colour of the face in this view, B G R
   bool whole = true;                    // all of the face is seen
 };

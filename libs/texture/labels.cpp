@@ -135,8 +135,8 @@ class Expansion {
 
   Neighbours neighbours_;
   std::vector<std::uint32_t> label_;
-  std::vector<int> cost_;  // of the label
-  std::vector<int> node_;  // in the graph of an expansion; -1: none
+  std::vector<int> cost_;                     // of the label
+  std::vector<int> node_;                     // in the graph of an expansion; -1: none
   std::vector<std::vector<Choice>> choices_;  // of each view
   std::vector<bool> changed_;
 };

@@ -9,7 +9,7 @@
 namespace axial::texture {
 namespace {
 
-constexpr std::size_t kFewest = 5;  // sights of which one can be an outlier
+constexpr std::size_t kFewest = 5;    // sights of which one can be an outlier
 constexpr float kLeastDeviation = 6;  // [grey levels]
 
 float median(std::vector<float>& values) {

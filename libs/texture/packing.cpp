@@ -17,7 +17,8 @@ class TextureSides {
  public:
   explicit TextureSides(const PackingOptions& options)
       : multiple_(options.multiple), max_(options.max_size == 0 ? kLargest : options.max_size) {
-    if (max_ < 16 || max_ > kLargest) fail("max_texture_size {}: must be 0 or from 16 to {}", options.max_size, kLargest);
+    if (max_ < 16 || max_ > kLargest)
+      fail("max_texture_size {}: must be 0 or from 16 to {}", options.max_size, kLargest);
     if (multiple_ < 0 || multiple_ > max_)
       fail("texture_size_multiple {}: must be from 0 to {}", multiple_, max_);
   }

@@ -21,9 +21,9 @@ struct Place {
 };
 
 struct Packing {
-  std::vector<Place> places;     // one per rectangle
-  std::vector<cv::Size> sizes;   // of the textures
-  std::size_t scaled_down = 0;   // rectangles with a scale below 1
+  std::vector<Place> places;    // one per rectangle
+  std::vector<cv::Size> sizes;  // of the textures
+  std::size_t scaled_down = 0;  // rectangles with a scale below 1
 };
 
 // The size of a rectangle at the scale of its place.

@@ -36,9 +36,8 @@ struct Edges {
         const auto [from, to] = std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
         uses.push_back({from, to, f, k});
       }
-    std::ranges::sort(uses, {}, [](const Use& u) {
-      return std::tuple(u.from, u.to, u.face, u.corner);
-    });
+    std::ranges::sort(uses, {},
+                      [](const Use& u) { return std::tuple(u.from, u.to, u.face, u.corner); });
     for (std::size_t i = 0; i < uses.size(); ++i) {
       const Use& use = uses[i];
       if (i == 0 || use.from != uses[i - 1].from || use.to != uses[i - 1].to)
@@ -53,8 +52,8 @@ std::vector<Eigen::Vector3f> normals_of(const Mesh& mesh) {
   std::vector<Eigen::Vector3f> normals;
   normals.reserve(mesh.faces.size());
   for (const auto& [a, b, c] : mesh.faces)
-    normals.push_back((mesh.vertices[b] - mesh.vertices[a])
-                          .cross(mesh.vertices[c] - mesh.vertices[a]));
+    normals.push_back(
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]));
   return normals;
 }
 
@@ -146,8 +145,7 @@ void append_parts(const Corners& face, const std::array<bool, 3>& marked, const 
   const auto count = std::count(marked.begin(), marked.end(), true);
   if (count == 0) return faces.push_back(face);
   if (count == 3) {
-    for (std::size_t k = 0; k < 3; ++k)
-      faces.push_back({face[k], middle[k], middle[(k + 2) % 3]});
+    for (std::size_t k = 0; k < 3; ++k) faces.push_back({face[k], middle[k], middle[(k + 2) % 3]});
     return faces.push_back(middle);
   }
   // Begin at a marked edge; of two, at the second in the order of the corners around the face.
@@ -184,8 +182,8 @@ std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOpti
     const auto count = static_cast<std::size_t>(std::ranges::count(marked, 1));
     if (count == 0) break;
     if (mesh.faces.size() + 2 * count > options.max_faces) {
-      log_warning("faces are not split further: {} faces, and {} edges to split",
-                  mesh.faces.size(), count);
+      log_warning("faces are not split further: {} faces, and {} edges to split", mesh.faces.size(),
+                  count);
       break;
     }
     split_marked(edges, marked, mesh);

@@ -12,8 +12,8 @@
 namespace axial::texture {
 
 struct SplitOptions {
-  double tolerance = 0.25;              // largest error of a linear image inside a face [px]
-  std::size_t max_faces = 20'000'000;   // no more splits beyond this number
+  double tolerance = 0.25;             // largest error of a linear image inside a face [px]
+  std::size_t max_faces = 20'000'000;  // no more splits beyond this number
 };
 
 // Splits edges in their middle, and the faces at them, until the exact image of the middle of each

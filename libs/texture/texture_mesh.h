@@ -21,12 +21,12 @@ struct Options {
   LabelOptions labels;
   LevelingOptions leveling;
   PackingOptions packing;
-  double sharpness_weight = 0;  // see paint()
+  double sharpness_weight = 0;    // see paint()
   Rgb empty_color{255, 127, 39};  // of faces that no view sees, and between the charts
 };
 
 struct Report {
-  std::size_t new_faces = 0;    // by splitting
+  std::size_t new_faces = 0;  // by splitting
   std::size_t unseen_faces = 0;
   std::size_t outliers = 0;  // pairs of a face and a view
   std::size_t charts = 0;

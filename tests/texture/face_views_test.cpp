@@ -32,8 +32,7 @@ TEST(FaceViews, SeenFacesAreTheFirstOnTheirRays) {
           make_camera<double>(view.camera));
       const auto ray = simulate::trace_pixel(lens, &port, pixel.x(), pixel.y());
       ASSERT_TRUE(ray);
-      const auto in_world =
-          simulate::to_world({view.pose.rotation, view.pose.centre}, *ray);
+      const auto in_world = simulate::to_world({view.pose.rotation, view.pose.centre}, *ray);
       const auto hit = scene.first_hit(in_world.start, in_world.direction);
       ASSERT_TRUE(hit);
       EXPECT_EQ(hit->face, f);

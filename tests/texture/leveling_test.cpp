@@ -22,8 +22,9 @@ double mean_step(const TexturedMesh& mesh) {
         if (mesh.mesh.faces[face][k] == pair.from || mesh.mesh.faces[face][k] == pair.to)
           weights[static_cast<int>(k)] = 0.5f;
       const auto& uv = mesh.uv[face];
-      return std::pair(Eigen::Vector2f(weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2]),
-                       test::color_at(mesh, face, weights));
+      return std::pair(
+          Eigen::Vector2f(weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2]),
+          test::color_at(mesh, face, weights));
     };
     const auto [at_a, a] = place(pair.a);
     const auto [at_b, b] = place(pair.b);
@@ -84,9 +85,9 @@ TEST(ChartField, CorrectionFallsLinearlyInTheStrip) {
 
 TEST(ChartField, ValuesAreLinearInTriangles) {
   ChartField field({30, 30});
-  field.add_triangle({Eigen::Vector2f(2, 3), {25, 5}, {7, 27}},
-                     {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(0, 50, 0),
-                      Eigen::Vector3f(0, 0, 90)});
+  field.add_triangle(
+      {Eigen::Vector2f(2, 3), {25, 5}, {7, 27}},
+      {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(0, 50, 0), Eigen::Vector3f(0, 0, 90)});
   cv::Mat3b texture(30, 30, cv::Vec3b(100, 100, 100));
   field.add_to(texture);
   // The centre of gravity of the triangle is (11.33, 11.67).

@@ -75,9 +75,13 @@ TEST(Packing, ALargeRectangleIsScaledDown) {
 
 TEST(Packing, WrongOptionsAreRefused) {
   const std::vector<cv::Size> sizes{{5, 5}};
-  EXPECT_THAT(test::error_of([&] { pack(sizes, {3, 0}); }),
+  EXPECT_THAT(test::error_of([&] {
+                pack(sizes, {3, 0});
+              }),
               testing::HasSubstr("max_texture_size 3"));
-  EXPECT_THAT(test::error_of([&] { pack(sizes, {64, -1}); }),
+  EXPECT_THAT(test::error_of([&] {
+                pack(sizes, {64, -1});
+              }),
               testing::HasSubstr("texture_size_multiple -1"));
 }
 

@@ -35,8 +35,7 @@ double largest_error(const Mesh& mesh, const std::vector<View>& views) {
               const Eigen::Vector3d s = w / w.sum();
               const Eigen::Vector3d point =
                   s[0] * corners[0] + s[1] * corners[1] + s[2] * corners[2];
-              const Eigen::Vector2d linear =
-                  s[0] * pixels[0] + s[1] * pixels[1] + s[2] * pixels[2];
+              const Eigen::Vector2d linear = s[0] * pixels[0] + s[1] * pixels[1] + s[2] * pixels[2];
               largest = std::max(
                   largest, (camera.project(view.pose.to_camera(point)).pixel - linear).norm());
             }

@@ -27,8 +27,7 @@ Errors summary(const std::vector<float>& errors) {
 TEST(TextureMesh, ColoursThroughAPortAreThoseOfTheSurface) {
   const test::Room room = test::photograph_room(6);
   Report report;
-  const TexturedMesh mesh =
-      texture_mesh(test::room_mesh(), room.views, room.source(), {}, &report);
+  const TexturedMesh mesh = texture_mesh(test::room_mesh(), room.views, room.source(), {}, &report);
   const Errors errors = summary(test::color_errors(mesh));
   EXPECT_LT(errors.median, 2);
   EXPECT_LT(errors.of_95_percent, 5);
@@ -46,23 +45,22 @@ TEST(TextureMesh, WithThePortIgnoredColoursAreWrong) {
 // The box hides parts of the floor from each view, and is 77 levels more red.
 TEST(TextureMesh, HiddenPartsOfTheFloorDoNotGetTheColourOfTheBox) {
   const test::Room room = test::photograph_room(6);
-  const TexturedMesh mesh =
-      texture_mesh(test::refined(test::room_mesh(), 4), room.views, room.source(),
-                   test::plain_options());
+  const TexturedMesh mesh = texture_mesh(test::refined(test::room_mesh(), 4), room.views,
+                                         room.source(), test::plain_options());
   std::size_t floor = 0, reddish = 0;
-  test::for_each_color(mesh, [&](std::size_t, const Eigen::Vector3f& color,
-                                 const Eigen::Vector3d& point) {
-    const bool near_box = std::abs(point.x()) < 0.23 && std::abs(point.y()) < 0.18;
-    if (point.z() > 1e-3 || near_box) return;
-    ++floor;
-    if (color[0] > 255 * test::pattern(point)[0] + 30) ++reddish;
-  });
+  test::for_each_color(
+      mesh, [&](std::size_t, const Eigen::Vector3f& color, const Eigen::Vector3d& point) {
+        const bool near_box = std::abs(point.x()) < 0.23 && std::abs(point.y()) < 0.18;
+        if (point.z() > 1e-3 || near_box) return;
+        ++floor;
+        if (color[0] > 255 * test::pattern(point)[0] + 30) ++reddish;
+      });
   EXPECT_GT(floor, 1000u);
   EXPECT_EQ(reddish, 0u);
 }
 
-// The label is that of the pixels themselves: no face gets a colour from them. OpenMVS 2.3 leaves out
-// another label.
+// The label is that of the pixels themselves: no face gets a colour from them. OpenMVS 2.3 leaves
+// out another label.
 TEST(TextureMesh, UnusablePixelsAreNotUsed) {
   test::Room room = test::photograph_room(6);
   for (std::size_t v = 0; v < room.images.size(); ++v) {
@@ -72,9 +70,8 @@ TEST(TextureMesh, UnusablePixelsAreNotUsed) {
     usable(masked) = 0;
     color(masked).setTo(cv::Scalar(255, 0, 255));
   }
-  const TexturedMesh mesh =
-      texture_mesh(test::refined(test::room_mesh(), 4), room.views, room.source(),
-                   test::plain_options());
+  const TexturedMesh mesh = texture_mesh(test::refined(test::room_mesh(), 4), room.views,
+                                         room.source(), test::plain_options());
   EXPECT_LT(summary(test::color_errors(mesh)).median, 2);
   std::size_t magenta = 0;
   test::for_each_color(mesh, [&](std::size_t, const Eigen::Vector3f& c, const Eigen::Vector3d&) {
@@ -90,12 +87,14 @@ TEST(TextureMesh, AFishInOneViewIsLeftOut) {
   const auto white = [&](double threshold) {
     Options options = test::plain_options();
     options.outlier_threshold = threshold;
-    const TexturedMesh mesh = texture_mesh(test::refined(test::room_mesh(), 4), room.views,
-                                           room.source(), options);
+    const TexturedMesh mesh =
+        texture_mesh(test::refined(test::room_mesh(), 4), room.views, room.source(), options);
     std::size_t count = 0;
-    test::for_each_color(mesh, [&](std::size_t, const Eigen::Vector3f& c, const Eigen::Vector3d& p) {
-      if (p.z() > 0.999 * test::kBoxHeight && (c - 255 * test::pattern(p)).minCoeff() > 20) ++count;
-    });
+    test::for_each_color(
+        mesh, [&](std::size_t, const Eigen::Vector3f& c, const Eigen::Vector3d& p) {
+          if (p.z() > 0.999 * test::kBoxHeight && (c - 255 * test::pattern(p)).minCoeff() > 20)
+            ++count;
+        });
     return count;
   };
   const std::size_t all = white(0);
@@ -143,7 +142,8 @@ TEST(TextureMesh, LargeChartsAreScaledDown) {
       texture_mesh(test::room_mesh(), room.views, room.source(), options, &report);
   EXPECT_GT(report.scaled_down, 0u);
   EXPECT_GT(mesh.textures.size(), 1u);
-  for (const cv::Mat3b& texture : mesh.textures) EXPECT_LE(std::max(texture.cols, texture.rows), 64);
+  for (const cv::Mat3b& texture : mesh.textures)
+    EXPECT_LE(std::max(texture.cols, texture.rows), 64);
   EXPECT_LT(summary(test::color_errors(mesh)).median, 12);  // coarser pixels, but the same places
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <limits>
@@ -9,6 +10,19 @@
 
 namespace axial::io {
 namespace {
+
+// A name as an address: glTF wants bytes other than these as %XX.
+std::string as_uri(const std::string& name) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  std::string uri;
+  for (const char c : name)
+    if (kPlain.find(c) != std::string_view::npos)
+      uri += c;
+    else
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return uri;
+}
 
 // Builds a model with one buffer.
 class GltfModel {
@@ -37,7 +51,7 @@ class GltfModel {
   }
 
   // A texture in a file of its own.
-  void add_texture_file(const std::string& name) { add_texture().uri = name; }
+  void add_texture_file(const std::string& name) { add_texture().uri = as_uri(name); }
 
   // A texture in the buffer.
   void add_texture_bytes(const std::string& png) {
@@ -64,14 +78,14 @@ class GltfModel {
     primitive.attributes["TEXCOORD_0"] =
         add_accessor(uv.data(), uv.size(), sizeof(uv[0]), TINYGLTF_TYPE_VEC2,
                      TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
-    primitive.indices = add_accessor(corners.faces.data(), 3 * corners.faces.size(), 4,
-                                     TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                     TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    primitive.indices =
+        add_accessor(corners.faces.data(), 3 * corners.faces.size(), 4, TINYGLTF_TYPE_SCALAR,
+                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     model_.meshes[0].primitives.push_back(std::move(primitive));
   }
 
   // Returns the file. The buffer is part of it if `binary`; otherwise it is moved to `buffer`, and
-  // the file refers to it by `uri`.
+  // the file refers to it by the name `uri`.
   std::string text(bool binary, const std::string& uri, std::string* buffer) {
     std::ostringstream out;
     tinygltf::TinyGLTF writer;
@@ -91,8 +105,9 @@ class GltfModel {
     const std::size_t at = json.find(begin);
     if (at == std::string::npos) fail("the glTF writer has an unknown layout");
     const std::size_t end = json.find('"', at + begin.size());
-    json.replace(at, end - at,
-                 fmt::format("\"buffers\":[{{\"byteLength\":{},\"uri\":\"{}", bytes_.size(), uri));
+    json.replace(
+        at, end - at,
+        fmt::format("\"buffers\":[{{\"byteLength\":{},\"uri\":\"{}", bytes_.size(), as_uri(uri)));
     *buffer = std::move(bytes_);
     return json;
   }
@@ -123,8 +138,8 @@ class GltfModel {
     return static_cast<int>(model_.bufferViews.size() - 1);
   }
 
-  int add_accessor(const void* data, std::size_t count, std::size_t stride, int type,
-                   int component, int target) {
+  int add_accessor(const void* data, std::size_t count, std::size_t stride, int type, int component,
+                   int target) {
     const int view = add_view(data, count * stride, target);
     tinygltf::Accessor& accessor = model_.accessors.emplace_back();
     accessor.bufferView = view;

@@ -109,8 +109,7 @@ void write_textured_mesh(const fs::path& path, const TexturedMesh& mesh, Texture
       return write_bytes(temporaries[0], textured_ply(mesh, textures, frame));
     if (format == TexturedFormat::obj) {
       write_bytes(temporaries[1], textured_mtl(textures));
-      return write_bytes(temporaries[0],
-                         textured_obj(mesh, files[1].filename().string(), frame));
+      return write_bytes(temporaries[0], textured_obj(mesh, files[1].filename().string(), frame));
     }
     if (format == TexturedFormat::gltf) {
       const GltfFiles gltf = textured_gltf(mesh, textures, files[1].filename().string(), frame);

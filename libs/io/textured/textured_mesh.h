@@ -24,11 +24,13 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
                                                   TexturedFormat format, std::size_t textures);
 
 // Writes the mesh and its textures. Either all files are written, or none is.
-//   - PLY: comments TextureFile; for each face texcoord, a list of u v of its corners, and texnumber
+//   - PLY: comments TextureFile; for each face texcoord, a list of u v of its corners, and
+//   texnumber
 //     if there is more than one texture. u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
 //   - OBJ: the same u and v, each pair once for each vertex and texture; a group and a material
 //     "material_K" for each texture.
-//   - glTF: a primitive for each texture, with vertices and bounds of its own, u = (x + 0.5) / width
+//   - glTF: a primitive for each texture, with vertices and bounds of its own, u = (x + 0.5) /
+//   width
 //     and v = (y + 0.5) / height; materials without lighting (KHR_materials_unlit). The axes are
 //     those of the scene. GLB is the same in one file.
 // Positions are written in `frame`, as float. If that is not the world, PLY has the comment

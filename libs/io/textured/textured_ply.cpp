@@ -18,11 +18,12 @@ std::string textured_ply(const TexturedMesh& textured, const std::vector<std::st
   out.text("ply\nformat binary_little_endian 1.0\n");
   out.text(geo_comment(placement));
   for (const std::string& name : textures) out.text(fmt::format("comment TextureFile {}\n", name));
-  out.text(fmt::format("element vertex {}\n{}element face {}\n"
-                       "property list uint8 uint32 vertex_indices\n"
-                       "property list uint8 float32 texcoord\n{}end_header\n",
-                       mesh.vertices.size(), position_properties(placement), mesh.faces.size(),
-                       numbered ? "property int32 texnumber\n" : ""));
+  out.text(
+      fmt::format("element vertex {}\n{}element face {}\n"
+                  "property list uint8 uint32 vertex_indices\n"
+                  "property list uint8 float32 texcoord\n{}end_header\n",
+                  mesh.vertices.size(), position_properties(placement), mesh.faces.size(),
+                  numbered ? "property int32 texnumber\n" : ""));
   for (const Eigen::Vector3f& vertex : mesh.vertices) out.write(std::span(vertex.data(), 3));
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::uint32_t texture = textured.texture_of[f];

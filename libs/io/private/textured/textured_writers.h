@@ -14,8 +14,8 @@ namespace axial::io {
 
 // The corners of faces as vertices of their own: one for each vertex, texture and place in it.
 struct UnifiedCorners {
-  std::vector<std::uint32_t> vertex;  // of the mesh
-  std::vector<Eigen::Vector2f> uv;    // [px]
+  std::vector<std::uint32_t> vertex;                // of the mesh
+  std::vector<Eigen::Vector2f> uv;                  // [px]
   std::vector<std::array<std::uint32_t, 3>> faces;  // indices into the two
 };
 
