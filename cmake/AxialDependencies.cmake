@@ -21,11 +21,14 @@ find_package(CGAL REQUIRED)
 # uninitialised that are not.
 set_target_properties(CGAL PROPERTIES INTERFACE_COMPILE_OPTIONS "")
 set(AXIAL_CGAL_OPTIONS -frounding-math -Wno-maybe-uninitialized)
+# These packages have no CMake files.
 find_path(MAXFLOW_INCLUDE_DIR maxflow.h PATH_SUFFIXES maxflow-3.0 REQUIRED)
 find_library(MAXFLOW_LIBRARY maxflow REQUIRED)
 add_library(maxflow INTERFACE IMPORTED GLOBAL)
 target_include_directories(maxflow SYSTEM INTERFACE ${MAXFLOW_INCLUDE_DIR})
 target_link_libraries(maxflow INTERFACE ${MAXFLOW_LIBRARY})
+find_package(TinyGLTF REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_rect_pack.h REQUIRED)  # used as header-only library
 if(AXIAL_TESTS)
   find_package(GTest REQUIRED)
   find_package(rapidcheck REQUIRED)
