@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/setting_names.h"
-#include "base/unused_input.h"
 #include "base/version.h"
+#include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
 namespace {
@@ -17,15 +17,12 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, output, cloud, housing, mesh, export_type = "ply";
-  bool refractive = false, ignore_ports = false;
+  std::string input, output, cloud, mesh, export_type = "ply";
+  io::SceneOptions scene;
 };
 
-constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
-                                    {"housing", "--housing"},
-                                    {"max_memory", "--max-memory"},
-                                    {"merge.min_distance", "--min-point-distance"},
-                                    {"refractive", "--refractive"}};
+constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
+                                    {"merge.min_distance", "--min-point-distance"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -48,10 +45,6 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
            "dense cloud with views (<input>.ply, or the scene's points if there is no such file)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_mesh.ply)")
       .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
-      .add_switch("refractive", &raw.refractive, "cameras are behind ports: require a housing file")
-      .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
-      .add_with_default("ignore-ports", &raw.ignore_ports,
-                        "do not read the housing file: treat all cameras as cameras in air")
       .add_with_default("max-memory", &options.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)");
 }
@@ -114,25 +107,17 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("max-memory", options.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   if (raw.export_type != "ply" && raw.export_type != "obj")
     fail("--export-type {}: must be one of ply, obj", raw.export_type);
-  if (raw.refractive && raw.ignore_ports) fail("--refractive contradicts --ignore-ports 1");
-  if (raw.ignore_ports && !raw.housing.empty())
-    fail("--housing {} contradicts --ignore-ports 1", raw.housing);
 }
 
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
-  io::SceneFiles& scene = options.scene;
-  scene.scene = in_working_folder(common, raw.input);
-  scene.working_folder = common.working_folder;
-  scene.housing = in_working_folder(common, raw.housing);
-  if (raw.refractive) scene.ports = io::PortChoice::required;
-  if (raw.ignore_ports) scene.ports = io::PortChoice::ignored;
-  scene.name_of = option_of;
+  options.scene = io::scene_files(raw.scene, raw.input, common);
+  const fs::path& scene = options.scene.scene;
   options.cloud = in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
   options.output = in_working_folder(common, raw.output);
   if (options.output.empty())
-    options.output = scene.scene.parent_path() / (scene.scene.stem().string() + "_mesh");
+    options.output = scene.parent_path() / (scene.stem().string() + "_mesh");
   options.output.replace_extension(raw.export_type);
 }
 
@@ -156,9 +141,9 @@ Options parse_command_line(int argc, const char* const* argv) {
                          OptionList("Mesh options"), OptionList("Hidden options")};
   program.version = version_line(program.name);
   declare_io(program.visible, raw, options);
+  io::declare_scene_options(program.visible, raw.scene);
   declare_reconstruction(program.visible, options);
   declare_cleaning(program.visible, options);
-  UnusedInput::declare(program.visible, options.scene.allow_missing);
   program.hidden.add("mesh-file", &raw.mesh, "clean this mesh instead of reconstructing");
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
