@@ -7,17 +7,17 @@
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/setting_names.h"
-#include "base/unused_input.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
 namespace {
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, mesh, output, housing, mask_path, export_type = "ply";
-  bool ignore_ports = false;
+  std::string input, mesh, output, mask_path, export_type = "ply";
+  io::SceneOptions cameras;
   unsigned alternate_pair = 0;
   double decimate = 0;
   unsigned close_holes = 30;
@@ -33,6 +33,7 @@ struct WithoutEffect {
 
 constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
                                     {"bit_depth", "--bit-depth"},
+                                    {"camera is flat_port", "--camera-model is flatport"},
                                     {"housing", "--housing"},
                                     {"ignore_mask_label", "--ignore-mask-label"},
                                     {"mask_folder", "--mask-path"},
@@ -49,11 +50,6 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add("mesh-file,m", &raw.mesh, "mesh to refine (<input>.ply)")
       .add("output-file,o", &raw.output, "mesh to write (<input>_refine.ply)")
       .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
-      .add_switch("refractive", &scene.refractive,
-                  "cameras are behind ports: require a housing file")
-      .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
-      .add_with_default("ignore-ports", &raw.ignore_ports,
-                        "do not read the housing file: treat all cameras as cameras in air")
       .add_with_default("max-memory", &scene.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add("mask-path", &raw.mask_path, "folder of masks (<image>.mask.png)")
@@ -125,20 +121,23 @@ void check_values(const Options& options, const Raw& raw) {
   io::check_bit_depth(options.scene.bit_depth, option_of("bit_depth"));
   if (raw.export_type != "ply" && raw.export_type != "obj")
     fail("--export-type {}: must be one of ply, obj", raw.export_type);
-  if (options.scene.refractive && raw.ignore_ports)
-    fail("--refractive contradicts --ignore-ports 1");
-  if (raw.ignore_ports && !raw.housing.empty())
-    fail("--housing {} contradicts --ignore-ports 1", raw.housing);
+}
+
+void take_cameras(const io::SceneFiles& files, densify::Settings& scene) {
+  scene.input = files.scene;
+  scene.working_folder = files.working_folder;
+  scene.housing = files.housing;
+  scene.allow_missing = files.allow_missing;
+  scene.refractive = files.ports == io::PortChoice::required;
+  if (files.ports == io::PortChoice::ignored) scene.camera = densify::CameraChoice::pinhole;
+  if (files.ports == io::PortChoice::flat) scene.camera = densify::CameraChoice::flat_port;
 }
 
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   densify::Settings& scene = options.scene;
-  scene.input = in_working_folder(common, raw.input);
-  scene.working_folder = common.working_folder;
-  scene.housing = in_working_folder(common, raw.housing);
+  take_cameras(io::scene_files(raw.cameras, raw.input, common), scene);
   scene.mask_folder = in_working_folder(common, raw.mask_path);
-  if (raw.ignore_ports) scene.camera = densify::CameraChoice::pinhole;
   if (!scene.mask_folder.empty() && !given(options.parsed, "ignore-mask-label"))
     scene.ignore_mask_label = 0;
   options.mesh = in_working_folder(common, raw.mesh);
@@ -180,9 +179,9 @@ Options parse_command_line(int argc, const char* const* argv) {
                          OptionList("Refine options"), OptionList("Hidden options")};
   program.version = version_line(program.name);
   declare_io(program.visible, raw, options);
+  io::declare_scene_options(program.visible, raw.cameras);
   declare_refinement(program.visible, raw, options);
   declare_without_effect(program.visible, without_effect);
-  UnusedInput::declare(program.visible, options.scene.allow_missing);
   std::vector<NotBuilt> not_built{{"cuda-device", "-1", {"-1", "-2"}}};
   declare_not_built(program.visible, not_built);
   options.parsed = parse_options(argc, argv, program);
