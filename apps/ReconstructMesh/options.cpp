@@ -72,9 +72,9 @@ void declare_cleaning(OptionList& list, Options& options) {
       .add_with_default("target-face-num", &clean.target_faces,
                         "number of faces to keep, instead of --decimate (0: not used)")
       .add_with_default("remove-spurious", &clean.spurious,
-                        "remove faces with edges longer than a third of this many median edges, "
-                        "where no camera has seen a surface, and pieces smaller than this many "
-                        "mean edges (0: none)")
+                        "remove faces whose longest edge is longer than a third of this many "
+                        "median longest edges, where no camera has seen a surface, and pieces "
+                        "smaller than this many mean edges (0: none)")
       .add_with_default("remove-spikes", &clean.spikes,
                         "remove faces that hang on the mesh by one edge")
       .add_with_default("close-holes", &clean.close_holes,
@@ -101,6 +101,7 @@ void check_values(const Options& options, const Raw& raw) {
   check_range("quality-factor", settings.votes.quality_factor, 0.0, 1e3);
   check_range("decimate", settings.clean.decimate, 1e-6, 1.0);
   check_range("remove-spurious", settings.clean.spurious, 0.0, 1e6);
+  check_range("close-holes", settings.clean.close_holes, std::size_t{0}, std::size_t{1000});
   check_range("smooth", settings.clean.smooth, 0u, 1000u);
   check_range("edge-length", settings.clean.edge_length, 0.0, 1e9);
   check_range("roi-border", options.roi_border, -1e6, 1e6);

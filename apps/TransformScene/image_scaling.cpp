@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -51,7 +52,7 @@ std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::
     photographs.emplace_back(image.path);
     if (!image.calibrated) continue;
     const io::ImageHeader header = io::read_image_header(image.path);
-    if (std::max(header.size.width, header.size.height) <= static_cast<int>(max_resolution))
+    if (std::cmp_less_equal(std::max(header.size.width, header.size.height), max_resolution))
       continue;
     if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
     fs::path target = folder / fs::path(image.path).lexically_normal().lexically_relative(common);

@@ -32,7 +32,7 @@ Eigen::Vector3d middle_of_cameras(const Scene& scene) {
     std::vector<double> values;
     for (const SceneImage& image : scene.images)
       if (image.calibrated) values.push_back(image.pose.centre(axis));
-    if (values.empty()) continue;
+    if (values.empty()) fail("no image is calibrated: the upper side of the ground is not known");
     std::ranges::nth_element(values, values.begin() + std::ssize(values) / 2);
     middle(axis) = values[values.size() / 2];
   }

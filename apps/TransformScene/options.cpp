@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/version.h"
+#include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Texts {
-  std::string input, cloud, mesh, output, housing;
+  std::string input, cloud, mesh, output;
+  io::SceneOptions cameras;
   std::string align, transform, positions, transform_out;
 };
 
@@ -32,8 +34,8 @@ void declare_files(OptionList& list, Texts& texts) {
       .add("mesh-file,m", &texts.mesh, "PLY mesh in the scene's coordinates, transformed with it")
       .add("output-file,o", &texts.output,
            "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
-           "as .ply and _mesh.ply")
-      .add("housing", &texts.housing, "housing file (<scene>.housing.json)");
+           "as .ply and _mesh.ply");
+  io::declare_scene_options(list, texts.cameras);
 }
 
 void declare_moves(OptionList& list, Options& options, Texts& texts) {
@@ -73,9 +75,7 @@ void set_paths(const Texts& texts, Options& options) {
   const auto path = [&](const std::string& text) {
     return in_working_folder(options.parsed.common, text);
   };
-  options.files.scene = path(texts.input);
-  options.files.working_folder = options.parsed.common.working_folder;
-  options.files.housing = path(texts.housing);
+  options.files = io::scene_files(texts.cameras, texts.input, options.parsed.common);
   options.cloud = path(texts.cloud);
   options.mesh = path(texts.mesh);
   options.align = path(texts.align);

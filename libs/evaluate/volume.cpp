@@ -22,6 +22,10 @@ constexpr std::size_t kSamples = 20000;
 constexpr std::size_t kTrials = 1000;
 constexpr double kLeastAlong = std::numbers::sqrt2 / 2;  // cosine of 45 degrees
 
+bool is_upright(const Plane& plane, const GroundOptions& options) {
+  return std::abs(plane.normal(options.up_axis)) >= kLeastAlong;
+}
+
 bool within(const Plane& plane, const Eigen::Vector3d& x, double threshold) {
   return std::abs(plane.height_of(x)) <= threshold;
 }
@@ -37,7 +41,7 @@ std::optional<Plane> random_plane(const Points& samples, std::size_t trial,
   const Eigen::Vector3d normal = (pick(1) - a).cross(pick(2) - a);
   if (!(normal.norm() > 0)) return {};
   Plane plane{normal.normalized(), 0};
-  if (!(std::abs(plane.normal(options.up_axis)) >= kLeastAlong)) return {};
+  if (!is_upright(plane, options)) return {};
   plane.offset = plane.normal.dot(a);
   return plane;
 }
@@ -121,7 +125,11 @@ Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundO
   const auto found = best_plane(samples, threshold, options);
   if (!found) fail("no ground plane is within 45 degrees of the up axis {}", options.up_axis);
   Plane plane = *found;
-  for (int step = 0; step < 3; ++step) plane = fitted(samples, plane, threshold);
+  for (int step = 0; step < 3; ++step) {
+    const Plane refined = fitted(samples, plane, threshold);
+    if (!is_upright(refined, options)) break;
+    plane = refined;
+  }
   if (plane.height_of(above) < 0) plane = {-plane.normal, -plane.offset};
   return plane;
 }

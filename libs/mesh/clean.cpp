@@ -87,6 +87,13 @@ void mend(HalfedgeMesh& mesh, const CleanOptions& options, CleanReport& report) 
   report.closed_holes += close_holes(mesh, options.close_holes);
 }
 
+void check_edge_length(const HalfedgeMesh& mesh, double length) {
+  constexpr double kMostFaces = 1 << 28;
+  const double equilateral = 0.433 * length * length;  // area
+  if (pmp::area(mesh) > kMostFaces * equilateral)
+    fail("remeshing to edges of {} would make more than {} faces", length, kMostFaces);
+}
+
 std::size_t faces_to_keep(const HalfedgeMesh& mesh, const CleanOptions& options) {
   if (options.target_faces > 0) return options.target_faces;
   return static_cast<std::size_t>(options.decimate * static_cast<double>(mesh.number_of_faces()));
@@ -98,7 +105,9 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   if (mesh.faces.empty()) fail("the mesh has no faces");
   CleanReport own;
   CleanReport& result = report ? *report : own;
+  result = {};
   HalfedgeMesh surface = to_halfedges(mesh);
+  if (surface.number_of_faces() == 0) fail("all faces of the mesh name a vertex twice");
   result.removed_components = remove_small_components(surface, options.spurious);
   if (const std::size_t faces = faces_to_keep(surface, options); faces < surface.number_of_faces())
     decimate(surface, faces);
@@ -106,6 +115,7 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   separate_copies(surface);
   smooth(surface, options.smooth);
   if (options.edge_length > 0) {
+    check_edge_length(surface, options.edge_length);
     remesh(surface, options.edge_length);
     mend(surface, options, result);
     result.removed_intersections = untangle(surface);
@@ -113,7 +123,10 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
     result.removed_intersections = untangle(surface);
   }
   if (surface.number_of_faces() == 0)
-    fail("no face of the mesh is left: all pieces are smaller than the limit for spurious pieces");
+    fail(
+        "no face of the mesh is left: all pieces are smaller than the limit for spurious pieces, "
+        "or "
+        "their faces intersect each other");
   return from_halfedges(surface);
 }
 

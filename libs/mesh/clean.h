@@ -24,11 +24,12 @@ struct CleanReport {
 };
 
 // Makes `mesh` edge- and vertex-manifold, oriented and free of self-intersections. The steps, in
-// this order: repair of edges and vertices at which more than two faces meet, spurious
-// components, simplification, spikes, holes, smoothing, remeshing, and again spikes and holes; at
-// last faces that intersect each other are smoothed, and removed if that does not help. Vertices
-// without faces are removed. Colours are lost. The result does not depend on the number of threads.
-// Error if the mesh has no face, or if no face is left.
+// this order: repair of edges and vertices at which more than two faces meet, spurious components,
+// simplification, spikes, holes, smoothing, remeshing, and again spikes and holes; at last faces
+// that intersect each other are smoothed, and removed if that does not help. Vertices at the same
+// place are moved apart, each by 1 % of the way to the mean of its neighbours. Vertices without
+// faces are removed. Colours are lost. The result does not depend on the number of threads. Error
+// if the mesh has no face, if no face is left, and if remeshing would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 }  // namespace axial::mesh

@@ -3,14 +3,14 @@
 
 #include <maxflow.h>
 
-#include <algorithm>
-
 #include "base/error.h"
 
 namespace axial::mesh {
 namespace {
 
-// Boykov and Kolmogorov's algorithm, which keeps its search trees between augmentations.
+// Boykov and Kolmogorov's algorithm, which keeps its search trees between augmentations. The
+// library has only instances whose total flow is an int. The total may exceed its range, and is not
+// used.
 using Graph = maxflow::Graph<int, int, int>;
 
 void report(const char* message) {
@@ -22,9 +22,8 @@ void connect(const Tetrahedra& tetrahedra, const Votes& votes, std::uint32_t cel
     const std::uint32_t next = tetrahedra.neighbours[cell][i];
     if (next < cell) continue;
     const auto back = static_cast<std::size_t>(tetrahedra.place_of_neighbour(next, cell));
-    graph.add_edge(static_cast<int>(cell), static_cast<int>(next),
-                   std::min(votes.facets[cell][i], kLargestVote),
-                   std::min(votes.facets[next][back], kLargestVote));
+    graph.add_edge(static_cast<int>(cell), static_cast<int>(next), votes.facets[cell][i],
+                   votes.facets[next][back]);
   }
 }
 
@@ -37,8 +36,7 @@ std::vector<bool> occupied(const Tetrahedra& tetrahedra, const Votes& votes) {
   Graph graph(cells, 2 * cells, report);
   graph.add_node(cells);
   for (std::uint32_t cell = 0; cell < tetrahedra.size(); ++cell)
-    graph.add_tweights(static_cast<int>(cell), std::min(votes.outside[cell], kLargestVote),
-                       std::min(votes.inside[cell], kLargestVote));
+    graph.add_tweights(static_cast<int>(cell), votes.outside[cell], votes.inside[cell]);
   for (std::uint32_t cell = 0; cell < tetrahedra.size(); ++cell)
     connect(tetrahedra, votes, cell, graph);
   graph.maxflow();

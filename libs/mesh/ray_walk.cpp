@@ -51,13 +51,9 @@ Corner RayWalker::corner_at(std::uint32_t index) const {
 }
 
 bool RayWalker::begin(std::span<const std::uint32_t> star) {
-  double best = -std::numeric_limits<double>::infinity();
-  std::uint32_t outside = Tetrahedra::kInfinity;
+  double best = -std::numeric_limits<double>::infinity(), size = 0;
   for (const std::uint32_t candidate : star) {
-    if (tetrahedra_.infinite(candidate)) {
-      outside = candidate;
-      continue;
-    }
+    if (tetrahedra_.infinite(candidate)) continue;
     const int place = tetrahedra_.place(candidate, start_);
     std::array<Corner, 3> corners;
     for (std::size_t k = 0; k < 3; ++k)
@@ -69,17 +65,42 @@ bool RayWalker::begin(std::span<const std::uint32_t> star) {
         {area(corners[0], corners[1]), area(corners[1], corners[2]), area(corners[2], corners[0])});
     if (inside > best) {
       best = inside;
+      size = std::max(
+          {corners[0].at.squaredNorm(), corners[1].at.squaredNorm(), corners[2].at.squaredNorm()});
       cell_ = candidate;
       facet_ = corners;
       opposite_ = place;
     }
     if (inside > 0) return true;
   }
-  // Rounding may leave a ray along an edge outside of all cones, but hardly.
-  if (cell_ != Tetrahedra::kInfinity && (best >= -1e-12 || outside == Tetrahedra::kInfinity))
-    return true;
-  cell_ = outside;
+  // By rounding, a ray along an edge may be outside of all cones.
+  if (cell_ != Tetrahedra::kInfinity && best >= -1e-12 * size) return true;
+  cell_ = facing_infinite(star);
   return false;
+}
+
+std::uint32_t RayWalker::facing_infinite(std::span<const std::uint32_t> star) const {
+  std::uint32_t best = Tetrahedra::kInfinity;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t cell : star) {
+    const Tetrahedra::Four& corners = tetrahedra_.corners[cell];
+    const auto at = std::ranges::find(corners, Tetrahedra::kInfinity);
+    if (at == corners.end()) continue;
+    const auto i = static_cast<std::size_t>(at - corners.begin());
+    const std::uint32_t inner = tetrahedra_.neighbours[cell][i];
+    const auto back = static_cast<std::size_t>(tetrahedra_.place_of_neighbour(inner, cell));
+    const Eigen::Vector3d a = corner_at(corners[(i + 1) & 3]).at,
+                          b = corner_at(corners[(i + 2) & 3]).at,
+                          c = corner_at(corners[(i + 3) & 3]).at,
+                          inside = corner_at(tetrahedra_.corners[inner][back]).at;
+    Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
+    if (normal.dot(inside - a) > 0) normal = -normal;
+    if (normal.z() > largest) {
+      largest = normal.z();
+      best = cell;
+    }
+  }
+  return best;
 }
 
 double RayWalker::exit_distance() const {

@@ -71,6 +71,8 @@ class RayWalker {
   bool step(Crossing& crossing);
 
  private:
+  // The infinite tetrahedron of the star whose facet of the hull faces the direction most.
+  std::uint32_t facing_infinite(std::span<const std::uint32_t> star) const;
   Corner corner_at(std::uint32_t index) const;
 
   const Tetrahedra& tetrahedra_;
@@ -92,10 +94,16 @@ std::uint32_t walk(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f
                    double length, Cross&& cross) {
   detail::RayWalker walker(tetrahedra, points, start, direction);
   if (!walker.begin(stars.of(start))) return walker.cell();
-  // Rounding could let a walk go around an edge for ever.
-  constexpr int kMostSteps = 100'000;
+  // By rounding, a walk could go around an edge for ever.
+  constexpr int kMostSteps = 256;
+  double farthest = 0;
   for (int steps = 0; steps < kMostSteps; ++steps) {
-    if (!(walker.exit_distance() < length)) break;
+    const double distance = walker.exit_distance();
+    if (!(distance < length)) break;
+    if (distance > farthest) {
+      farthest = distance;
+      steps = 0;
+    }
     Crossing crossing{};
     const bool inside = walker.step(crossing);
     cross(crossing);

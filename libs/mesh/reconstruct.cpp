@@ -30,6 +30,11 @@ void check(const PointCloud& cloud, const Scene& scene) {
              scene.images[view].path);
     }
   }
+  constexpr float kLargestWeight = 1e6f;  // sums of weights stay far from the largest float
+  for (const float weight : cloud.view_weights)
+    if (!(weight >= 0 && weight <= kLargestWeight))
+      fail("a view of a point has the weight {}, which must be from 0 to {}", weight,
+           kLargestWeight);
 }
 
 MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,

@@ -33,8 +33,9 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // scene and cloud, oriented, manifold and free of self-intersections; parts of the surface without
 // points are left out. The cloud is freed when its points are merged. Logs each step.
 // Error for a cloud without views, for a view that is not a calibrated image of the scene, for a
-// position that is not finite, for fewer than four points that are not in a plane, and if
-// bytes_needed() exceeds max_bytes. The same result for any number of threads.
+// position that is not finite, for a weight that is not from 0 to 1e6, for fewer than four points
+// that are not in a plane, and if bytes_needed() exceeds max_bytes. The same result for any number
+// of threads.
 Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {});
 
 }  // namespace axial::mesh

@@ -22,9 +22,9 @@ struct Surface {
 Surface surface_of(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
                    const std::vector<bool>& occupied);
 
-// The same without facets that have an edge longer than `factor` / 3 times the median edge of all
-// facets, because no camera has seen a surface there. An edge is measured in the smaller of the
-// `widths` [m] of its two points, one per point. 0: leaves out no facet.
+// The same without the facets whose longest edge is longer than `factor` / 3 times the median of
+// the longest edges of all facets, because no camera has seen a surface there. An edge is measured
+// in the smaller of the `widths` [m] of its two points, one per point. 0: leaves out no facet.
 Surface surface_without_long_edges(const Tetrahedra& tetrahedra,
                                    std::span<const Eigen::Vector3f> points,
                                    std::span<const float> widths, const std::vector<bool>& occupied,

@@ -54,7 +54,7 @@ std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> fa
   return faces;
 }
 
-// Moves the corners of `faces` inside the mesh towards the mean of their neighbours.
+// Moves the corners of `faces` half of the way to the mean of their neighbours.
 void smooth_around(HalfedgeMesh& mesh, const std::vector<Face>& faces) {
   const std::vector<Vertex> corners = corners_of(mesh, faces);
   std::vector<Eigen::Vector3d> moved;

@@ -14,13 +14,17 @@ namespace {
 // The tetrahedron that contains a camera is certainly outside.
 constexpr double kCertain = 1e5;
 
-// The sum is the same for any order of threads: once it has reached the limit, it stays there.
+// The sum stops at the limit. It is the same for any order of threads, because no weight is
+// negative.
 void add(std::int32_t& sum, double weight) {
-  const auto votes = static_cast<std::int32_t>(std::lround(weight * kVoteScale));
+  const double scaled = std::min(weight * kVoteScale, static_cast<double>(kLargestVote));
+  const auto votes = static_cast<std::int32_t>(std::lround(scaled));
   if (votes == 0) return;
   std::atomic_ref<std::int32_t> shared(sum);
-  if (shared.load(std::memory_order_relaxed) < kLargestVote)
-    shared.fetch_add(votes, std::memory_order_relaxed);
+  std::int32_t before = shared.load(std::memory_order_relaxed);
+  while (!shared.compare_exchange_weak(before, std::min(before + votes, kLargestVote),
+                                       std::memory_order_relaxed)) {
+  }
 }
 
 struct Ray {

@@ -41,9 +41,10 @@ double expected_error(const MergedPoints& points, std::size_t i, const VoteOptio
 
 // Casts the votes of all rays between `points`, which are the corners of `tetrahedra`, and the
 // cameras of their views. Every facet that a ray crosses in front of its point gets the weight of
-// the view times 1 - exp(-d^2 / (2 sigma^2)), with the distance d [m] from the point. The
-// tetrahedron at the end of the ray is outside. The tetrahedron one sigma behind the point gets a
-// vote for inside. Each facet also gets a vote for surfaces through well shaped tetrahedra.
+// the view times 1 - exp(-d^2 / (2 sigma^2)), with the distance d [m] from the point; so do the
+// facets behind it, up to one sigma. The tetrahedron at the end of the ray is outside. The
+// tetrahedron one sigma behind the point gets a vote for inside. Each facet also gets a vote for
+// surfaces through well shaped tetrahedra.
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
                  const VoteOptions& options = {}, const ProgressSink& progress = {});
 

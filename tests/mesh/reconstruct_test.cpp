@@ -103,6 +103,7 @@ TEST_P(Reconstruct, TheRegionLimitsPointsOrSurface) {
   for (const bool only : {false, true}) {
     ReconstructOptions options;
     options.only_region = only;
+    options.crop_to_region = !only;
     for (const Eigen::Vector3f& v : reconstruct(cloud, scene, options).vertices)
       ASSERT_GE(v.z(), -1e-6f);
   }
@@ -132,6 +133,12 @@ TEST_P(Reconstruct, RefusesWhatIsNoCloudOfTheScene) {
   ReconstructOptions options;
   options.max_bytes = 1000;
   EXPECT_THAT(refused(good, options), HasSubstr("max_memory"));
+  bad = good;
+  bad.view_weights.assign(bad.view_images.size(), 1);
+  for (const float weight : {std::nanf(""), -1.0f, 1e30f}) {
+    bad.view_weights[5] = weight;
+    EXPECT_THAT(refused(bad), HasSubstr("weight"));
+  }
   scene.images[2].calibrated = false;
   EXPECT_THAT(refused(good), HasSubstr("without calibration"));
 }

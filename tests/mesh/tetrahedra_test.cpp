@@ -140,7 +140,17 @@ TEST(RayWalk, LeavesTheHull) {
   for (std::uint32_t start = 0; start < 100; ++start) {
     const Eigen::Vector3d direction = points[start].cast<double>().normalized();
     const std::uint32_t end = walk(t, points, stars, start, direction, 10, [](const Crossing&) {});
-    EXPECT_TRUE(t.infinite(end));
+    ASSERT_TRUE(t.infinite(end));
+    // The facet of the hull through which the ray leaves faces the direction.
+    const auto at = static_cast<std::size_t>(t.place(end, Tetrahedra::kInfinity));
+    const std::uint32_t inner = t.neighbours[end][at];
+    const auto back = static_cast<std::size_t>(t.place_of_neighbour(inner, end));
+    const Eigen::Vector3d a = corner(t, points, inner, (back + 1) & 3),
+                          b = corner(t, points, inner, (back + 2) & 3),
+                          c = corner(t, points, inner, (back + 3) & 3);
+    Eigen::Vector3d normal = (b - a).cross(c - a);
+    if (normal.dot(corner(t, points, inner, back) - a) > 0) normal = -normal;
+    EXPECT_GT(normal.dot(direction), 0) << start;
   }
 }
 

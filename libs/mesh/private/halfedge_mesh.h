@@ -37,9 +37,8 @@ void remesh(HalfedgeMesh& mesh, double edge_length);
 // untangle.cpp
 // Moves vertices at the same place apart, each by 1 % of the way to the mean of its neighbours.
 void separate_copies(HalfedgeMesh& mesh);
-// Makes the mesh free of self-intersections. Vertices of faces that intersect return to their
-// positions in `before`, of which there is one per vertex, or none; if that does not help, the
-// faces are removed. Returns the number of removed faces.
+// Makes the mesh free of self-intersections. Faces that intersect others are smoothed up to 8
+// times, and then removed, with the spikes that this leaves. Returns the number of removed faces.
 std::size_t untangle(HalfedgeMesh& mesh);
 // Removes faces with two border edges, until there are none, and splits the vertices at which only
 // corners of faces meet. Returns the number of removed faces.
