@@ -11,4 +11,5 @@ cmake --preset release -B build/tidy -DAXIAL_TESTS=OFF -DCMAKE_EXPORT_COMPILE_CO
   -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON > /dev/null
 cmake --build build/tidy --target axial_commit > /dev/null
 run-clang-tidy -p build/tidy -quiet -j 1 -extra-arg=-Wno-unused-command-line-argument \
+  -extra-arg=-Wno-unknown-warning-option \
   "${1:-/(refractive|libs|apps)/}"
