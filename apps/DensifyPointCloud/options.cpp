@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/not_built.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
@@ -25,13 +25,6 @@ struct Raw {
   std::string report;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
-};
-
-// An OpenMVS option that scripts pass but that is not implemented: only these values are accepted.
-struct NotBuilt {
-  const char* name;
-  std::string value;
-  std::vector<std::string> accepted;
 };
 
 std::vector<NotBuilt> not_built() {
@@ -150,21 +143,6 @@ void declare_camera(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("warp", &raw.warp,
                         "warp in matching: affine (exact to first order), or homography, the "
                         "published virtual homography");
-}
-
-void declare_not_built(OptionList& list, std::vector<NotBuilt>& options) {
-  for (NotBuilt& option : options)
-    list.add_with_default(option.name, &option.value, "not built yet: accepts only the default");
-}
-
-void refuse_not_built(const std::vector<NotBuilt>& options) {
-  for (const NotBuilt& option : options) {
-    const std::string full = option.name;
-    const std::string name = full.substr(0, full.find(','));
-    if (std::find(option.accepted.begin(), option.accepted.end(), option.value) ==
-        option.accepted.end())
-      fail("--{} {}: not built yet", name, option.value);
-  }
 }
 
 template <class T>

@@ -3,11 +3,11 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/setting_names.h"
+#include "base/not_built.h"
 #include "base/split.h"
-#include "base/unused_input.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/openmvs/scene_options.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -17,19 +17,11 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, output, mesh, housing, views_file, mask_path;
-  std::string export_type = "ply", camera_model = "auto";
-  bool refractive = false;
+  std::string input, output, mesh, views_file, mask_path, export_type = "ply";
+  io::SceneOptions scene;
   int ignore_mask_label = -1;
   unsigned empty_color = 0xFF7F27, resolution_level = 0;
   int packing_heuristic = 3;
-};
-
-// An OpenMVS option that scripts pass but that is not built: only these values are accepted.
-struct NotBuilt {
-  const char* name;
-  std::string value;
-  std::vector<std::string> accepted;
 };
 
 std::vector<NotBuilt> not_built() {
@@ -42,16 +34,6 @@ std::vector<NotBuilt> not_built() {
 
 std::vector<NotBuilt> not_built_hidden() {
   return {{"transfer-texture-file", "", {""}}, {"indices-file", "", {""}}};
-}
-
-constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
-                                    {"bit_depth", "--bit-depth"},
-                                    {"camera is flat_port", "--camera-model is flatport"},
-                                    {"housing", "--housing"},
-                                    {"refractive", "--refractive"}};
-
-std::string option_of(std::string_view setting) {
-  return name_in(kOptions, setting);
 }
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
@@ -74,14 +56,6 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   io::declare_bit_depth(list, settings.bit_depth);
 }
 
-void declare_camera(OptionList& list, Raw& raw) {
-  list.add_switch("refractive", &raw.refractive, "cameras are behind ports: require a housing file")
-      .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
-      .add_with_default("camera-model", &raw.camera_model,
-                        "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
-                        "require a flat port for every image");
-}
-
 void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
   list.add_with_default("outlier-threshold", &options.outlier_threshold,
                         "leave out views of a face whose colour is less likely than this among "
@@ -102,17 +76,6 @@ void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
                         "color of faces that no view sees: 65536 red + 256 green + blue")
       .add_with_default("patch-packing-heuristic", &raw.packing_heuristic,
                         "accepted and without effect");
-}
-
-void declare_not_built(OptionList& list, std::vector<NotBuilt>& options) {
-  for (NotBuilt& option : options)
-    list.add_with_default(option.name, &option.value, "not built yet: accepts only the default");
-}
-
-void refuse_not_built(const std::vector<NotBuilt>& options) {
-  for (const NotBuilt& option : options)
-    if (std::ranges::find(option.accepted, option.value) == option.accepted.end())
-      fail("--{} {}: not built yet", option.name, option.value);
 }
 
 template <class T>
@@ -147,17 +110,6 @@ std::vector<io::TexturedFormat> formats_of(const std::string& list) {
   return formats;
 }
 
-io::PortChoice ports_of(const Raw& raw) {
-  if (raw.camera_model == "flatport") return io::PortChoice::flat;
-  if (raw.camera_model == "pinhole") {
-    if (raw.refractive) fail("--refractive contradicts --camera-model pinhole");
-    return io::PortChoice::ignored;
-  }
-  if (raw.camera_model != "auto")
-    fail("--camera-model {}: must be one of auto, pinhole, flatport", raw.camera_model);
-  return raw.refractive ? io::PortChoice::required : io::PortChoice::automatic;
-}
-
 // The path with the extension ".mvs", which replaces that of a mesh.
 fs::path as_scene(fs::path path) {
   const std::string extension = path.extension().string();
@@ -168,8 +120,7 @@ fs::path as_scene(fs::path path) {
 
 void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
   const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
-  settings.scene = {path(raw.input), common.working_folder,        path(raw.housing),
-                    ports_of(raw),   settings.scene.allow_missing, option_of};
+  settings.scene = io::scene_files(raw.scene, raw.input, common);
   settings.mesh = path(raw.mesh);
   if (settings.mesh.empty())
     settings.mesh = fs::path(settings.scene.scene).replace_extension(".ply");
@@ -207,9 +158,8 @@ Options parse_command_line(int argc, const char* const* argv) {
                          OptionList("Texture options")};
   program.version = version_line(program.name);
   declare_io(program.visible, raw, options.settings);
-  declare_camera(program.visible, raw);
+  io::declare_scene_options(program.visible, raw.scene);
   declare_texturing(program.visible, raw, options.settings.texture);
-  UnusedInput::declare(program.visible, options.settings.scene.allow_missing);
   std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
   declare_not_built(program.visible, visible);
   declare_not_built(program.hidden, hidden);

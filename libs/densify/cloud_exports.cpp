@@ -114,22 +114,6 @@ WrittenCloud export_scales(const Project& project, const Settings& settings) {
 
 }  // namespace
 
-PointCloud cloud_of(const Scene& scene) {
-  PointCloud cloud;
-  cloud.view_begin.push_back(0);
-  for (const SparsePoint& point : scene.points) {
-    cloud.positions.push_back(point.position);
-    for (const SparseView& view : point.views) {
-      cloud.view_images.push_back(view.image);
-      cloud.view_weights.push_back(view.confidence);
-    }
-    cloud.view_begin.push_back(cloud.view_images.size());
-  }
-  cloud.normals = scene.point_normals;
-  cloud.colors = scene.point_colors;
-  return cloud;
-}
-
 void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kept) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < scene.points.size(); ++i) {

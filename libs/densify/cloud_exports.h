@@ -9,13 +9,9 @@
 
 #include "densify/project.h"
 #include "densify/settings.h"
-#include "scene/point_cloud.h"
 #include "scene/scene.h"
 
 namespace axial::densify {
-
-// The sparse points as a cloud.
-PointCloud cloud_of(const Scene& scene);
 
 // Keeps the points of `scene` for which `kept` returns true, in their order, with their normals and
 // colours.

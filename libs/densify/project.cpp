@@ -156,9 +156,14 @@ Project load_scene(const Settings& settings) {
   return project;
 }
 
-Project load_project(const Settings& settings, const SceneObserver& observer) {
+Project load_scene_and_headers(const Settings& settings) {
   Project project = load_scene(settings);
   load_views(project, settings);
+  return project;
+}
+
+Project load_project(const Settings& settings, const SceneObserver& observer) {
+  Project project = load_scene_and_headers(settings);
   check_ids(project);
   select_views(project, settings, observer);
   project.fingerprint = fingerprint(project, settings);

@@ -46,6 +46,10 @@ struct Project : io::SceneWithCameras {  // the scene also has neighbour scores
 // image files. Error for any fault of these files.
 Project load_scene(const Settings& settings);
 
+// Loads the scene and reads the headers of its images and masks. Selects no views. Errors as for
+// load_project.
+Project load_scene_and_headers(const Settings& settings);
+
 // Loads the scene, reads the headers and bytes of its images and masks (without keeping pixels),
 // and selects views. Error for a fault of the scene or its housing, for files that are missing or
 // truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds

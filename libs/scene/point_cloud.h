@@ -29,4 +29,7 @@ struct PointCloud {
   }
 };
 
+// The sparse points of `scene` as a cloud, with their views, normals and colours.
+PointCloud cloud_of(const Scene& scene);
+
 }  // namespace axial

@@ -18,7 +18,8 @@ import unittest
 from programs import BIN, main, read, run
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
-STEPS = ["features", "matches", "poses", "refine", "import", "densify", "evaluate"]
+STEPS = ["features", "matches", "poses", "refine", "import", "densify", "mesh",
+         "refine-mesh", "texture", "evaluate"]
 
 
 def camera_centres(images):
@@ -53,6 +54,9 @@ case "$name $1" in
     > out/refined/report.json ;;
   InterfaceCOLMAP*) touch out/scene.mvs ;;
   DensifyPointCloud*) touch out/scene_dense.ply ;;
+  ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
+  RefineMesh*) touch out/scene_dense_refined.ply ;;
+  TextureMesh*) touch out/scene_textured.glb ;;
 esac
 """
 
@@ -64,7 +68,8 @@ class WithStandIns(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="axial_")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
-        for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud"):
+        for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
+                     "ReconstructMesh", "RefineMesh", "TextureMesh"):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         for name in ("lens", "housing"):
@@ -111,7 +116,7 @@ class WithStandIns(unittest.TestCase):
 
     def test_takes_a_wrappers_child_along_however_it_ends(self):
         """Tried with the first program, a middle one and the last one."""
-        for program in ("colmap", "RefinePoses", "DensifyPointCloud"):
+        for program in ("colmap", "RefinePoses", "TextureMesh"):
             for end in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
                 process, pipe = self.held_at(program, "child-pipe")
                 process.send_signal(end)
@@ -142,8 +147,8 @@ class WithStandIns(unittest.TestCase):
 
     def test_prints_the_commands_that_it_runs(self):
         said = self.ended().stdout.splitlines()
-        printed = [said[said.index(f"[{number}/6] {step}") + 1].removeprefix(" " * 4)
-                   for number, step in enumerate(STEPS[:6], 1)]
+        printed = [said[said.index(f"[{number}/9] {step}") + 1].removeprefix(" " * 4)
+                   for number, step in enumerate(STEPS[:9], 1)]
         run_were = (self.folder / "commands").read_text().splitlines()
         self.assertEqual([" ".join([pathlib.Path(program).name, *arguments]) for program, *arguments
                           in map(shlex.split, printed)], run_were)
@@ -219,6 +224,7 @@ class Reconstruct(unittest.TestCase):
         evaluation = json.loads((out / "evaluation.json").read_text())
         self.assertGreater(evaluation["accuracy"]["count"], 50000)
         self.assertLess(evaluation["accuracy"]["median"], 0.002)
+        self.assertTrue((out / "scene_textured.glb").read_bytes().startswith(b"glTF"))
 
     def other_options_redo_what_differs(self, out):
         ended = self.ended(out, "--densify=--resolution-level 1")

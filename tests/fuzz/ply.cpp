@@ -7,6 +7,7 @@
 
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply_property.h"
+#include "io/ply/ply_transform.h"
 #include "io/textured/textured_mesh.h"
 #include "reader.h"
 
@@ -74,6 +75,15 @@ void read_parts(const fs::path& file) {
   io::read_cloud_ply(file, LocalFrame{{1e6, -2e6, 3}});
 }
 
+// The result is a file of the same vertices, which can be read again.
+void move_file(const fs::path& file) {
+  const PointCloud before = io::read_cloud_ply(file);
+  const FrameMove move{{2, Eigen::Matrix3d::Identity(), {1, 2, 3}}, {}, LocalFrame{{10, 0, 0}}};
+  const fs::path moved = file.parent_path() / "moved.ply";
+  io::transform_ply(file, moved, move);
+  require(io::read_cloud_ply(moved).size() == before.size(), "the moved file has other vertices");
+}
+
 PointCloud small_cloud() {
   PointCloud cloud;
   cloud.positions = {{1, 2, 3}, {4, 5, 6}};
@@ -135,6 +145,7 @@ std::span<const Reader> ply_readers() {
       Reader{"ply-cloud", "cloud.ply", read_cloud_file, write_cloud_seed},
       Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
       Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed},
+      Reader{"ply-moved", "cloud.ply", move_file, write_cloud_seed},
       Reader{"ply-textured", "mesh.ply", read_textured_file, write_textured_seed}};
   return kReaders;
 }

@@ -31,6 +31,17 @@ class Programs:
         """`scene` to depth maps and a dense cloud in `folder`."""
         return [self.folder / "DensifyPointCloud", "-i", scene, "-w", folder, *options]
 
+    def reconstruct_mesh(self, scene, mesh, *options):
+        """The cloud beside `scene` to the mesh file `mesh`."""
+        return [self.folder / "ReconstructMesh", "-i", scene, "-o", mesh, *options]
+
+    def refine_mesh(self, scene, mesh, refined, *options):
+        return [self.folder / "RefineMesh", "-i", scene, "-m", mesh, "-o", refined, *options]
+
+    def texture_mesh(self, scene, mesh, textured, *options):
+        """`textured`: without extension; see --export-type."""
+        return [self.folder / "TextureMesh", "-i", scene, "-m", mesh, "-o", textured, *options]
+
     def refine_poses(self, model, lens, housing, output, *options):
         return [self.folder / "RefinePoses", "-i", model, "--lens", lens, "--housing", housing, "-o",
                 output, *options]

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From photographs taken under water to a dense cloud, in one command:
+"""From photographs taken under water to a dense cloud and a textured mesh, in one command:
 
     reconstruct --images DIR --lens cameras.txt --housing housing.json -o OUT
 
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
-poses. DensifyPointCloud computes the cloud. The command of every step is printed and can be typed by
+poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
+cloud into a textured mesh. The command of every step is printed and can be typed by
 hand. A killed run that is started again with the same options continues with the step that was
 killed; with other options, it continues with the first step that differs. A second run in
 the same folder is refused until the first run ends.
@@ -21,6 +22,10 @@ from . import colmap, files, lens, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
 from .steps import Step, run_all
+
+
+PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
+            "TextureMesh")
 
 
 def options(script_folder):
@@ -47,6 +52,8 @@ def options(script_folder):
                         "--refine-poses='--scale-sigma 0.1'")
     parser.add_argument("--densify", default="",
                         help="more options for DensifyPointCloud, in one word")
+    parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
+                        help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it")
     parser.add_argument("--programs", default=programs,
@@ -78,7 +85,7 @@ def check(given):
             raise Failure(f"--scale-from {given.scale_from}: file not found")
         given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
         positions.check(pathlib.Path(file), pathlib.Path(given.images))
-    for program in ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud"):
+    for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
             raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
     for name in ("refine-poses", "densify"):
@@ -122,6 +129,20 @@ def refine_options(given):
     return [*known, *refine, *words_of("refine-poses", given)]
 
 
+def mesh_steps(given, out):
+    programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
+    mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
+    textured = out / "scene_textured"
+    if given.until == "cloud":
+        return
+    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive), makes=mesh)
+    yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive), makes=refined)
+    if given.until == "texture":
+        yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
+                                                    "glb,ply", *refractive),
+                   makes=textured.with_suffix(".glb"))
+
+
 def steps(given, out):
     programs, densify = Programs(given.programs), words_of("densify", given)
     refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
@@ -136,6 +157,7 @@ def steps(given, out):
                                                refined / "housing.json"), makes=scene)
     yield Step("densify", programs.densify(scene, out, "--refractive", 1, *densify), makes=cloud,
                reads=existing_files(densify))
+    yield from mesh_steps(given, out)
     if given.truth:
         yield Step("evaluate", programs.evaluate(cloud, given.truth, "--json",
                                                  out / "evaluation.json", "--align", "icp"),
@@ -187,6 +209,11 @@ def only_run_in(out):
     return lock
 
 
+def mesh_of(given, out):
+    name = {"cloud": "", "mesh": "scene_dense_refined.ply", "texture": "scene_textured.glb"}[given.until]
+    return f"Mesh: {out / name}   " if name else ""
+
+
 def reconstruct(given):
     check(given)
     out = pathlib.Path(given.output)
@@ -194,7 +221,7 @@ def reconstruct(given):
     with only_run_in(out):
         seconds = run_all(list(steps(given, out)), out)
         files.write(out / "report.md", report(out, seconds))
-    print(f"Cloud: {out / 'scene_dense.ply'}   Report: {out / 'report.md'}")
+    print(f"Cloud: {out / 'scene_dense.ply'}   {mesh_of(given, out)}Report: {out / 'report.md'}")
 
 
 def main(script_folder):

@@ -28,20 +28,28 @@ SparsePoint sparse_point(const PointCloud& cloud, std::size_t i, std::size_t ima
   return point;
 }
 
-PointCloud read_into(const LocalFrame& frame, const std::filesystem::path& ply) {
-  if (frame.is_world()) return read_cloud_ply(ply, frame);
+// Whether the positions of the file are in `frame` though the file does not say so.
+bool is_silently_in(const LocalFrame& frame, const std::filesystem::path& ply) {
+  if (frame.is_world()) return false;
   const PlyPlace place = ply_place(ply);
   const bool says_where = !place.frame.is_world();
   const Eigen::Vector3d& first = place.first_vertex;
-  const bool is_local = !says_where && first.norm() < frame.to_local(first).norm();
-  return is_local ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);
+  return !says_where && first.norm() < frame.to_local(first).norm();
 }
 
 }  // namespace
 
+PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
+  return is_silently_in(frame, ply) ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);
+}
+
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
+  return is_silently_in(frame, ply) ? read_mesh_ply(ply) : read_mesh_ply(ply, frame);
+}
+
 void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply) {
   const std::string file = ply.string();
-  PointCloud cloud = read_into(frame, ply);
+  PointCloud cloud = read_cloud_of_scene(frame, ply);
   if (cloud.view_begin.empty())
     fail("{}: has no view_indices, which list the images that see a point", file);
   scene.points.clear();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replaces a scene's sparse points by a cloud, as the option -p of OpenMVS's programs does.
+// Clouds and meshes that belong to a scene, as the options -p and -m of OpenMVS's programs name
+// them.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +9,22 @@
 
 #include "io/openmvs/mvs_counts.h"
 #include "scene/local_frame.h"
+#include "scene/mesh.h"
+#include "scene/point_cloud.h"
 #include "scene/scene.h"
 
 namespace axial::io {
 
-// Replaces the points, normals and colours of a scene whose coordinates are in `frame`. The cloud
-// is a PLY file with view_indices, which are indices of the scene's images, and optional
-// view_weights. If it has a comment geo_offset, that is the origin of its positions. Otherwise its
-// positions are in the world or in `frame`, whichever origin is nearer to its first point, because
-// OpenMVS's programs keep coordinates but drop comments.
+// Read the PLY file of a cloud or a mesh of a scene whose coordinates are in `frame`; the result is
+// in `frame`. If the file has a comment geo_offset, that is the origin of its positions. Otherwise
+// its positions are in the world or in `frame`, whichever origin is nearer to its first point,
+// because OpenMVS's programs keep coordinates but drop comments. Errors as for read_cloud_ply and
+// read_mesh_ply.
+PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
+Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
+
+// Replaces the points, normals and colours of `scene` by those of read_cloud_of_scene(). The cloud
+// must have view_indices, which are indices of the scene's images, and may have view_weights.
 //
 // Error that names the file for a cloud without views, a view of an image that the scene does not
 // have, or a point that is not finite.

@@ -61,9 +61,11 @@ std::optional<Housing> attach_housing(Scene& scene, const LocalFrame& frame,
   const fs::path file = housing_file(files);
   std::error_code error;
   if (!fs::exists(file, error)) {
-    if (files.ports != PortChoice::automatic || !files.housing.empty())
+    if (files.ports != PortChoice::automatic)
       fail("{}: housing file not found; {} needs a housing file (see {})", file.string(),
-           files.name_of("refractive"), files.name_of("housing"));
+           files.name_of(files.ports == PortChoice::flat ? "camera is flat_port" : "refractive"),
+           files.name_of("housing"));
+    if (!files.housing.empty()) fail("{}: housing file not found", file.string());
     return {};
   }
   const Housing housing = read_housing(file);

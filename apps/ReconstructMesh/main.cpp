@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/same_file.h"
+#include "io/cameras/geo_offset.h"
+#include "io/obj/mesh_obj.h"
+#include "io/openmvs/point_source.h"
+#include "io/ply/ply.h"
+#include "options.h"
+#include "scene/region.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// As in OpenMVS: the cloud beside the scene is taken if none is named.
+fs::path cloud_file(const Options& options) {
+  if (!options.cloud.empty()) return options.cloud;
+  const fs::path beside = fs::path(options.scene.scene).replace_extension(".ply");
+  std::error_code error;
+  return fs::exists(beside, error) ? beside : fs::path();
+}
+
+void check_outputs(const Options& options) {
+  const std::vector<fs::path> inputs{options.scene.scene,
+                                     io::housing_file(options.scene),
+                                     io::lenses_beside(options.scene.scene),
+                                     io::geo_offset_beside(options.scene.scene),
+                                     cloud_file(options),
+                                     options.mesh};
+  std::error_code ignored;
+  fs::create_directories(options.output.parent_path(), ignored);
+  require_not_an_input(options.output, inputs, "--output-file");
+  require_writable(options.output);
+}
+
+std::uint64_t memory_limit(const Options& options) {
+  if (options.max_memory > 0) return options.max_memory * 1'000'000;
+  try {
+    return available_memory() / 10 * 7;
+  } catch (const Error& error) {
+    fail("{}; give --max-memory", error.what());
+  }
+}
+
+// Calls `work`. Its errors get the name of `file`.
+template <class Work>
+auto naming(const fs::path& file, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    fail("{}: {}", file.string(), error.what());
+  }
+}
+
+Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
+  const fs::path file = cloud_file(options);
+  PointCloud cloud =
+      file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
+  const fs::path& source = file.empty() ? options.scene.scene : file;
+  log_info("Cloud {}: {} points", source.filename().string(), cloud.size());
+  return naming(source, [&] {
+    return mesh::reconstruct(std::move(cloud), scene.scene, options.reconstruct);
+  });
+}
+
+Mesh clean_given(const io::SceneWithCameras& scene, const Options& options) {
+  const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
+  return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
+}
+
+void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+  if (file.extension() == ".obj")
+    io::write_mesh_obj(file, mesh, frame);
+  else
+    io::write_mesh_ply(file, mesh, {frame});
+  log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
+}
+
+int run(int argc, char** argv) {
+  Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  share_one_heap();
+  const ThreadLimit threads(options.parsed.common.max_threads);
+  check_outputs(options);
+  io::SceneWithCameras scene = io::read_scene_with_cameras(options.scene);
+  if (scene.scene.region) scene.scene.region = with_border(*scene.scene.region, options.roi_border);
+  options.reconstruct.max_bytes = memory_limit(options);
+  write(options.output,
+        options.mesh.empty() ? reconstruct(scene, options) : clean_given(scene, options),
+        scene.frame);
+  return 0;
+}
+
+}  // namespace
+}  // namespace axial::apps
+
+int main(int argc, char** argv) {
+  return axial::run_program("ReconstructMesh", [&] { return axial::apps::run(argc, argv); });
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "base/program.h"
+#include "io/openmvs/scene_with_cameras.h"
+#include "mesh/reconstruct.h"
+
+namespace axial::apps {
+
+struct Options {
+  ParsedOptions parsed;
+  io::SceneFiles scene;
+  std::filesystem::path cloud;   // empty: <scene>.ply if it exists, otherwise the scene's points
+  std::filesystem::path mesh;    // empty: reconstruct; otherwise clean this mesh
+  std::filesystem::path output;  // .ply or .obj
+  double roi_border = 0;
+  std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
+  mesh::ReconstructOptions reconstruct;
+};
+
+// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/same_file.h"
+#include "densify/image_store.h"
+#include "densify/memory_limit.h"
+#include "densify/project.h"
+#include "io/cameras/geo_offset.h"
+#include "io/obj/mesh_obj.h"
+#include "io/openmvs/point_source.h"
+#include "io/ply/ply.h"
+#include "options.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_outputs(const Options& options, const densify::Project& project) {
+  std::vector<fs::path> inputs{options.scene.input, densify::housing_file(options.scene),
+                               io::lenses_beside(options.scene.input),
+                               io::geo_offset_beside(options.scene.input), options.mesh};
+  for (const SceneImage& image : project.scene.images) inputs.emplace_back(image.path);
+  for (const densify::View& view : project.views) inputs.push_back(view.mask);
+  require_not_an_input(options.output, inputs, "--output-file");
+  require_writable(options.output);
+}
+
+// Calls `work`. Its errors get the name of `file`, unless they name an option.
+template <class Work>
+auto naming(const fs::path& file, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with("--") || message.starts_with("/")) throw;
+    fail("{}: {}", file.string(), message);
+  }
+}
+
+Mesh read_mesh(const Options& options, const LocalFrame& frame) {
+  Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
+  if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
+  log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
+           mesh.faces.size());
+  if (!options.clean) return mesh;
+  return naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
+}
+
+std::vector<refine::View> views_of(const densify::Project& project) {
+  std::vector<refine::View> views;
+  for (const densify::View& view : project.views) views.push_back({view.camera, view.pose});
+  return views;
+}
+
+// How the allowed memory is shared out.
+struct Shares {
+  std::size_t images = 1;            // kept at the same time
+  std::uint64_t for_refinement = 1;  // [bytes]
+};
+
+Shares share_out_memory(const Options& options, const densify::Project& project) {
+  std::uint64_t image = 0, decode = 0;
+  for (const densify::View& view : project.views) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(view.camera.width) *
+                                 static_cast<std::uint64_t>(view.camera.height);
+    image = std::max(image, densify::bytes_needed({pixels, view.masked(), false}));
+    decode = std::max(decode, densify::bytes_needed_to_load(io::bytes_needed(view.file), pixels));
+  }
+  const std::uint64_t limit = densify::memory_limit(options.scene);
+  const std::uint64_t used = std::max(resident_memory(), densify::kProgramBytes) + decode;
+  const std::uint64_t room = limit > used ? limit - used : 0;
+  Shares shares;
+  shares.images = std::clamp<std::size_t>(room / 4 / std::max<std::uint64_t>(image, 1), 2,
+                                          std::max<std::size_t>(project.views.size(), 2));
+  const std::uint64_t images = shares.images * image;
+  shares.for_refinement = room > images ? room - images : 1;
+  return shares;
+}
+
+void refine_mesh(Mesh& mesh, const densify::Project& project, const Options& options) {
+  const Shares shares = share_out_memory(options, project);
+  densify::ImageStore images(project, options.scene, shares.images);
+  images.check_all(1);
+  refine::Options settings = options.refine;
+  settings.max_bytes = shares.for_refinement;
+  const refine::Report report = naming(options.mesh, [&] {
+    return refine::refine(
+        mesh, views_of(project),
+        [&](std::size_t view) {
+          const auto image = images.get(view);
+          return refine::Picture{image->grey, image->mask};
+        },
+        settings, console_progress("Refined"));
+  });
+  log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
+           report.measured, report.pairs, report.moved);
+}
+
+void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
+  if (file.extension() == ".obj")
+    io::write_mesh_obj(file, mesh, frame);
+  else
+    io::write_mesh_ply(file, mesh, {frame});
+  log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  share_one_heap();
+  const ThreadLimit threads(options.parsed.common.max_threads);
+  std::error_code ignored;
+  fs::create_directories(options.output.parent_path(), ignored);
+  const densify::Project project = densify::load_scene_and_headers(options.scene);
+  check_outputs(options, project);
+  Mesh mesh = read_mesh(options, project.frame);
+  refine_mesh(mesh, project, options);
+  write(options.output, mesh, project.frame);
+  return 0;
+}
+
+}  // namespace
+}  // namespace axial::apps
+
+int main(int argc, char** argv) {
+  return axial::run_program("RefineMesh", [&] { return axial::apps::run(argc, argv); });
+}

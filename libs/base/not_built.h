@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of OpenMVS's programs that scripts pass but that are not built. They are declared, so
+// that scripts which pass their defaults work, and every other value is refused.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/option_list.h"
+
+namespace axial {
+
+struct NotBuilt {
+  const char* name;
+  std::string value;                  // the default; afterwards the value that the user gave
+  std::vector<std::string> accepted;  // spellings of the default
+};
+
+// Declares `options`, which must exist until parse_options() has returned.
+void declare_not_built(OptionList& list, std::span<NotBuilt> options);
+
+// Error that names the option and the value, if a value is not accepted.
+void refuse_not_built(std::span<const NotBuilt> options);
+
+}  // namespace axial

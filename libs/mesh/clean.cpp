@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/clean.h"
+
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "private/halfedge_mesh.h"
+
+namespace axial::mesh {
+namespace pmp = CGAL::Polygon_mesh_processing;
+namespace {
+
+double mean_edge_length(const HalfedgeMesh& mesh) {
+  double sum = 0;
+  for (const auto edge : mesh.edges()) sum += pmp::edge_length(mesh.halfedge(edge), mesh);
+  return sum / static_cast<double>(mesh.number_of_edges());
+}
+
+// Returns the number of removed components.
+std::size_t remove_small_components(HalfedgeMesh& mesh, double factor) {
+  if (factor == 0 || mesh.number_of_faces() == 0) return 0;
+  const double least = factor * mean_edge_length(mesh);
+  auto component =
+      mesh.add_property_map<HalfedgeMesh::Face_index, std::size_t>("f:component", 0).first;
+  std::vector<CGAL::Bbox_3> boxes(pmp::connected_components(mesh, component));
+  for (const auto face : mesh.faces())
+    for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
+      boxes[component[face]] += mesh.point(vertex).bbox();
+  std::vector<std::size_t> small;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const CGAL::Bbox_3& box = boxes[i];
+    const Eigen::Vector3d size(box.x_span(), box.y_span(), box.z_span());
+    if (size.norm() < least) small.push_back(i);
+  }
+  pmp::remove_connected_components(mesh, small, component);
+  mesh.remove_property_map(component);
+  mesh.collect_garbage();
+  return small.size();
+}
+
+// Returns the number of closed holes.
+std::size_t close_holes(HalfedgeMesh& mesh, std::size_t most) {
+  if (most == 0) return 0;
+  std::vector<HalfedgeMesh::Halfedge_index> cycles;
+  pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
+  std::size_t closed = 0;
+  for (const auto cycle : cycles) {
+    std::size_t edges = 0;
+    for ([[maybe_unused]] const auto half : mesh.halfedges_around_face(cycle)) ++edges;
+    if (edges > most) continue;
+    std::vector<HalfedgeMesh::Face_index> patch;
+    pmp::triangulate_hole(mesh, cycle, std::back_inserter(patch));
+    closed += patch.empty() ? 0 : 1;
+  }
+  return closed;
+}
+
+// Moves the vertices inside the mesh by `part` of the way to the mean of their neighbours.
+void move_to_means(HalfedgeMesh& mesh, double part) {
+  std::vector<Eigen::Vector3d> moved(mesh.number_of_vertices());
+  for (const auto vertex : mesh.vertices()) {
+    moved[vertex.idx()] = position(mesh, vertex);
+    if (mesh.is_isolated(vertex) || mesh.is_border(vertex)) continue;
+    moved[vertex.idx()] += part * (mean_of_neighbours(mesh, vertex) - moved[vertex.idx()]);
+  }
+  for (const auto vertex : mesh.vertices()) move_to(mesh, vertex, moved[vertex.idx()]);
+}
+
+// Taubin, "A signal processing approach to fair surface design", SIGGRAPH 1995: a step towards the
+// means and a slightly longer step back damp noise and keep curved surfaces in place.
+void smooth(HalfedgeMesh& mesh, unsigned steps) {
+  for (unsigned i = 0; i < steps; ++i) {
+    move_to_means(mesh, 0.5);
+    move_to_means(mesh, -0.53);
+  }
+}
+
+void mend(HalfedgeMesh& mesh, const CleanOptions& options, CleanReport& report) {
+  if (options.spikes) report.removed_spikes += remove_spikes(mesh);
+  mesh.collect_garbage();
+  report.closed_holes += close_holes(mesh, options.close_holes);
+}
+
+void check_edge_length(const HalfedgeMesh& mesh, double length) {
+  constexpr double kMostFaces = 1 << 28;
+  const double equilateral = 0.433 * length * length;  // area
+  if (pmp::area(mesh) > kMostFaces * equilateral)
+    fail("remeshing to edges of {} would make more than {} faces", length, kMostFaces);
+}
+
+std::size_t faces_to_keep(const HalfedgeMesh& mesh, const CleanOptions& options) {
+  if (options.target_faces > 0) return options.target_faces;
+  return static_cast<std::size_t>(options.decimate * static_cast<double>(mesh.number_of_faces()));
+}
+
+}  // namespace
+
+Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
+  if (mesh.faces.empty()) fail("the mesh has no faces");
+  CleanReport own;
+  CleanReport& result = report ? *report : own;
+  result = {};
+  HalfedgeMesh surface = to_halfedges(mesh);
+  if (surface.number_of_faces() == 0) fail("all faces of the mesh name a vertex twice");
+  result.removed_components = remove_small_components(surface, options.spurious);
+  if (const std::size_t faces = faces_to_keep(surface, options); faces < surface.number_of_faces())
+    decimate(surface, faces);
+  mend(surface, options, result);
+  separate_copies(surface);
+  smooth(surface, options.smooth);
+  if (options.edge_length > 0) {
+    check_edge_length(surface, options.edge_length);
+    remesh(surface, options.edge_length);
+    mend(surface, options, result);
+    result.removed_intersections = untangle(surface);
+  } else {
+    result.removed_intersections = untangle(surface);
+  }
+  if (surface.number_of_faces() == 0)
+    fail(
+        "no face of the mesh is left: all pieces are smaller than the limit for spurious pieces, "
+        "or "
+        "their faces intersect each other");
+  return from_halfedges(surface);
+}
+
+}  // namespace axial::mesh

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/merge_points.h"
+
+#include <algorithm>
+#include <map>
+#include <nanoflann.hpp>
+#include <numeric>
+
+#include "mesh/spatial_order.h"
+
+namespace axial::mesh {
+namespace {
+
+struct PointSet {
+  std::span<const Eigen::Vector3f> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
+                                                 PointSet, 3, std::uint32_t>;
+
+// Indices of the points, those with the most views first.
+std::vector<std::uint32_t> by_views(const PointCloud& cloud) {
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return cloud.views_of(a).size() > cloud.views_of(b).size();
+  });
+  return order;
+}
+
+class Merger {
+ public:
+  Merger(const PointCloud& cloud, const ViewRays& rays, double min_distance)
+      : cloud_(cloud),
+        rays_(rays),
+        limit_(static_cast<float>(min_distance)),
+        set_{cloud.positions},
+        tree_(3, set_, {16}),
+        used_(cloud.size(), false) {}
+
+  // Appends the point that stands for point i and its neighbours, unless i is merged already.
+  void take_point(std::uint32_t i, MergedPoints& result) {
+    if (used_[i]) return;
+    const float sharpest = find_motions(i);
+    if (!(sharpest > 0)) return;
+    sum_.setZero();
+    weights_ = 0;
+    views_.clear();
+    for (const std::uint32_t k : neighbours(i, 2 * limit_ / sharpest))
+      if (is_near(i, k)) absorb(i, k);
+    absorb(i, i);
+    result.positions.push_back(cloud_.positions[i] + sum_ / weights_);
+    result.pixel_widths.push_back(1 / sharpest);
+    for (const auto& [view, weight] : views_) {
+      result.view_images.push_back(view);
+      result.view_weights.push_back(weight);
+    }
+    result.view_begin.push_back(result.view_images.size());
+  }
+
+ private:
+  // Finds how the pixels of the point move in its views. Returns the largest resolution [px/m].
+  float find_motions(std::uint32_t i) {
+    motions_.clear();
+    float sharpest = 0;
+    for (const std::uint32_t view : cloud_.views_of(i)) {
+      motions_.push_back(rays_.pixel_motion(view, cloud_.positions[i]));
+      sharpest = std::max(sharpest, motions_.back().norm() * std::sqrt(0.5f));
+    }
+    return sharpest;
+  }
+
+  // Other points within `radius`, the nearest first.
+  std::vector<std::uint32_t> neighbours(std::uint32_t i, float radius) {
+    found_.clear();
+    nanoflann::SearchParams params;
+    params.sorted = false;
+    if (limit_ > 0) tree_.radiusSearch(cloud_.positions[i].data(), radius * radius, found_, params);
+    std::sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.second, a.first) < std::pair(b.second, b.first);
+    });
+    std::vector<std::uint32_t> result;
+    for (const auto& [k, distance2] : found_)
+      if (k != i && !used_[k]) result.push_back(k);
+    return result;
+  }
+
+  bool is_near(std::uint32_t i, std::uint32_t k) const {
+    constexpr float kLeastCosine = 0.5f;  // 60 degrees
+    if (!cloud_.normals.empty() && cloud_.normals[k].dot(cloud_.normals[i]) < kLeastCosine)
+      return false;
+    const Eigen::Vector3f step = cloud_.positions[k] - cloud_.positions[i];
+    return std::ranges::all_of(motions_, [&](const auto& motion) {
+      return (motion * step).squaredNorm() <= limit_ * limit_;
+    });
+  }
+
+  void absorb(std::uint32_t i, std::uint32_t k) {
+    used_[k] = true;
+    float weight = 0;
+    for (std::size_t v = cloud_.view_begin[k]; v < cloud_.view_begin[k + 1]; ++v) {
+      views_[cloud_.view_images[v]] += 1;
+      weight += cloud_.view_weights.empty() ? 1 : std::max(cloud_.view_weights[v], 1e-6f);
+    }
+    if (weight == 0) weight = 1e-6f;  // a neighbour without views
+    sum_ += weight * (cloud_.positions[k] - cloud_.positions[i]);
+    weights_ += weight;
+  }
+
+  const PointCloud& cloud_;
+  const ViewRays& rays_;
+  float limit_;  // [px]
+  PointSet set_;
+  Tree tree_;
+  std::vector<bool> used_;
+  // Of the current point.
+  std::vector<Eigen::Matrix<float, 2, 3>> motions_;
+  std::vector<std::pair<std::uint32_t, float>> found_;
+  std::map<std::uint32_t, float> views_;
+  Eigen::Vector3f sum_;
+  float weights_ = 0;
+};
+
+MergedPoints in_order(const MergedPoints& points, std::span<const std::uint32_t> order) {
+  MergedPoints result;
+  result.positions.reserve(points.size());
+  result.view_images.reserve(points.view_images.size());
+  result.view_weights.reserve(points.view_images.size());
+  for (const std::uint32_t i : order) {
+    result.positions.push_back(points.positions[i]);
+    result.pixel_widths.push_back(points.pixel_widths[i]);
+    for (std::size_t v = points.view_begin[i]; v < points.view_begin[i + 1]; ++v) {
+      result.view_images.push_back(points.view_images[v]);
+      result.view_weights.push_back(points.view_weights[v]);
+    }
+    result.view_begin.push_back(result.view_images.size());
+  }
+  return result;
+}
+
+}  // namespace
+
+MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
+                          const MergeOptions& options) {
+  MergedPoints merged;
+  Merger merger(cloud, rays, options.min_distance);
+  for (const std::uint32_t i : by_views(cloud)) merger.take_point(i, merged);
+  return in_order(merged, spatial_order(merged.positions));
+}
+
+}  // namespace axial::mesh

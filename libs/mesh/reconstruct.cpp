@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/reconstruct.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/progress.h"
+#include "cloud/crop.h"
+#include "mesh/cut.h"
+#include "mesh/surface.h"
+#include "mesh/tetrahedra.h"
+#include "mesh/view_rays.h"
+
+namespace axial::mesh {
+namespace {
+
+void check(const PointCloud& cloud, const Scene& scene) {
+  if (cloud.positions.empty()) fail("the cloud has no points");
+  if (cloud.view_begin.empty())
+    fail("the points have no views, which tell the free space in front of them");
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.positions[i].allFinite()) fail("the position of point {} is not finite", i);
+    for (const std::uint32_t view : cloud.views_of(i)) {
+      if (view >= scene.images.size())
+        fail("point {} names view {}, but the scene has {} images", i, view, scene.images.size());
+      if (!scene.images[view].calibrated)
+        fail("point {} names view {}, an image without calibration: {}", i, view,
+             scene.images[view].path);
+    }
+  }
+  constexpr float kLargestWeight = 1e6f;  // sums of weights stay far from the largest float
+  for (const float weight : cloud.view_weights)
+    if (!(weight >= 0 && weight <= kLargestWeight))
+      fail("a view of a point has the weight {}, which must be from 0 to {}", weight,
+           kLargestWeight);
+}
+
+MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
+                    const ReconstructOptions& options) {
+  const std::size_t all = cloud.size();
+  if (options.only_region && scene.region) cloud::crop(cloud, *scene.region);
+  MergedPoints points = merge_points(cloud, rays, options.merge);
+  log_info("{} points merged to {}", all, points.size());
+  if (points.size() < 4) fail("{} points remain of {}: at least 4 are needed", points.size(), all);
+  return points;
+}
+
+void check_memory(std::size_t points, const ReconstructOptions& options) {
+  constexpr std::uint64_t kMegabyte = 1'000'000;
+  const std::uint64_t needed = bytes_needed(points);
+  if (options.max_bytes > 0 && needed > options.max_bytes)
+    fail("{} merged points need about {} MB, but {} is {}; a larger {} merges more points", points,
+         needed / kMegabyte, options.name_of("max_memory"), options.max_bytes / kMegabyte,
+         options.name_of("merge.min_distance"));
+}
+
+Surface cut_surface(const MergedPoints& points, const ViewRays& rays,
+                    const ReconstructOptions& options) {
+  const Tetrahedra tetrahedra = delaunay(points.positions);
+  return_freed_memory();
+  log_info("{} tetrahedra", tetrahedra.size());
+  Votes votes = cast_votes(tetrahedra, points, rays, options.votes, console_progress("Voted"));
+  const std::vector<bool> inside = occupied(tetrahedra, votes);
+  votes = {};
+  Surface surface = surface_without_long_edges(tetrahedra, points.positions, points.pixel_widths,
+                                               inside, options.clean.spurious);
+  log_info("Surface: {} vertices, {} faces", surface.mesh.vertices.size(),
+           surface.mesh.faces.size());
+  return surface;
+}
+
+// Removes the faces with a corner outside of the region.
+void crop(Mesh& mesh, const OrientedBox& region) {
+  std::vector<bool> kept;
+  kept.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    kept.push_back(region.contains(vertex.cast<double>()));
+  std::erase_if(mesh.faces, [&](const auto& face) {
+    return std::ranges::any_of(face, [&](std::uint32_t corner) { return !kept[corner]; });
+  });
+}
+
+}  // namespace
+
+std::uint64_t bytes_needed(std::size_t merged_points) {
+  // Measured: a point has 6.8 tetrahedra; each has 32 bytes of its own and 24 of votes, and in the
+  // cut 48 bytes for itself and two edges of 64.
+  return 60'000'000 + merged_points * 1700;
+}
+
+Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options) {
+  check(cloud, scene);
+  const ViewRays rays(scene);
+  Surface surface;
+  {
+    const MergedPoints points = merged(std::move(cloud), scene, rays, options);
+    return_freed_memory();
+    check_memory(points.size(), options);
+    surface = cut_surface(points, rays, options);
+  }
+  return_freed_memory();
+  if (surface.mesh.faces.empty()) fail("no surface separates free space from points");
+  if (options.crop_to_region && scene.region) crop(surface.mesh, *scene.region);
+  CleanReport report;
+  Mesh mesh = clean(surface.mesh, options.clean, &report);
+  log_info(
+      "Cleaned: {} spurious pieces and {} spikes removed, {} holes closed, {} faces removed "
+      "that intersected others",
+      report.removed_components, report.removed_spikes, report.closed_holes,
+      report.removed_intersections);
+  return mesh;
+}
+
+}  // namespace axial::mesh

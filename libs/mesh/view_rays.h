@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rays between points of a scene and its cameras.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scene/any_camera.h"
+#include "scene/scene.h"
+
+namespace axial::mesh {
+
+class ViewRays {
+ public:
+  explicit ViewRays(const Scene& scene);
+
+  // The derivative of the pixel in `image` by the position of `point` [px/m], both in the frame of
+  // the scene. Zero if the image does not see the point. Precondition: the image is calibrated.
+  Eigen::Matrix<float, 2, 3> pixel_motion(std::uint32_t image, const Eigen::Vector3f& point) const;
+
+  // The end of the straight ray from `point` towards the camera: the point where it enters the
+  // port, or in air the centre of projection. Empty if the image does not see the point. In the
+  // frame of the scene [m]. Precondition: the image is calibrated.
+  std::optional<Eigen::Vector3d> exit_point(std::uint32_t image,
+                                            const Eigen::Vector3d& point) const;
+
+ private:
+  std::vector<Pose> poses_;
+  std::vector<AnyCamera<double>> cameras_;
+};
+
+}  // namespace axial::mesh

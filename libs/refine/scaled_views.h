@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The views at one of the resolutions of a refinement, and the images of a mesh in them.
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <span>
+#include <vector>
+
+#include "base/shared_cache.h"
+#include "refine/raster.h"
+#include "refine/refine.h"
+#include "refine/visibility.h"
+
+namespace axial::refine {
+
+class ScaledViews {
+ public:
+  // `factor`: of the size of the images, at most 1.
+  ScaledViews(std::span<const View> views, const Pictures& pictures, double factor);
+
+  std::size_t count() const { return views_.size(); }
+  bool used(std::size_t view) const { return views_[view].camera.width > 0; }
+  const View& view(std::size_t i) const { return views_[i]; }
+  cv::Size size(std::size_t view) const;
+
+  struct Pixels {
+    cv::Mat1f grey;  // 0 to 255
+    cv::Mat1b mask;  // empty, or 0 where pixels are not used
+  };
+  Pixels pixels(std::size_t view) const;
+
+ private:
+  std::vector<View> views_;
+  const Pictures& pictures_;
+};
+
+// The images of a mesh's vertices in all views. Keeps those of the last `capacity` views.
+class MeshImages {
+ public:
+  // The arguments must outlive the object.
+  MeshImages(const Mesh& mesh, const ScaledViews& views, std::size_t capacity)
+      : cache_([&](std::size_t view) { return vertex_images(mesh.vertices, views.view(view)); },
+               capacity) {}
+
+  std::shared_ptr<const std::vector<VertexImage>> get(std::size_t view) { return cache_.get(view); }
+
+ private:
+  SharedCache<std::vector<VertexImage>> cache_;
+};
+
+// Which of the views see which vertices.
+Visibility find_visibility(const Mesh& mesh, const Shape& shape, const ScaledViews& views,
+                           MeshImages& images);
+
+}  // namespace axial::refine

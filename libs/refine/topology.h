@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The neighbourhoods of a mesh, and quantities of its vertices that depend on the positions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace axial::refine {
+
+// Lists of numbers, one list after the other.
+struct Lists {
+  std::vector<std::uint32_t> begin;  // one more than there are lists
+  std::vector<std::uint32_t> item;
+
+  std::span<const std::uint32_t> of(std::size_t list) const {
+    return {item.data() + begin[list], item.data() + begin[list + 1]};
+  }
+};
+
+struct Topology {
+  Lists faces;               // of every vertex, in ascending order
+  Lists neighbours;          // of every vertex, in ascending order
+  std::vector<bool> border;  // the vertex has an edge that does not belong to exactly two faces
+};
+
+Topology topology_of(const Mesh& mesh);
+
+struct Shape {
+  std::vector<Eigen::Vector3f> normals;  // of vertices, unit length; zero without a face of area
+  std::vector<float> edge;               // root of the mean squared length of the vertex's edges
+  std::vector<float> area;               // a third of the area of the vertex's faces
+};
+
+Shape shape_of(const Mesh& mesh, const Topology& topology);
+
+// Twice the area of the face, times its unit normal.
+inline Eigen::Vector3f face_vector(const Mesh& mesh, const std::array<std::uint32_t, 3>& face) {
+  const Eigen::Vector3f& a = mesh.vertices[face[0]];
+  return (mesh.vertices[face[1]] - a).cross(mesh.vertices[face[2]] - a);
+}
+
+}  // namespace axial::refine

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Statistics of windows of 7 x 7 pixels of two images, over the pixels that both have.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace axial::refine {
+
+inline constexpr int kWindowRadius = 3;
+inline constexpr int kBandHeight = 16;  // rows that one thread processes
+
+// The sums over a window. To keep them small, kMiddle is subtracted from all grey levels.
+struct Windows {
+  static constexpr float kMiddle = 128;
+  // The grey levels have this variance from noise and rounding [grey levels^2].
+  static constexpr float kNoise = 1.0f;
+  static constexpr float kLeastPixels = 20;
+  static constexpr float kLeastCorrelation = 0.3f;
+
+  float count, r, w, rr, ww, rw;
+
+  float reference_mean() const { return r / count + kMiddle; }
+  float warped_mean() const { return w / count + kMiddle; }
+  float reference_variance() const { return rr / count - r / count * (r / count); }
+  float warped_variance() const { return ww / count - w / count * (w / count); }
+  float covariance() const { return rw / count - r / count * (w / count); }
+  float correlation() const {
+    return covariance() / std::sqrt(reference_variance() * warped_variance());
+  }
+  // Contrast of the reference relative to that of the source.
+  float gain() const { return std::sqrt(reference_variance() / warped_variance()); }
+  bool comparable() const {
+    return count >= kLeastPixels && reference_variance() > kNoise / 4 &&
+           warped_variance() > kNoise / 4 && correlation() > kLeastCorrelation;
+  }
+  // The inverse of the variance of the residuals in the window.
+  float precision() const {
+    return 1 / (2 * reference_variance() * std::max(0.0f, 1 - correlation()) + kNoise);
+  }
+};
+
+inline std::size_t window_bands(int rows) {
+  return static_cast<std::size_t>((rows + kBandHeight - 1) / kBandHeight);
+}
+
+// Sums of each column over the rows of a window, for six channels.
+class ColumnSums {
+ public:
+  explicit ColumnSums(int width) : width_(width) {
+    for (auto& channel : sum_) channel.resize(static_cast<std::size_t>(width + 2 * kWindowRadius));
+  }
+
+  // Adds a row, or with `sign` -1 takes it away; pixels whose `warped` is NaN count nothing.
+  void add(const float* reference, const float* warped, float sign) {
+    float *n = at(0), *r = at(1), *w = at(2), *rr = at(3), *ww = at(4), *rw = at(5);
+    for (int x = 0; x < width_; ++x) {
+      const bool valid = warped[x] == warped[x];
+      const float a = valid ? reference[x] - Windows::kMiddle : 0.0f;
+      const float b = valid ? warped[x] - Windows::kMiddle : 0.0f;
+      n[x] += valid ? sign : 0.0f;
+      r[x] += sign * a, w[x] += sign * b;
+      rr[x] += sign * a * a, ww[x] += sign * b * b, rw[x] += sign * a * b;
+    }
+  }
+
+  Windows window(int x) const {
+    std::array<float, 6> total{};
+    for (std::size_t c = 0; c < 6; ++c) {
+      const float* from = sum_[c].data() + x;
+      total[c] = ((from[0] + from[1]) + (from[2] + from[3])) + ((from[4] + from[5]) + from[6]);
+    }
+    return {total[0], total[1], total[2], total[3], total[4], total[5]};
+  }
+
+ private:
+  static_assert(kWindowRadius == 3, "window() adds seven columns");
+  float* at(std::size_t channel) { return sum_[channel].data() + kWindowRadius; }
+
+  int width_;
+  std::array<std::vector<float>, 6> sum_;
+};
+
+// Calls visit(x, y, windows) for every pixel of a band whose `warped` is not NaN.
+template <class Visit>
+void for_each_window(const cv::Mat1f& reference, const cv::Mat1f& warped, std::size_t band,
+                     Visit&& visit) {
+  ColumnSums sums(warped.cols);
+  const int first = static_cast<int>(band) * kBandHeight;
+  const int last = std::min(first + kBandHeight, warped.rows);
+  const auto add = [&](int y, float sign) {
+    if (y >= 0 && y < warped.rows) sums.add(reference[y], warped[y], sign);
+  };
+  for (int y = first - kWindowRadius; y < first + kWindowRadius; ++y) add(y, 1);
+  for (int y = first; y < last; ++y) {
+    add(y + kWindowRadius, 1);
+    for (int x = 0; x < warped.cols; ++x)
+      if (warped(y, x) == warped(y, x)) visit(x, y, sums.window(x));
+    add(y - kWindowRadius, -1);
+  }
+}
+
+}  // namespace axial::refine
