@@ -7,11 +7,16 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/same_file.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/lenses.h"
 #include "photographs.h"
 #include "settings.h"
 
 namespace axial::apps {
 namespace {
+
+namespace fs = std::filesystem;
 
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   Mesh mesh = io::read_mesh_ply(settings.mesh, frame);
@@ -29,9 +34,22 @@ void report(const TexturedMesh& mesh, const texture::Report& facts) {
            mesh.textures.size(), facts.unseen_faces, mesh.mesh.faces.size());
 }
 
+// Error if a file of a mesh with `textures` textures is an input.
+void keep_inputs(const Settings& settings, const Photographs& photographs, std::size_t textures) {
+  const fs::path& scene = settings.scene.scene;
+  std::vector<fs::path> inputs = photographs.files();
+  inputs.insert(inputs.end(),
+                {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
+                 io::geo_offset_beside(scene), settings.views_file});
+  for (const io::TexturedFormat format : settings.formats)
+    require_no_inputs(io::textured_files(settings.output, format, textures), inputs,
+                      "--output-file");
+}
+
 void require_writable_outputs(const Settings& settings) {
   for (const io::TexturedFormat format : settings.formats)
-    for (const auto& file : io::textured_files(settings.output, format, 1)) require_writable(file);
+    for (const fs::path& file : io::textured_files(settings.output, format, 1))
+      require_writable(file);
 }
 
 int run(int argc, char** argv) {
@@ -39,10 +57,11 @@ int run(int argc, char** argv) {
   if (!options.parsed.run) return options.parsed.exit_code;
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
-  require_writable_outputs(settings);
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
   const Photographs photographs(scene.scene, settings);
+  keep_inputs(settings, photographs, 1);
+  require_writable_outputs(settings);
   const LocalFrame frame = scene.frame;
   scene = {};
   texture::Report facts;
@@ -51,6 +70,7 @@ int run(int argc, char** argv) {
       [&](std::size_t view) { return photographs.load(view); }, settings.texture, &facts,
       [](const std::string& stage) { return console_progress(stage); });
   report(textured, facts);
+  keep_inputs(settings, photographs, textured.textures.size());
   for (const io::TexturedFormat format : settings.formats) {
     io::write_textured_mesh(settings.output, textured, format, frame);
     log_info("wrote {}", io::textured_files(settings.output, format, 1).front().string());

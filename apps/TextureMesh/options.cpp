@@ -110,11 +110,11 @@ std::vector<io::TexturedFormat> formats_of(const std::string& list) {
   return formats;
 }
 
-// The path without its extension, if that is one of a scene or of a mesh.
-fs::path without_known_extension(fs::path path) {
+// The path with the extension ".mvs", which replaces that of a mesh.
+fs::path as_scene(fs::path path) {
   const std::string extension = path.extension().string();
-  if (extension == ".mvs" || (!extension.empty() && io::textured_format(extension.substr(1))))
-    path.replace_extension();
+  if (!extension.empty() && io::textured_format(extension.substr(1))) path.replace_extension();
+  if (path.extension() != ".mvs") path += ".mvs";
   return path;
 }
 
@@ -124,10 +124,10 @@ void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings)
   settings.mesh = path(raw.mesh);
   if (settings.mesh.empty())
     settings.mesh = fs::path(settings.scene.scene).replace_extension(".ply");
-  settings.output = without_known_extension(path(raw.output));
-  if (settings.output.empty())
-    settings.output =
-        settings.scene.scene.parent_path() / (settings.scene.scene.stem().string() + "_texture");
+  const fs::path& scene = settings.scene.scene;
+  settings.output = raw.output.empty()
+                        ? scene.parent_path() / (scene.stem().string() + "_texture.mvs")
+                        : as_scene(path(raw.output));
   settings.views_file = path(raw.views_file);
   settings.mask_folder = path(raw.mask_path);
 }

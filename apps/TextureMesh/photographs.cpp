@@ -107,6 +107,12 @@ void Photographs::find_masks(const Scene& scene, const Settings& settings) {
   }
 }
 
+std::vector<fs::path> Photographs::files() const {
+  std::vector<fs::path> all = files_;
+  all.insert(all.end(), masks_.begin(), masks_.end());
+  return all;
+}
+
 texture::ViewImage Photographs::load(std::size_t view) const {
   const CameraModel& camera = views_[view].camera;
   const cv::Size size(camera.width, camera.height);

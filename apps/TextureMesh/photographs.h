@@ -20,6 +20,9 @@ class Photographs {
 
   const std::vector<texture::View>& views() const { return views_; }
 
+  // The files that are read: photographs and masks.
+  std::vector<std::filesystem::path> files() const;
+
   // The photograph of a view. May be called concurrently. Error if a file cannot be read.
   texture::ViewImage load(std::size_t view) const;
 

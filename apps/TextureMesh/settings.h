@@ -23,7 +23,7 @@ enum class MaskChoice {
 
 struct Settings {
   io::SceneFiles scene;
-  std::filesystem::path mesh, output;  // the output without extension
+  std::filesystem::path mesh, output;  // the extension of the output is .mvs, as in OpenMVS
   std::vector<io::TexturedFormat> formats;
   std::filesystem::path views_file;   // empty: all views
   std::filesystem::path mask_folder;  // empty: masks of the scene, or beside the images

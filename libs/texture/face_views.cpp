@@ -13,9 +13,12 @@
 namespace axial::texture {
 namespace {
 
+// A sight, without the view that the list of a view has in common.
 struct SeenFace {
   std::uint32_t face;
-  Sight sight;
+  float quality;
+  std::array<std::uint8_t, 3> color;
+  bool whole;
 };
 
 // Area-weighted unit normals of the vertices.
@@ -97,7 +100,8 @@ class Observer {
     project_vertices();
     std::vector<SeenFace> result;
     for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
-      if (const std::optional<Sight> sight = look_at(face)) result.push_back({face, *sight});
+      if (const std::optional<Sight> s = look_at(face))
+        result.push_back({face, s->quality, s->color, s->whole});
     return result;
   }
 
@@ -229,10 +233,8 @@ FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_view
   result.sights.resize(result.begin.back());
   std::vector<std::uint64_t> next(result.begin.begin(), result.begin.end() - 1);
   for (std::uint32_t v = 0; v < of_views.size(); ++v) {
-    for (SeenFace& s : of_views[v]) {
-      s.sight.view = v;
-      result.sights[next[s.face]++] = s.sight;
-    }
+    for (const SeenFace& s : of_views[v])
+      result.sights[next[s.face]++] = {v, s.quality, s.color, s.whole};
     std::vector<SeenFace>().swap(of_views[v]);
   }
   prefer_whole(result);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "base/error.h"
@@ -55,24 +56,83 @@ double scale_to_fit(cv::Size size, int max) {
   return longest <= max ? 1 : static_cast<double>(max) / longest;
 }
 
-// Places what fits of `left` in a texture of this size, and removes it from `left`.
-void fill(cv::Size texture, std::uint32_t index, std::span<const cv::Size> sizes,
-          std::vector<std::size_t>& left, Packing& packing) {
-  std::vector<StbRect> rects(left.size());
-  for (std::size_t i = 0; i < left.size(); ++i)
-    rects[i].size = scaled(sizes[left[i]], packing.places[left[i]].scale);
-  pack_with_stb(texture, rects);
-  std::vector<std::size_t> rest;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (!rects[i].corner) {
-      rest.push_back(left[i]);
-      continue;
+// Places rectangles in one texture after the other.
+class Packer {
+ public:
+  Packer(std::span<const cv::Size> sizes, const PackingOptions& options)
+      : sizes_(sizes), sides_(options) {
+    packing_.places.resize(sizes.size());
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      Place& place = packing_.places[i];
+      place.scale = scale_to_fit(sizes[i], sides_.max());
+      if (place.scale < 1) ++packing_.scaled_down;
+      const cv::Size size = size_of(i);
+      area_ += static_cast<double>(size.width) * size.height;
+      longest_ = std::max({longest_, size.width, size.height});
     }
-    packing.places[left[i]].texture = index;
-    packing.places[left[i]].corner = *rects[i].corner;
   }
-  left = std::move(rest);
-}
+
+  Packing pack() {
+    std::vector<std::size_t> left(sizes_.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    while (!left.empty()) left = fill_next(left);
+    return std::move(packing_);
+  }
+
+ private:
+  cv::Size size_of(std::size_t i) const { return size_at(packing_.places[i], sizes_[i]); }
+
+  // Makes a texture for rectangles of `left`. Returns those that remain.
+  std::vector<std::size_t> fill_next(const std::vector<std::size_t>& left) {
+    constexpr double kFilled = 0.9;
+    const double length = std::min<double>(sides_.max(), std::sqrt(area_ / kFilled));
+    int side = sides_.at_least(std::max(longest_, static_cast<int>(length) + 1));
+    std::vector<std::size_t> rest = fill(side, left);
+    while (!rest.empty() && side < sides_.max()) {
+      side = sides_.after(side);
+      rest = fill(side, left);
+    }
+    cut(side, left, rest);
+    return rest;
+  }
+
+  // Places what fits of `left` in a square texture. Returns what does not.
+  std::vector<std::size_t> fill(int side, const std::vector<std::size_t>& left) {
+    std::vector<StbRect> rects(left.size());
+    for (std::size_t i = 0; i < left.size(); ++i) rects[i].size = size_of(left[i]);
+    pack_with_stb({side, side}, rects);
+    std::vector<std::size_t> rest;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (!rects[i].corner) {
+        rest.push_back(left[i]);
+        continue;
+      }
+      Place& place = packing_.places[left[i]];
+      place.texture = static_cast<std::uint32_t>(packing_.sizes.size());
+      place.corner = *rects[i].corner;
+    }
+    return rest;
+  }
+
+  // Ends a texture with the rectangles of `left` that are not in `rest`, both in rising order.
+  void cut(int side, const std::vector<std::size_t>& left, const std::vector<std::size_t>& rest) {
+    std::vector<std::size_t> placed;
+    std::ranges::set_difference(left, rest, std::back_inserter(placed));
+    int bottom = 1;
+    for (const std::size_t i : placed) {
+      const cv::Size size = size_of(i);
+      bottom = std::max(bottom, packing_.places[i].corner.y + size.height);
+      area_ -= static_cast<double>(size.width) * size.height;
+    }
+    packing_.sizes.emplace_back(side, sides_.at_least(bottom));
+  }
+
+  std::span<const cv::Size> sizes_;
+  TextureSides sides_;
+  Packing packing_;
+  double area_ = 0;  // of the rectangles that are not placed [px]
+  int longest_ = 1;
+};
 
 }  // namespace
 
@@ -81,48 +141,7 @@ cv::Size size_at(const Place& place, cv::Size size) {
 }
 
 Packing pack(std::span<const cv::Size> sizes, const PackingOptions& options) {
-  const TextureSides sides(options);
-  Packing packing;
-  packing.places.resize(sizes.size());
-  double area = 0;
-  int longest = 1;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    Place& place = packing.places[i];
-    place.scale = scale_to_fit(sizes[i], sides.max());
-    if (place.scale < 1) ++packing.scaled_down;
-    const cv::Size size = scaled(sizes[i], place.scale);
-    area += static_cast<double>(size.width) * size.height;
-    longest = std::max({longest, size.width, size.height});
-  }
-  std::vector<std::size_t> left(sizes.size());
-  std::iota(left.begin(), left.end(), std::size_t{0});
-  while (!left.empty()) {
-    const auto index = static_cast<std::uint32_t>(packing.sizes.size());
-    constexpr double kFilled = 0.9;
-    const double side = std::min<double>(sides.max(), std::sqrt(area / kFilled));
-    cv::Size texture;
-    texture.width = texture.height = sides.at_least(std::max(longest, static_cast<int>(side) + 1));
-    std::vector<std::size_t> rest = left;
-    fill(texture, index, sizes, rest, packing);
-    while (!rest.empty() && texture.width < sides.max()) {
-      texture.width = texture.height = sides.after(texture.width);
-      rest = left;
-      fill(texture, index, sizes, rest, packing);
-    }
-    std::vector<bool> waits(sizes.size(), false);
-    for (const std::size_t i : rest) waits[i] = true;
-    int bottom = 1;
-    for (const std::size_t i : left) {
-      if (waits[i]) continue;
-      const cv::Size size = size_at(packing.places[i], sizes[i]);
-      bottom = std::max(bottom, packing.places[i].corner.y + size.height);
-      area -= static_cast<double>(size.width) * size.height;
-    }
-    texture.height = sides.at_least(bottom);
-    packing.sizes.push_back(texture);
-    left = std::move(rest);
-  }
-  return packing;
+  return Packer(sizes, options).pack();
 }
 
 }  // namespace axial::texture

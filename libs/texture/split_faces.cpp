@@ -129,7 +129,7 @@ std::vector<std::uint32_t> add_middles(const Edges& edges, std::span<const char>
     if (!marked[i]) continue;
     const auto [from, to, faces] = edges.list[i];
     middle[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.push_back((mesh.vertices[from] + mesh.vertices[to]) / 2);
+    mesh.vertices.emplace_back((mesh.vertices[from] + mesh.vertices[to]) / 2);
     if (mesh.colors.empty()) continue;
     Rgb color{};
     for (std::size_t c = 0; c < 3; ++c)

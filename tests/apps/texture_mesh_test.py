@@ -57,6 +57,10 @@ class Files(TextureTest):
         self.assertIn("element face 288\n", header)
         self.assertNotIn("texnumber", header)
 
+    def test_other_dots_in_the_name_stay(self):
+        self.succeeds(*self.texture("-o", "a.v2"))
+        self.assertLess({"a.v2.ply", "a.v20.png"}, files_below(self.work))
+
     def test_every_format_has_its_files(self):
         before = files_below(self.work)
         self.succeeds(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
@@ -172,6 +176,13 @@ class WrongInput(TextureTest):
                                     "0", "--patch-packing-heuristic", "103", "--cuda-device", "-2",
                                     "--global-seam-leveling", "1", "--local-seam-leveling", "0",
                                     "--texture-size-multiple", "16", "--empty-color", "255"))
+
+    def test_inputs_are_not_overwritten(self):
+        os.rename(self.mesh, self.path("work", "scene_texture.ply"))
+        self.refuses_and_keeps("--output-file", *self.texture("-m", "scene_texture.ply"))
+        os.link(self.images[0], self.path("work", "out0.png"))
+        self.refuses_and_keeps("--output-file", *self.texture("-m", "scene_texture.ply", "-o", "out"))
+        self.succeeds(*self.texture("-m", "scene_texture.ply", "-o", "other"))
 
     def test_help_without_input(self):
         self.assertEqual(run("TextureMesh").returncode, 1)

@@ -87,15 +87,24 @@ inline simulate::Port room_port() {
   return port;
 }
 
+// A dome whose centre is 1 cm from the camera.
+inline simulate::Port room_dome() {
+  simulate::Port port = room_port();
+  port.dome = simulate::Dome{{0.006, -0.004, 0.007}, 0.05};
+  return port;
+}
+
 inline CameraModel camera_of(const simulate::Lens& lens, const simulate::Port& port) {
   CameraModel camera;
   camera.width = lens.width, camera.height = lens.height;
   camera.lens = {lens.focal, lens.focal, lens.cx, lens.cy};
-  refractive::FlatPort<double> flat;
-  flat.normal = port.normal;
-  flat.distance = port.distance, flat.thickness = port.thickness;
-  flat.n_air = port.n_air, flat.n_glass = port.n_glass, flat.n_water = port.n_water;
-  camera.port = flat;
+  if (port.dome)
+    camera.port = refractive::DomePort<double>{port.dome->centre, port.dome->inner_radius,
+                                               port.thickness,    port.n_air,
+                                               port.n_glass,      port.n_water};
+  else
+    camera.port = refractive::FlatPort<double>{port.normal, port.distance, port.thickness,
+                                               port.n_air,  port.n_glass,  port.n_water};
   return camera;
 }
 
@@ -113,11 +122,11 @@ inline simulate::View room_view(double angle) {
 
 // Photographs by `count` cameras around the room. View v is darker or brighter by the factor
 // exposures[v], where given.
-inline Room photograph_room(int count, const std::vector<float>& exposures = {}) {
+inline Room photograph_room(int count, const std::vector<float>& exposures = {},
+                            const simulate::Port& port = room_port()) {
   const Mesh mesh = room_mesh();
   const simulate::RayScene scene({mesh.vertices, mesh.faces});
   const simulate::Lens lens = simulate::make_lens(240, 180, 65);
-  const simulate::Port port = room_port();
   Room room;
   for (int v = 0; v < count; ++v) {
     const float exposure = exposures.empty() ? 1 : exposures[static_cast<std::size_t>(v)];

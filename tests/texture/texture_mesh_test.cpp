@@ -35,6 +35,14 @@ TEST(TextureMesh, ColoursThroughAPortAreThoseOfTheSurface) {
   EXPECT_LT(report.unseen_faces, mesh.mesh.faces.size() / 4);
 }
 
+TEST(TextureMesh, ColoursThroughADomeAreThoseOfTheSurface) {
+  const test::Room room = test::photograph_room(6, {}, test::room_dome());
+  const TexturedMesh mesh = texture_mesh(test::room_mesh(), room.views, room.source());
+  const Errors errors = summary(test::color_errors(mesh));
+  EXPECT_LT(errors.median, 2);
+  EXPECT_LT(errors.of_95_percent, 5);
+}
+
 TEST(TextureMesh, WithThePortIgnoredColoursAreWrong) {
   test::Room room = test::photograph_room(6);
   for (View& view : room.views) view.camera.port.reset();
