@@ -14,18 +14,21 @@ find_package(embree 3 REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as header-only library
 find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(Ceres REQUIRED)
-# CGAL's headers use gmp and mpfr. Its target CGAL::CGAL is not linked, because it would give its
-# compile options to every target that links a library with CGAL; see axial_source_options() in
-# libs/mesh.
-find_path(CGAL_INCLUDE_DIR CGAL/version.h REQUIRED)
+find_package(CGAL REQUIRED)
+# CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
+# CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and
+# the arithmetic of the rest of the project. The compiler takes numbers in CGAL's headers for
+# uninitialised that are not.
+set_target_properties(CGAL PROPERTIES INTERFACE_COMPILE_OPTIONS "")
+set(AXIAL_CGAL_OPTIONS -frounding-math -Wno-maybe-uninitialized)
+# These packages have no CMake files.
 find_path(MAXFLOW_INCLUDE_DIR maxflow.h PATH_SUFFIXES maxflow-3.0 REQUIRED)
-foreach(library gmp mpfr maxflow)
-  string(TOUPPER ${library} upper)
-  find_library(${upper}_LIBRARY ${library} REQUIRED)
-  add_library(${library} INTERFACE IMPORTED GLOBAL)
-  target_link_libraries(${library} INTERFACE ${${upper}_LIBRARY})
-endforeach()
+find_library(MAXFLOW_LIBRARY maxflow REQUIRED)
+add_library(maxflow INTERFACE IMPORTED GLOBAL)
 target_include_directories(maxflow SYSTEM INTERFACE ${MAXFLOW_INCLUDE_DIR})
+target_link_libraries(maxflow INTERFACE ${MAXFLOW_LIBRARY})
+find_package(TinyGLTF REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_rect_pack.h REQUIRED)  # used as header-only library
 if(AXIAL_TESTS)
   find_package(GTest REQUIRED)
   find_package(rapidcheck REQUIRED)

@@ -11,6 +11,8 @@
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
 #include "evaluate/icp.h"
+#include "evaluate/mesh_evaluation.h"
+#include "evaluate/mesh_report.h"
 #include "evaluate/pictures.h"
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
@@ -244,22 +246,37 @@ void draw(const Options& options, const PointCloud& cloud, std::span<const evalu
   io::write_png(options.picture, evaluate::with_error_scale(picture, options.color_max));
 }
 
-// Measures the aligned input. `colored` gets the points that count, without colours.
-evaluate::CloudEvaluation measure(const Options& options, Input& input, const Mesh& truth,
-                                  const evaluate::Surface& surface,
-                                  std::span<const evaluate::View> views, PointCloud& colored) {
+evaluate::CloudOptions settings_of(const Options& options) {
   evaluate::CloudOptions settings;
   settings.tolerances = options.tolerances;
   settings.samples = options.samples;
   settings.seed = options.seed;
   settings.least_views = options.least_views;
   settings.gross = options.gross;
-  return naming(options.input, [&] {
-    if (input.mesh)
-      return evaluate::evaluate_mesh(*input.mesh, truth, surface, views, settings,
-                                     colored.positions);
-    colored = counted_points(options, input, views);
-    return evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings);
+  return settings;
+}
+
+struct Measured {
+  evaluate::CloudEvaluation whole;
+  std::optional<evaluate::MeshEvaluation> mesh;
+};
+
+// Measures the aligned input. `colored` gets the points that count, without colours.
+Measured measure(const Options& options, Input& input, const Mesh& truth,
+                 const evaluate::Surface& surface, std::span<const evaluate::View> views,
+                 PointCloud& colored) {
+  const evaluate::CloudOptions settings = settings_of(options);
+  return naming(options.input, [&]() -> Measured {
+    if (!input.mesh) {
+      colored = counted_points(options, input, views);
+      return {evaluate::evaluate_cloud(colored.positions, truth, surface, views, settings), {}};
+    }
+    std::vector<std::uint32_t> faces;
+    evaluate::CloudEvaluation whole = evaluate::evaluate_mesh(*input.mesh, truth, surface, views,
+                                                              settings, colored.positions, &faces);
+    evaluate::MeshEvaluation parts = evaluate::evaluate_mesh_parts(
+        *input.mesh, {colored.positions, faces}, surface, views, settings, whole);
+    return {std::move(whole), std::move(parts)};
   });
 }
 
@@ -288,12 +305,14 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   if (options.align == "centres") refuse_if_far(options, input, truth);
 
   PointCloud colored;
-  const auto result = measure(options, input, truth, surface, views, colored);
+  const auto [result, mesh] = measure(options, input, truth, surface, views, colored);
   fmt::print("{}", evaluate::table(result));
+  if (mesh) fmt::print("{}", evaluate::table(*mesh));
   colored.colors = evaluate::error_colors(result.distances, options.color_max);
   write_errors(options, colored, models.frames.truth, views);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
+  if (mesh) report.update(evaluate::to_json(*mesh));
   report.update(naming(options.input, [&] {
     return report_parts(options,
                         {colored.positions, input.uncertainty, truth, surface, views, result});

@@ -56,8 +56,10 @@ void declare_measures(OptionList& visible, Options& options) {
           "samples", &options.samples,
           "approximate number of samples on the truth, for completeness (and on an input mesh)")
       .add_with_default("seed", &options.seed, "random seed of the samples")
-      .add_with_default("min-views", &options.least_views,
-                        "number of views that must see a sample, else the sample does not count")
+      .add_with_default(
+          "min-views", &options.least_views,
+          "number of views that must see a sample, else the sample does not count; with an "
+          "input mesh also for the results over seen surface")
       .add_switch("framed-only", &options.framed_only,
                   "count only points of a cloud that lie in the images of --min-views views of "
                   "--cameras, without a test for occlusion")

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "scene/moved_scene.h"
 
 namespace axial::evaluate {
 namespace {
@@ -28,7 +29,7 @@ void check_spread(const Eigen::Matrix3Xd& points, const char* which) {
 }  // namespace
 
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
-                          std::span<const Eigen::Vector3d> target) {
+                          std::span<const Eigen::Vector3d> target, bool with_scale) {
   if (source.size() != target.size())
     fail("{} positions cannot be fitted to {}", source.size(), target.size());
   if (source.size() < 3)
@@ -37,7 +38,7 @@ Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
   const Eigen::Matrix3Xd to = columns(target);
   check_spread(from, "estimated");
   check_spread(to, "reference");
-  return best_similarity(from, to);
+  return best_similarity(from, to, with_scale);
 }
 
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference) {
@@ -86,10 +87,7 @@ std::vector<std::string> not_matched(const CentreAlignment& alignment,
 
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
                           const LocalFrame& to) {
-  if (from.is_world() && to.is_world()) return similarity;
-  Similarity worlds = similarity;
-  worlds.translation = to.to_world(similarity(-from.origin));
-  return worlds;
+  return FrameMove{similarity, from, to}.between_worlds();
 }
 
 void apply(const Similarity& similarity, io::ColmapModel& model) {

@@ -17,11 +17,11 @@ namespace axial::evaluate {
 
 using axial::Similarity;
 
-// Returns best_similarity() from `source` to `target`. Error for fewer than three pairs,
-// coordinates that are not finite, or points on one line (their spread across it is below a
-// thousandth of the spread along it), which do not fix the rotation.
+// Returns best_similarity() from `source` to `target`, with scale 1 unless `with_scale`. Error for
+// fewer than three pairs, coordinates that are not finite, or points on one line (their spread
+// across it is below a thousandth of the spread along it), which do not fix the rotation.
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
-                          std::span<const Eigen::Vector3d> target);
+                          std::span<const Eigen::Vector3d> target, bool with_scale = true);
 
 struct CentreAlignment {
   Similarity similarity;

@@ -107,11 +107,12 @@ CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Me
 
 CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
                               std::span<const View> views, const CloudOptions& options,
-                              std::vector<Eigen::Vector3f>& sampled) {
+                              std::vector<Eigen::Vector3f>& sampled,
+                              std::vector<std::uint32_t>* faces) {
   check(options);
   // The seed differs from that of the truth, so that a mesh that is compared with itself is not
   // sampled at the same points.
-  sampled = sample_surface(mesh, options.samples, options.seed + 1);
+  sampled = sample_surface(mesh, options.samples, options.seed + 1, faces);
   Places places = draw_places(truth, surface, views, options);
   std::vector<float> found = distances_to(Surface(mesh), places.positions);
   return summed_up(distances_to(surface, sampled), std::move(found), std::move(places), views,

@@ -50,11 +50,13 @@ CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Me
                                const CloudOptions& options);
 
 // Evaluates a mesh. Accuracy is that of `options.samples` samples of the mesh, uniform by area,
-// which are returned in `sampled`. Completeness is the exact distance from the samples of the truth
-// to the triangles of the mesh. Errors as for evaluate_cloud.
+// which are returned in `sampled`; `faces`, unless null, receives their faces. Completeness is the
+// exact distance from the samples of the truth to the triangles of the mesh. Errors as for
+// evaluate_cloud.
 CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
                               std::span<const View> views, const CloudOptions& options,
-                              std::vector<Eigen::Vector3f>& sampled);
+                              std::vector<Eigen::Vector3f>& sampled,
+                              std::vector<std::uint32_t>* faces = nullptr);
 
 // Returns the distance of every query to the nearest of `points`, of which there must be at least
 // one.

@@ -33,17 +33,6 @@ struct Surface::Impl {
 
 namespace {
 
-void check(const Mesh& mesh) {
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    if (!mesh.vertices[i].allFinite()) fail("vertex {} of the mesh is not finite", i);
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    for (const std::uint32_t corner : mesh.faces[i])
-      if (corner >= mesh.vertices.size())
-        fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
-             mesh.vertices.size());
-}
-
 void check(RTCDevice device) {
   if (const RTCError error = rtcGetDeviceError(device); error == RTC_ERROR_OUT_OF_MEMORY)
     throw std::bad_alloc();
@@ -86,8 +75,19 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 
 }  // namespace
 
+void require_valid(const Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (!mesh.vertices[i].allFinite()) fail("vertex {} of the mesh is not finite", i);
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    for (const std::uint32_t corner : mesh.faces[i])
+      if (corner >= mesh.vertices.size())
+        fail("face {} of the mesh refers to vertex {}, but there are {}", i, corner,
+             mesh.vertices.size());
+}
+
 Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
-  check(mesh);
+  if (mesh.faces.empty()) fail("the mesh has no faces");
+  require_valid(mesh);
   impl_->vertices = mesh.vertices;
   impl_->faces = mesh.faces;
   impl_->device = rtcNewDevice(nullptr);

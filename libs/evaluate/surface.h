@@ -18,6 +18,9 @@ struct ClosestPoint {
   std::uint32_t face;
 };
 
+// Error if a face index is out of range or a coordinate is not finite.
+void require_valid(const Mesh& mesh);
+
 // Holds a copy of the triangles in an Embree hierarchy. All queries may run concurrently. The
 // answers do not depend on the number of threads.
 class Surface {

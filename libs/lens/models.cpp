@@ -211,4 +211,46 @@ const Model* find_model(std::string_view name) {
   return found == kModels.end() ? nullptr : &*found;
 }
 
+namespace {
+
+// The models with polynomials. The first coefficient above is 1, and the spread is 1.
+std::optional<ModelOf> polynomial_of(const Bent& bent) {
+  const auto& a = bent.above;
+  const auto& b = bent.below;
+  const bool ratio = b != std::array<double, 3>{}, tangential = bent.p1 != 0 || bent.p2 != 0;
+  const bool prism = !bent.prism.isZero(0);
+  if (bent.fisheye == 0) {
+    if (prism || a[4] != 0) return {};
+    if (!ratio && a[3] == 0) return ModelOf{"OPENCV", {a[1], a[2], bent.p1, bent.p2}};
+    return ModelOf{"FULL_OPENCV", {a[1], a[2], bent.p1, bent.p2, a[3], b[0], b[1], b[2]}};
+  }
+  if (ratio) return {};
+  if (!prism && !tangential) return ModelOf{"OPENCV_FISHEYE", {a[1], a[2], a[3], a[4]}};
+  return ModelOf{"THIN_PRISM_FISHEYE",
+                 {a[1], a[2], bent.p1, bent.p2, a[3], a[4], bent.prism.x(), bent.prism.y()}};
+}
+
+}  // namespace
+
+std::optional<ModelOf> model_of(const Bent& bent) {
+  const double first = bent.above[0];
+  Bent rest = bent;  // without the first coefficient, which the focal lengths take
+  for (double& a : rest.above) a /= first;
+  rest.p1 /= first;
+  rest.p2 /= first;
+  rest.prism /= first;
+  std::optional<ModelOf> found;
+  if (bent.spread == 1) {
+    found = polynomial_of(rest);
+    if (found) found->focal_factor = first;
+    return found;
+  }
+  rest.spread = 1;
+  if (bent.fisheye == 0 || !(rest == bent_as_fisheye({}))) return {};
+  const double omega = 2 * std::atan(bent.spread / 2);
+  // Rounding must not change the focal lengths of a FOV camera that is written and read again.
+  const double factor = first * omega;
+  return ModelOf{"FOV", {omega}, std::abs(factor - 1) < 1e-14 ? 1 : factor};
+}
+
 }  // namespace axial::lens

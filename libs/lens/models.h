@@ -3,8 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "refractive/lens_distortion.h"
 
@@ -28,5 +30,18 @@ struct Model {
 // The models of COLMAP's documentation, up to EUCM. Null for other names and for EQUIRECTANGULAR,
 // which is no perspective camera.
 const Model* find_model(std::string_view name);
+
+// A model of COLMAP's documentation with its distortion parameters, for a pinhole whose focal
+// lengths are `focal_factor` times those of the lens in the matcher's form.
+struct ModelOf {
+  std::string_view name;
+  std::vector<double> parameters;
+  double focal_factor = 1;
+};
+
+// The model that images every direction as `bent` does, up to rounding: the inverse of Model::bent.
+// The result is OPENCV, FULL_OPENCV, OPENCV_FISHEYE, THIN_PRISM_FISHEYE or FOV, the first one that
+// fits. Nothing if none of them fits, as for lenses that were fitted (lens_distortion in lens.h).
+std::optional<ModelOf> model_of(const refractive::LensDistortion<double>& bent);
 
 }  // namespace axial::lens

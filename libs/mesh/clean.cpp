@@ -99,9 +99,9 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   CleanReport own;
   CleanReport& result = report ? *report : own;
   HalfedgeMesh surface = to_halfedges(mesh);
+  result.removed_components = remove_small_components(surface, options.spurious);
   if (const std::size_t faces = faces_to_keep(surface, options); faces < surface.number_of_faces())
     decimate(surface, faces);
-  result.removed_components = remove_small_components(surface, options.spurious);
   mend(surface, options, result);
   separate_copies(surface);
   smooth(surface, options.smooth);

@@ -24,9 +24,9 @@ struct CleanReport {
 };
 
 // Makes `mesh` edge- and vertex-manifold, oriented and free of self-intersections. The steps, in
-// this order: repair of edges and vertices at which more than two faces meet, simplification,
-// spurious components, spikes, holes, smoothing, remeshing, and again spikes and holes; at last
-// faces that intersect each other are smoothed less, and removed if that does not help. Vertices
+// this order: repair of edges and vertices at which more than two faces meet, spurious
+// components, simplification, spikes, holes, smoothing, remeshing, and again spikes and holes; at
+// last faces that intersect each other are smoothed, and removed if that does not help. Vertices
 // without faces are removed. Colours are lost. The result does not depend on the number of threads.
 // Error if the mesh has no face, or if no face is left.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);

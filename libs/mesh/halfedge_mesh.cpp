@@ -8,6 +8,17 @@
 #include <vector>
 
 namespace axial::mesh {
+namespace {
+
+// Without `volatile`, GCC 12 removes the conversion of two neighbouring coordinates to float and
+// back (with -O3 it makes one vector conversion of them, which it takes for none).
+double rounded_to_float(double x) {
+  const volatile float rounded = static_cast<float>(x);
+  return static_cast<double>(rounded);
+}
+
+}  // namespace
+
 namespace pmp = CGAL::Polygon_mesh_processing;
 
 HalfedgeMesh to_halfedges(const Mesh& mesh) {
@@ -56,8 +67,8 @@ Eigen::Vector3d mean_of_neighbours(const HalfedgeMesh& mesh, HalfedgeMesh::Verte
 }
 
 void move_to(HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex, const Eigen::Vector3d& to) {
-  const Eigen::Vector3f rounded = to.cast<float>();
-  mesh.point(vertex) = {rounded.x(), rounded.y(), rounded.z()};
+  mesh.point(vertex) = {rounded_to_float(to.x()), rounded_to_float(to.y()),
+                        rounded_to_float(to.z())};
 }
 
 }  // namespace axial::mesh

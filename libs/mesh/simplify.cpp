@@ -17,8 +17,12 @@ void round_to_float(HalfedgeMesh& mesh) {
 
 void decimate(HalfedgeMesh& mesh, std::size_t faces) {
   namespace sms = CGAL::Surface_mesh_simplification;
-  // A closed surface loses two faces and three edges by a collapse.
-  const sms::Count_stop_predicate<HalfedgeMesh> stop(faces * 3 / 2);
+  // The number of edges per face stays nearly the same: a collapse inside the mesh removes two
+  // faces and three edges.
+  const double edges_per_face =
+      static_cast<double>(mesh.number_of_edges()) / static_cast<double>(mesh.number_of_faces());
+  const sms::Count_stop_predicate<HalfedgeMesh> stop(
+      static_cast<std::size_t>(static_cast<double>(faces) * edges_per_face));
   const sms::GarlandHeckbert_plane_policies<HalfedgeMesh, HalfedgeKernel> policies(mesh);
   sms::edge_collapse(
       mesh, stop,

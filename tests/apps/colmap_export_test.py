@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """InterfaceCOLMAP exports a scene as a COLMAP model."""
 
+import json
 import os
 import re
 import shutil
 import struct
 
+import tiny_scene
 from openmvs_scene import Scene
-from programs import cloud_size, main, read, write
+from programs import ProgramTest, cloud_size, main, read, write
 
 
 def with_image_folder(scene, folder):
@@ -138,6 +140,69 @@ class Export(Scene):
         self.succeeds(*self.command(folder, "--refractive"))
         self.assertAlmostEqual(cloud_size(self.cloud(folder)) /
                                cloud_size(read(self.densified("water", "scene_dense.ply"))), 1, 1)
+
+
+class RoundTrip(ProgramTest):
+    """A scene that is exported and imported again is the same scene. The rotations of the tiny
+    scene are exact in a quaternion, so the bytes are the same, except for the signs of zeros."""
+    SIZE = f"{tiny_scene.WIDTH} {tiny_scene.HEIGHT}"
+    CENTRE = f"{tiny_scene.CX} {tiny_scene.CY}"
+    PORT = {"type": "flat", "normal": [0, 0, 1], "distance_m": 0.02, "thickness_m": 0.005,
+            "n_glass": 1.49, "n_water": 1.333}
+
+    def round_trip(self, camera, *options):
+        folder = self.path("a")
+        shutil.rmtree(folder, ignore_errors=True)
+        tiny_scene.write_colmap(folder, camera)
+        self.succeeds("InterfaceCOLMAP", "-i", folder, "--undistort", 0, *options)
+        self.succeeds("InterfaceCOLMAP", "-i", os.path.join(folder, "scene.mvs"), "-w", folder, "-o",
+                      self.path("b"))
+        again = os.path.join(folder, "again.mvs")
+        self.succeeds("InterfaceCOLMAP", "-i", self.path("b"), "--undistort", 0, "-o", again,
+                      "--image-folder", os.path.join(folder, "images"))
+        scenes = [read(os.path.join(folder, name)).replace(b"\0" * 7 + b"\x80", b"\0" * 8)
+                  for name in ("scene.mvs", "again.mvs")]
+        self.assertEqual(*scenes)
+        return [[json.loads(read(os.path.join(folder, f"{name}.{kind}.json")))
+                 for name in ("scene", "again")
+                 if os.path.exists(os.path.join(folder, f"{name}.{kind}.json"))]
+                for kind in ("lenses", "housing")]
+
+    def test_lenses(self):
+        two, one = f"{self.SIZE} 90 91 {self.CENTRE}", f"{self.SIZE} 90 {self.CENTRE}"
+        for camera, exported in ((f"PINHOLE {two}", "PINHOLE"),
+                                 (f"SIMPLE_RADIAL {one} -0.1", "OPENCV"),
+                                 (f"OPENCV {two} -0.1 0.02 0.001 -0.002", "OPENCV"),
+                                 (f"FULL_OPENCV {two} -.1 .02 .001 -.002 .01 .02 .01 .003",
+                                  "FULL_OPENCV"),
+                                 (f"OPENCV_FISHEYE {two} -0.1 0.02 0.01 -0.01", "OPENCV_FISHEYE"),
+                                 (f"THIN_PRISM_FISHEYE {two} -.1 .02 .001 .002 .01 .02 .003 .004",
+                                  "THIN_PRISM_FISHEYE"),
+                                 (f"FOV {two} 0.9", "FOV")):
+            with self.subTest(camera=camera):
+                lenses, _ = self.round_trip(camera)
+                self.assertIn(exported + " ", read(self.path("b", "sparse", "cameras.txt")).decode())
+                self.assertEqual(lenses[1:], lenses[:1])
+                self.assertEqual(len(lenses), 0 if exported == "PINHOLE" else 2)
+
+    def test_a_lens_behind_a_port(self):
+        write(self.path("housing.json"), json.dumps({"version": 1, "ports": {"main": self.PORT},
+                                                     "default": "main"}))
+        lenses, housings = self.round_trip(f"OPENCV {self.SIZE} 90 91 {self.CENTRE} -.1 .02 .001 0",
+                                           "--housing", self.path("housing.json"))
+        self.assertEqual(lenses[0], lenses[1])
+        ports = [next(iter(housing["ports"].values())) for housing in housings]
+        self.assertEqual(ports[0], ports[1])
+
+    def test_a_lens_that_colmap_does_not_describe(self):
+        folder = self.path("a")
+        tiny_scene.write_colmap(folder)
+        self.succeeds("InterfaceCOLMAP", "-i", folder)
+        write(self.path("a", "scene.lenses.json"), json.dumps({"version": 1, "lenses": {
+            "bent": {"type": "perspective", "radial": [1], "thin_prism": [0.01, 0]}},
+            "default": "bent"}))
+        self.refuses("no camera model of COLMAP describes its lens", "InterfaceCOLMAP", "-i",
+                     os.path.join(folder, "scene.mvs"), "-w", folder, "-o", self.path("b"))
 
 
 if __name__ == "__main__":

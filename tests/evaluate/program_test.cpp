@@ -222,6 +222,9 @@ TEST_F(Programs, EvaluateAMeshAndADepthMap) {
           .exit_code,
       0);
   EXPECT_EQ(read_json("mesh.json")["kind"], "mesh");
+  EXPECT_EQ(read_json("mesh.json")["normals"]["within_10_20_30"][0], 1.0);
+  EXPECT_EQ(read_json("mesh.json")["topology"]["border_loops"], 1);
+  EXPECT_FALSE(read_json("mesh.json").contains("seen"));
   EXPECT_LT(read_json("mesh.json")["accuracy"]["max"].get<double>(), 1e-6);
 
   DepthMap map;
@@ -243,6 +246,21 @@ TEST_F(Programs, EvaluateAMeshAndADepthMap) {
   EXPECT_EQ(json["completeness"], 1.0);
   EXPECT_EQ(json["rings"].size(), 8u);
   EXPECT_TRUE(fs::exists(folder_ / "map.png"));
+}
+
+TEST_F(Programs, EvaluateTheSeenPartOfAMesh) {
+  write_scene();
+  const Outcome outcome = run("EvaluateReconstruction",
+                              "-i truth.ply -m truth.ply --cameras true --samples 5000 --json "
+                              "mesh.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  for (const char* title : {"over seen surface", "normals [degrees]", "unseen space", "topology"})
+    EXPECT_THAT(outcome.output, HasSubstr(title));
+  const auto json = read_json("mesh.json");
+  EXPECT_EQ(json["seen"]["scores"][0]["f_score"], 1.0);
+  EXPECT_NEAR(json["seen"]["share"].get<double>() + json["unseen"]["share"].get<double>(), 1, 1e-9);
+  EXPECT_GT(json["unseen"]["no_view"], 0.05);
+  EXPECT_EQ(json["unseen"]["far"], 0.0);
 }
 
 TEST_F(Programs, RefuseWrongInput) {

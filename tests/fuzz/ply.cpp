@@ -7,6 +7,8 @@
 
 #include "io/openmvs/point_source.h"
 #include "io/ply/ply_property.h"
+#include "io/ply/ply_transform.h"
+#include "io/textured/textured_mesh.h"
 #include "reader.h"
 
 namespace axial::fuzz {
@@ -46,6 +48,24 @@ void read_mesh_file(const fs::path& file) {
   require(again.faces == mesh.faces, "the copy has other faces");
 }
 
+// The textures are beside the file. Texture coordinates are rounded when they are written and read.
+void read_textured_file(const fs::path& file) {
+  const cv::Mat3b texture(4, 8, cv::Vec3b(1, 2, 3));
+  for (const char* name : {"mesh0.png", "mesh1.png"})
+    if (!fs::exists(file.parent_path() / name))
+      io::write_textured_mesh(file.parent_path() / "mesh.ply", {{}, {}, {}, {texture, texture}},
+                              io::TexturedFormat::ply);
+  const auto read = [](const fs::path& path) { return io::read_textured_ply(path); };
+  const TexturedMesh mesh = read(file);
+  const TexturedMesh again =
+      read_copy(mesh, file, read, [](const fs::path& path, const TexturedMesh& value) {
+        io::write_textured_mesh(path, value, io::TexturedFormat::ply);
+      });
+  require(again.mesh.vertices == mesh.mesh.vertices, "the copy has other vertices");
+  require(again.mesh.faces == mesh.mesh.faces, "the copy has other faces");
+  require(again.texture_of == mesh.texture_of, "the copy has other texture numbers");
+}
+
 // Functions that read only a part of a file.
 void read_parts(const fs::path& file) {
   io::count_point_cloud(file, {});
@@ -53,6 +73,15 @@ void read_parts(const fs::path& file) {
   io::read_vertex_property(file, "confidence");
   io::ply_place(file);
   io::read_cloud_ply(file, LocalFrame{{1e6, -2e6, 3}});
+}
+
+// The result is a file of the same vertices, which can be read again.
+void move_file(const fs::path& file) {
+  const PointCloud before = io::read_cloud_ply(file);
+  const FrameMove move{{2, Eigen::Matrix3d::Identity(), {1, 2, 3}}, {}, LocalFrame{{10, 0, 0}}};
+  const fs::path moved = file.parent_path() / "moved.ply";
+  io::transform_ply(file, moved, move);
+  require(io::read_cloud_ply(moved).size() == before.size(), "the moved file has other vertices");
 }
 
 PointCloud small_cloud() {
@@ -98,13 +127,26 @@ bool write_mesh_seed(const fs::path& file, int variant) {
   return variant < 3;
 }
 
+bool write_textured_seed(const fs::path& file, int variant) {
+  const auto textures = static_cast<std::size_t>(variant + 1);
+  TexturedMesh mesh;
+  mesh.mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 1}}};
+  mesh.uv = {{{{1, 1}, {3, 1}, {1, 3}}}, {{{1, 1}, {1, 3}, {3, 1}}}};
+  mesh.texture_of = {0, textures > 1 ? 1u : 0u};
+  mesh.textures.assign(textures, cv::Mat3b(4, 8, cv::Vec3b(1, 2, 3)));
+  if (variant < 2) io::write_textured_mesh(file, mesh, io::TexturedFormat::ply);
+  return variant < 2;
+}
+
 }  // namespace
 
 std::span<const Reader> ply_readers() {
   static constexpr std::array kReaders{
       Reader{"ply-cloud", "cloud.ply", read_cloud_file, write_cloud_seed},
       Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
-      Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed}};
+      Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed},
+      Reader{"ply-moved", "cloud.ply", move_file, write_cloud_seed},
+      Reader{"ply-textured", "mesh.ply", read_textured_file, write_textured_seed}};
   return kReaders;
 }
 

@@ -6,6 +6,7 @@
 #include "io/bytes/json.h"
 #include "io/bytes/written_files.h"
 #include "io/cameras/position_file.h"
+#include "io/cameras/transform_file.h"
 #include "reader.h"
 
 namespace axial::fuzz {
@@ -51,13 +52,26 @@ bool write_split_seed(const fs::path& file, int variant) {
   return variant < 1;
 }
 
+void read_transform_file(const fs::path& file) {
+  const Similarity similarity = io::read_transform(file);
+  const Eigen::Matrix3d product = similarity.rotation * similarity.rotation.transpose();
+  require(similarity.scale > 0 && product.isIdentity(1e-8), "a matrix is no similarity");
+}
+
+bool write_transform_seed(const fs::path& file, int variant) {
+  if (variant == 0) write_atomically(file, "matrix: 0, -2, 0, 5; 2, 0, 0, 1e3\n0 0 2 -7\n");
+  if (variant == 1) write_atomically(file, "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  return variant < 2;
+}
+
 }  // namespace
 
 std::span<const Reader> text_readers() {
   static constexpr std::array kReaders{
       Reader{"positions", "positions.txt", read_position_file, write_position_seed},
       Reader{"file-list", "list.json", read_file_list, write_list_seed},
-      Reader{"split-list", "list.txt", read_split_list, write_split_seed}};
+      Reader{"split-list", "list.txt", read_split_list, write_split_seed},
+      Reader{"transform", "transform.txt", read_transform_file, write_transform_seed}};
   return kReaders;
 }
 

@@ -15,7 +15,8 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
-            "InterfaceCOLMAP", "RefinePoses", "ReproducePaper", "SimulateUnderwater"]
+            "InterfaceCOLMAP", "ReconstructMesh", "RefinePoses", "ReproducePaper", "SimulateUnderwater",
+            "TransformScene"]
 
 
 def output_of(*command):

@@ -110,6 +110,54 @@ RC_GTEST_PROP(Lens, DefiningEquationsHold, ()) {
             1e-12);
 }
 
+// Every model of which the matcher's form is exact is found again: it images all directions alike.
+RC_GTEST_PROP(Lens, ModelOfTheMatchersForm, ()) {
+  const double u = within(0.7), v = within(0.7);
+  const auto k = [] { return within(0.05); };
+  const std::vector<std::pair<const char*, std::vector<double>>> lenses{
+      {"RADIAL", {k(), k()}},
+      {"OPENCV", {k(), k(), k(), k()}},
+      {"FULL_OPENCV", {k(), k(), k(), k(), k(), k(), k(), k()}},
+      {"RADIAL_FISHEYE", {k(), k()}},
+      {"OPENCV_FISHEYE", {k(), k(), k(), k()}},
+      {"THIN_PRISM_FISHEYE", {k(), k(), k(), k(), k(), k(), k(), k()}},
+      {"FOV", {0.9 + k()}}};
+  for (const auto& [name, parameters] : lenses) {
+    const Model* const model = find_model(name);
+    auto bent = model->bent(parameters);
+    const auto found = model_of(bent);
+    RC_ASSERT(found.has_value());
+    RC_ASSERT(found->focal_factor == 1);
+    const Vector2d expected = model->distort(parameters, {u, v}).point;
+    const Vector2d again = find_model(found->name)->distort(found->parameters, {u, v}).point;
+    RC_ASSERT((again - expected).norm() < 1e-12);
+    // A lens with a first coefficient that is not 1 moves it into the focal lengths.
+    for (double& a : bent.above) a *= 2;
+    bent.p1 *= 2;
+    bent.p2 *= 2;
+    bent.prism *= 2;
+    const auto doubled = model_of(bent);
+    RC_ASSERT(doubled.has_value());
+    RC_ASSERT(std::abs(doubled->focal_factor - 2) < 1e-12);
+    RC_ASSERT(doubled->name == found->name);
+  }
+}
+
+TEST(Lens, NoModelOfFormsThatColmapLacks) {
+  refractive::LensDistortion<double> bent;
+  bent.prism = {0.01, 0};
+  EXPECT_FALSE(model_of(bent)) << "a thin prism of a perspective lens";
+  bent = {};
+  bent.fisheye = 1;
+  bent.below[0] = 0.1;
+  EXPECT_FALSE(model_of(bent)) << "a ratio of a fisheye";
+  bent = {};
+  bent.fisheye = 1;
+  bent.spread = 0.8;
+  bent.above[1] = 0.1;
+  EXPECT_FALSE(model_of(bent)) << "a polynomial with a spread";
+}
+
 TEST(Lens, PinholesAreTakenAsTheyAre) {
   const auto lens = pinhole_lens(lens_of(two_focal_camera("PINHOLE", {})));
   ASSERT_TRUE(lens);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "lens/models.h"
 #include "scene/camera_model.h"
 
 namespace axial::io {
@@ -34,6 +35,8 @@ std::vector<double> key_of(const CameraModel& camera) {
                           lens.fy,
                           lens.cx,
                           lens.cy};
+  if (auto distortion = camera.distortion)
+    distortion->each_field([&](double number) { key.push_back(number); });
   if (!camera.port) return key;
   key.push_back(static_cast<double>(camera.port->index()));
   const std::vector<double> port =
@@ -42,24 +45,38 @@ std::vector<double> key_of(const CameraModel& camera) {
   return key;
 }
 
+// The camera without its id. Error that starts with `path` for a lens that COLMAP has no model of.
+ColmapCamera colmap_camera(const CameraModel& model, const std::string& path) {
+  lens::ModelOf form{"PINHOLE", {}};
+  if (model.distortion) {
+    const auto found = lens::model_of(*model.distortion);
+    if (!found)
+      fail("{}: no camera model of COLMAP describes its lens: undistort the images on import",
+           path);
+    form = *found;
+  }
+  ColmapCamera camera;
+  camera.model = form.name;
+  camera.width = static_cast<std::uint64_t>(model.width);
+  camera.height = static_cast<std::uint64_t>(model.height);
+  camera.params = {form.focal_factor * model.lens.fx, form.focal_factor * model.lens.fy,
+                   model.lens.cx + kHalf, model.lens.cy + kHalf};
+  camera.params.insert(camera.params.end(), form.parameters.begin(), form.parameters.end());
+  camera.port = model.port;
+  return camera;
+}
+
 class Cameras {
  public:
   explicit Cameras(std::vector<ColmapCamera>& cameras) : cameras_(cameras) {}
 
   std::uint32_t id_of(const SceneImage& image) {
-    const CameraModel& model = image.camera;
-    if (model.distortion)
-      fail("{}: its lens is distorted: undistort it on import to export the scene", image.path);
     const auto next = static_cast<std::uint32_t>(cameras_.size() + 1);
-    const auto [entry, is_new] = ids_.emplace(key_of(model), next);
-    if (is_new)
-      cameras_.push_back(
-          {next,
-           "PINHOLE",
-           static_cast<std::uint64_t>(model.width),
-           static_cast<std::uint64_t>(model.height),
-           {model.lens.fx, model.lens.fy, model.lens.cx + kHalf, model.lens.cy + kHalf},
-           model.port});
+    const auto [entry, is_new] = ids_.emplace(key_of(image.camera), next);
+    if (is_new) {
+      cameras_.push_back(colmap_camera(image.camera, image.path));
+      cameras_.back().id = next;
+    }
     return entry->second;
   }
 

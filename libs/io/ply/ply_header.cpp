@@ -76,9 +76,12 @@ void parse_property(TextLine& line, std::vector<PlyElement>& elements) {
   properties.push_back(std::move(property));
 }
 
-// Reads a comment "geo_offset X Y Z" and ignores other comments.
+// Reads the comments "geo_offset X Y Z" and "TextureFile NAME", and ignores others.
 void parse_comment(TextLine line, PlyHeader& header) {
-  if (line.empty() || line.word("comment") != "geo_offset") return;
+  if (line.empty()) return;
+  const std::string_view kind = line.word("comment");
+  if (kind == "TextureFile") header.texture_files.emplace_back(line.rest());
+  if (kind != "geo_offset") return;
   if (header.geo_offset) fail("{}: second geo_offset", line.where());
   Eigen::Vector3d& offset = header.geo_offset.emplace();
   for (double& coordinate : offset) coordinate = line.number<double>("geo_offset");

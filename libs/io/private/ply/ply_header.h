@@ -36,6 +36,7 @@ struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
   std::optional<Eigen::Vector3d> geo_offset;  // from "comment geo_offset X Y Z"
+  std::vector<std::string> texture_files;     // from "comment TextureFile NAME"
   std::size_t body = 0;                       // offset of the data in bytes
 };
 

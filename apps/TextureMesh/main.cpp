@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gives a mesh textures from the photographs of a scene.
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "photographs.h"
+#include "settings.h"
+
+namespace axial::apps {
+namespace {
+
+Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
+  Mesh mesh = io::read_mesh_ply(settings.mesh, frame);
+  if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
+  log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
+           mesh.faces.size());
+  mesh.colors = {};  // the textured mesh has none
+  return mesh;
+}
+
+void report(const TexturedMesh& mesh, const texture::Report& facts) {
+  if (facts.new_faces > 0)
+    log_info("{} faces were added by splitting faces whose image is not linear", facts.new_faces);
+  log_info("{} parts of photographs in {} textures; {} of {} faces are not seen", facts.charts,
+           mesh.textures.size(), facts.unseen_faces, mesh.mesh.faces.size());
+}
+
+void require_writable_outputs(const Settings& settings) {
+  for (const io::TexturedFormat format : settings.formats)
+    for (const auto& file : io::textured_files(settings.output, format, 1)) require_writable(file);
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  const Settings& settings = options.settings;
+  const ThreadLimit limit(options.parsed.common.max_threads);
+  require_writable_outputs(settings);
+  io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
+  Mesh mesh = read_mesh(settings, scene.frame);
+  const Photographs photographs(scene.scene, settings);
+  const LocalFrame frame = scene.frame;
+  scene = {};
+  texture::Report facts;
+  const TexturedMesh textured = texture::texture_mesh(
+      std::move(mesh), photographs.views(),
+      [&](std::size_t view) { return photographs.load(view); }, settings.texture, &facts,
+      [](const std::string& stage) { return console_progress(stage); });
+  report(textured, facts);
+  for (const io::TexturedFormat format : settings.formats) {
+    io::write_textured_mesh(settings.output, textured, format, frame);
+    log_info("wrote {}", io::textured_files(settings.output, format, 1).front().string());
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace axial::apps
+
+int main(int argc, char** argv) {
+  return axial::run_program("TextureMesh", [&] { return axial::apps::run(argc, argv); });
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+#include "base/setting_names.h"
+#include "base/split.h"
+#include "base/unused_input.h"
+#include "base/version.h"
+#include "io/images/bit_depth.h"
+#include "settings.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The values of the command line before they are checked and converted.
+struct Raw {
+  std::string input, output, mesh, housing, views_file, mask_path;
+  std::string export_type = "ply", camera_model = "auto";
+  bool refractive = false;
+  int ignore_mask_label = -1;
+  unsigned empty_color = 0xFF7F27, resolution_level = 0;
+  int packing_heuristic = 3;
+};
+
+// An OpenMVS option that scripts pass but that is not built: only these values are accepted.
+struct NotBuilt {
+  const char* name;
+  std::string value;
+  std::vector<std::string> accepted;
+};
+
+std::vector<NotBuilt> not_built() {
+  return {{"decimate", "1", {"1", "1.0"}},
+          {"close-holes", "30", {"30"}},
+          {"virtual-face-images", "0", {"0"}},
+          {"orthographic-image-resolution", "0", {"0"}},
+          {"cuda-device", "-1", {"-1", "-2"}}};
+}
+
+std::vector<NotBuilt> not_built_hidden() {
+  return {{"transfer-texture-file", "", {""}}, {"indices-file", "", {""}}};
+}
+
+constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
+                                    {"bit_depth", "--bit-depth"},
+                                    {"camera is flat_port", "--camera-model is flatport"},
+                                    {"housing", "--housing"},
+                                    {"refractive", "--refractive"}};
+
+std::string option_of(std::string_view setting) {
+  return name_in(kOptions, setting);
+}
+
+void declare_io(OptionList& list, Raw& raw, Settings& settings) {
+  list.add("input-file,i", &raw.input, "scene with cameras and images")
+      .add("mesh-file,m", &raw.mesh, "mesh to texture, PLY (<input>.ply)")
+      .add("output-file,o", &raw.output, "textured mesh to write (<input>_texture)")
+      .add_with_default("export-type", &raw.export_type,
+                        "formats to write, separated by commas: ply, obj, glb, gltf")
+      .add_with_default("resolution-level", &raw.resolution_level,
+                        "how many times the images are halved")
+      .add_with_default("min-resolution", &settings.resolution.min,
+                        "the longest side is not halved below this [px]")
+      .add_with_default(
+          "ignore-mask-label", &raw.ignore_mask_label,
+          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
+          "are left out (default with --mask-path: 0); -2: all pixels are used")
+      .add("mask-path", &raw.mask_path,
+           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in the same subfolders as the images");
+  io::declare_bit_depth(list, settings.bit_depth);
+}
+
+void declare_camera(OptionList& list, Raw& raw) {
+  list.add_switch("refractive", &raw.refractive, "cameras are behind ports: require a housing file")
+      .add("housing", &raw.housing, "housing file (<scene>.housing.json)")
+      .add_with_default("camera-model", &raw.camera_model,
+                        "auto: as in the housing file, pinhole: ignore the housing file, flatport: "
+                        "require a flat port for every image");
+}
+
+void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
+  list.add_with_default("outlier-threshold", &options.outlier_threshold,
+                        "leave out views of a face whose colour is less likely than this among "
+                        "the colours of all its views (0: none)")
+      .add_with_default("cost-smoothness-ratio", &options.labels.cost_smoothness_ratio,
+                        "1: the best view for each face; near 0: few seams")
+      .add_with_default("global-seam-leveling", &options.leveling.global,
+                        "correct the colours of whole parts, so that they agree at seams")
+      .add_with_default("local-seam-leveling", &options.leveling.local,
+                        "correct colours near seams, so that they are invisible")
+      .add_with_default("sharpness-weight", &options.sharpness_weight,
+                        "amount of an unsharp mask (0: none)")
+      .add_with_default("max-texture-size", &options.packing.max_size,
+                        "largest side of a texture [px] (0: 32768)")
+      .add_with_default("texture-size-multiple", &options.packing.multiple,
+                        "sides of textures are multiples of this [px] (0: powers of two)")
+      .add_with_default("empty-color", &raw.empty_color,
+                        "color of faces that no view sees: 65536 red + 256 green + blue")
+      .add_with_default("patch-packing-heuristic", &raw.packing_heuristic,
+                        "accepted and without effect");
+}
+
+void declare_not_built(OptionList& list, std::vector<NotBuilt>& options) {
+  for (NotBuilt& option : options)
+    list.add_with_default(option.name, &option.value, "not built yet: accepts only the default");
+}
+
+void refuse_not_built(const std::vector<NotBuilt>& options) {
+  for (const NotBuilt& option : options)
+    if (std::ranges::find(option.accepted, option.value) == option.accepted.end())
+      fail("--{} {}: not built yet", option.name, option.value);
+}
+
+template <class T>
+void check_range(const char* name, T value, T low, T high) {
+  if (!(value >= low && value <= high))
+    fail("--{} {}: must be from {} to {}", name, value, low, high);
+}
+
+void check_values(const Raw& raw, const Settings& settings) {
+  check_range("resolution-level", raw.resolution_level, 0u, 16u);
+  check_range("min-resolution", settings.resolution.min, 1, 1 << 16);
+  check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
+  check_range("outlier-threshold", settings.texture.outlier_threshold, 0.0, 0.999);
+  check_range("cost-smoothness-ratio", settings.texture.labels.cost_smoothness_ratio, 0.0, 100.0);
+  check_range("sharpness-weight", settings.texture.sharpness_weight, 0.0, 10.0);
+  if (settings.texture.packing.max_size != 0)
+    check_range("max-texture-size", settings.texture.packing.max_size, 16, 32768);
+  check_range("texture-size-multiple", settings.texture.packing.multiple, 0,
+              settings.texture.packing.max_size == 0 ? 32768 : settings.texture.packing.max_size);
+  check_range("empty-color", raw.empty_color, 0u, 0xFFFFFFu);
+  io::check_bit_depth(settings.bit_depth, "--bit-depth");
+}
+
+std::vector<io::TexturedFormat> formats_of(const std::string& list) {
+  std::vector<io::TexturedFormat> formats;
+  for (const std::string_view name : split(list, ',')) {
+    const auto format = io::textured_format(name);
+    if (!format) fail("--export-type {}: must be one or more of ply, obj, glb, gltf", list);
+    if (std::ranges::find(formats, *format) == formats.end()) formats.push_back(*format);
+  }
+  if (formats.empty()) fail("--export-type: must be one or more of ply, obj, glb, gltf");
+  return formats;
+}
+
+io::PortChoice ports_of(const Raw& raw) {
+  if (raw.camera_model == "flatport") return io::PortChoice::flat;
+  if (raw.camera_model == "pinhole") {
+    if (raw.refractive) fail("--refractive contradicts --camera-model pinhole");
+    return io::PortChoice::ignored;
+  }
+  if (raw.camera_model != "auto")
+    fail("--camera-model {}: must be one of auto, pinhole, flatport", raw.camera_model);
+  return raw.refractive ? io::PortChoice::required : io::PortChoice::automatic;
+}
+
+// The path without its extension, if that is one of a scene or of a mesh.
+fs::path without_known_extension(fs::path path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".mvs" || (!extension.empty() && io::textured_format(extension.substr(1))))
+    path.replace_extension();
+  return path;
+}
+
+void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings) {
+  const auto path = [&](const std::string& given) { return in_working_folder(common, given); };
+  settings.scene = {path(raw.input), common.working_folder,        path(raw.housing),
+                    ports_of(raw),   settings.scene.allow_missing, option_of};
+  settings.mesh = path(raw.mesh);
+  if (settings.mesh.empty())
+    settings.mesh = fs::path(settings.scene.scene).replace_extension(".ply");
+  settings.output = without_known_extension(path(raw.output));
+  if (settings.output.empty())
+    settings.output =
+        settings.scene.scene.parent_path() / (settings.scene.scene.stem().string() + "_texture");
+  settings.views_file = path(raw.views_file);
+  settings.mask_folder = path(raw.mask_path);
+}
+
+void convert(const Raw& raw, Options& options) {
+  Settings& settings = options.settings;
+  settings.formats = formats_of(raw.export_type);
+  take_paths(options.parsed.common, raw, settings);
+  settings.resolution.level = raw.resolution_level;
+  const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
+  const int label = masks_given ? 0 : raw.ignore_mask_label;
+  settings.masks = label >= 0    ? MaskChoice::label
+                   : label == -1 ? MaskChoice::black_border
+                                 : MaskChoice::none;
+  settings.mask_label = label;
+  for (unsigned k = 0; k < 3; ++k)
+    settings.texture.empty_color[k] =
+        static_cast<std::uint8_t>(raw.empty_color >> (8 * (2 - k)) & 255u);
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  Raw raw;
+  ProgramOptions program{"TextureMesh",
+                         "gives a mesh textures from photographs, in air and under water",
+                         OptionList("Texture options")};
+  program.version = version_line(program.name);
+  declare_io(program.visible, raw, options.settings);
+  declare_camera(program.visible, raw);
+  declare_texturing(program.visible, raw, options.settings.texture);
+  UnusedInput::declare(program.visible, options.settings.scene.allow_missing);
+  std::vector<NotBuilt> visible = not_built(), hidden = not_built_hidden();
+  declare_not_built(program.visible, visible);
+  declare_not_built(program.hidden, hidden);
+  program.hidden.add("views-file", &raw.views_file,
+                     "text file with the IDs or names of the images to use, one per line");
+  options.parsed = parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  refuse_not_built(visible);
+  refuse_not_built(hidden);
+  check_values(raw, options.settings);
+  convert(raw, options);
+  return options;
+}
+
+}  // namespace axial::apps

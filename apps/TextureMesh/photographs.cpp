@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "photographs.h"
+
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+#include "io/images/bit_depth.h"
+#include "io/images/image.h"
+#include "io/images/masks.h"
+#include "texture/black_border.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The images that a line of the views file names: an ID, a path or the name of a file.
+std::vector<std::size_t> named_by(std::string_view line, const Scene& scene) {
+  std::vector<std::size_t> found;
+  const auto id = parse_number<std::uint32_t>(line);
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage& image = scene.images[i];
+    const std::uint32_t own = image.id == kNoId ? static_cast<std::uint32_t>(i) : image.id;
+    const fs::path path = image.path;
+    if ((id && *id == own) || path == line || path.filename() == line || path.stem() == line)
+      found.push_back(i);
+  }
+  return found;
+}
+
+std::set<std::size_t> images_in(const fs::path& file, const Scene& scene) {
+  std::set<std::size_t> images;
+  const std::string text = read_file(file, 1 << 24);
+  std::size_t number = 0;
+  for (std::string_view line : split(text, '\n')) {
+    ++number;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<std::size_t> named = named_by(line, scene);
+    if (named.empty())
+      fail("{}: line {}: no image has the ID or the name {}", file.string(), number, line);
+    images.insert(named.begin(), named.end());
+  }
+  return images;
+}
+
+void leave_out(const cv::Mat1b& mask, cv::Mat1b& usable) {
+  if (mask.empty()) return;
+  if (usable.empty())
+    usable = mask;
+  else
+    cv::bitwise_and(mask, usable, usable);
+}
+
+// Resampling mixes colours of transparent pixels into pixels at their edge: leaves these out, too.
+cv::Mat1b opaque_at(const cv::Mat1b& opaque, cv::Size size) {
+  if (opaque.empty()) return {};
+  cv::Mat1b resized;
+  cv::resize(opaque, resized, size, 0, 0, cv::INTER_AREA);
+  cv::compare(resized, 255, resized, cv::CMP_EQ);
+  return resized;
+}
+
+}  // namespace
+
+Photographs::Photographs(const Scene& scene, const Settings& settings)
+    : choice_(settings.masks), label_(settings.mask_label) {
+  std::set<std::size_t> wanted;
+  if (!settings.views_file.empty()) wanted = images_in(settings.views_file, scene);
+  std::vector<io::ImageHeader> headers;
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage& image = scene.images[i];
+    if (!image.calibrated || (!settings.views_file.empty() && !wanted.contains(i))) continue;
+    const io::ImageHeader& header = headers.emplace_back(io::read_image_header(image.path));
+    if (!same_shape(header.size, {image.camera.width, image.camera.height}))
+      fail("{}: is {}x{}, but its camera is {}x{}", image.path, header.size.width,
+           header.size.height, image.camera.width, image.camera.height);
+    const cv::Size size = working_size(header.size.width, header.size.height, settings.resolution);
+    images_.push_back(i);
+    files_.emplace_back(image.path);
+    views_.push_back({image.camera.resized(size.width, size.height), image.pose});
+  }
+  if (views_.empty()) fail("{}: has no calibrated image to use", settings.scene.scene.string());
+  bit_depth_ = io::common_bit_depth(files_, headers, settings.bit_depth, "--bit-depth");
+  masks_.resize(views_.size());
+  if (choice_ == MaskChoice::label) find_masks(scene, settings);
+}
+
+void Photographs::find_masks(const Scene& scene, const Settings& settings) {
+  std::vector<io::MaskRequest> requests;
+  for (std::size_t v = 0; v < views_.size(); ++v)
+    requests.push_back({files_[v], scene.images[images_[v]].mask_path});
+  const std::vector<io::FoundMask> found = io::find_masks(requests, settings.mask_folder);
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    masks_[v] = found[v].path;
+    if (!masks_[v].empty()) continue;
+    if (!settings.mask_folder.empty())
+      fail("--mask-path {}: no mask for image {}: looked for {}", settings.mask_folder.string(),
+           files_[v].string(), found[v].looked_for);
+    log_warning("{}: no mask: looked for {}", files_[v].string(), found[v].looked_for);
+  }
+}
+
+texture::ViewImage Photographs::load(std::size_t view) const {
+  const CameraModel& camera = views_[view].camera;
+  const cv::Size size(camera.width, camera.height);
+  io::Photograph photograph = io::read_photograph(files_[view]);
+  const cv::Size stored = photograph.pixels.size();
+  texture::ViewImage result;
+  result.color = resized_image(io::in_8_bits(photograph.pixels, bit_depth_), size);
+  photograph.pixels.release();
+  leave_out(opaque_at(photograph.opaque, size), result.usable);
+  if (choice_ == MaskChoice::black_border)
+    leave_out(texture::outside_black_border(result.color), result.usable);
+  if (masks_[view].empty()) return result;
+  const cv::Mat1w labels = io::read_label_image(masks_[view]);
+  io::check_mask_shape(masks_[view], labels.size(), stored);
+  cv::Mat1b mask;
+  cv::compare(resized_labels(labels, size), label_, mask, cv::CMP_NE);
+  leave_out(mask, result.usable);
+  return result;
+}
+
+}  // namespace axial::apps

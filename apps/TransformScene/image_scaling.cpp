@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image_scaling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/first_error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/same_file.h"
+#include "io/colmap/colmap_export.h"
+#include "io/images/image.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Job {
+  std::size_t image = 0;
+  fs::path target;
+  cv::Size size;
+};
+
+bool is_jpeg(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return extension == ".jpg" || extension == ".jpeg";
+}
+
+cv::Size shrunk(const cv::Size& size, unsigned max_resolution) {
+  const double factor =
+      static_cast<double>(max_resolution) / static_cast<double>(std::max(size.width, size.height));
+  const auto side = [&](int length) { return std::max(1, cvRound(length * factor)); };
+  return {side(size.width), side(size.height)};
+}
+
+std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::path& folder) {
+  const fs::path common = io::common_image_folder(scene);
+  std::vector<Job> jobs;
+  std::vector<fs::path> photographs, targets;
+  for (std::size_t i = 0; i < scene.images.size(); ++i) {
+    const SceneImage& image = scene.images[i];
+    photographs.emplace_back(image.path);
+    if (!image.calibrated) continue;
+    const io::ImageHeader header = io::read_image_header(image.path);
+    if (std::max(header.size.width, header.size.height) <= static_cast<int>(max_resolution))
+      continue;
+    if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
+    fs::path target = folder / fs::path(image.path).lexically_normal().lexically_relative(common);
+    if (!(is_jpeg(target) && header.bits == 8) && target.extension() != ".png") target += ".png";
+    jobs.push_back({i, target, shrunk(header.size, max_resolution)});
+    targets.push_back(target);
+  }
+  require_no_inputs(targets, photographs, "--max-resolution");
+  if (std::set(targets.begin(), targets.end()).size() < targets.size())
+    fail("--max-resolution: two images would become the same file below {}", folder.string());
+  return jobs;
+}
+
+void shrink(const Job& job, const std::string& source) {
+  constexpr int kQuality = 95;
+  const cv::Mat pixels = io::read_photograph(source).pixels;
+  cv::Mat small;
+  cv::resize(pixels, small, job.size, 0, 0, cv::INTER_AREA);
+  if (is_jpeg(job.target))
+    io::write_jpeg(job.target, small, kQuality);
+  else
+    io::write_png(job.target, small);
+}
+
+}  // namespace
+
+void shrink_images(unsigned max_resolution, const fs::path& folder, Scene& scene) {
+  const std::vector<Job> jobs = jobs_of(scene, max_resolution, folder);
+  for (const Job& job : jobs) make_folder(job.target.parent_path());
+  FirstError error;
+  for_each_in_flight(jobs.size(), thread_count(), [&](std::size_t k) {
+    error.run(k, [&] { shrink(jobs[k], scene.images[jobs[k].image].path); });
+  });
+  error.rethrow();
+  for (const Job& job : jobs) {
+    SceneImage& image = scene.images[job.image];
+    image.path = job.target.string();
+    image.camera = image.camera.resized(job.size.width, job.size.height);
+  }
+  log_info("{} of {} images were shrunk to at most {} pixels, in {}", jobs.size(),
+           scene.images.size(), max_resolution, folder.string());
+}
+
+}  // namespace axial::apps

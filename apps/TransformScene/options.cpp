@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/not_built.h"
+#include "base/version.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Texts {
+  std::string input, cloud, mesh, output, housing;
+  std::string align, transform, positions, transform_out;
+};
+
+std::vector<NotBuilt> not_built() {
+  return {{"transfer-texture-file", "", {""}},
+          {"indices-file", "", {""}},
+          {"sample-mesh", "-300000", {"-300000"}}};
+}
+
+void declare_files(OptionList& list, Texts& texts) {
+  list.add("input-file,i", &texts.input, "scene to transform (.mvs)")
+      .add("pointcloud-file,p", &texts.cloud,
+           "PLY cloud in the scene's coordinates, transformed with it")
+      .add("mesh-file,m", &texts.mesh, "PLY mesh in the scene's coordinates, transformed with it")
+      .add("output-file,o", &texts.output,
+           "scene to write (<input>_transform.mvs); the cloud and the mesh are written beside it, "
+           "as .ply and _mesh.ply")
+      .add("housing", &texts.housing, "housing file (<scene>.housing.json)");
+}
+
+void declare_moves(OptionList& list, Options& options, Texts& texts) {
+  list.add("align-file,a", &texts.align,
+           "scene (.mvs) whose camera centres give the similarity; images are matched by name, or "
+           "by their order if names do not match and the numbers of images agree")
+      .add("transform-file,t", &texts.transform,
+           "text file with 12 or 16 numbers: the similarity as a matrix, row by row, from world to "
+           "world coordinates")
+      .add("positions", &texts.positions,
+           "text file with the known positions of camera centres: a line NAME X Y Z for an image")
+      .add_switch("rigid", &options.rigid, "align without a change of scale")
+      .add_switch("scale-ports", &options.scale_ports,
+                  "a change of scale also changes the lengths of the ports that cameras carry. "
+                  "Without it such a change is an error behind these ports, because their lengths "
+                  "are known in metres")
+      .add("transform-out", &texts.transform_out,
+           "write the transformation to this file, as a 4 x 4 matrix, row by row");
+}
+
+void declare_other_work(OptionList& list, Options& options) {
+  list.add_with_default("compute-volume", &options.compute_volume,
+                        "1: report the volume of the mesh, after the transformation")
+      .add_with_default("plane-threshold", &options.plane_threshold,
+                        "distance up to which a part of the mesh lies on the ground plane, above "
+                        "which the volume is measured [m] (0: 1/200 of the mesh's diagonal, "
+                        "negative: no ground plane, the mesh must be closed)")
+      .add_with_default("up-axis", &options.up_axis,
+                        "0, 1, 2: the axis from which the ground plane's normal is at most 45 "
+                        "degrees away; the cameras are above the plane")
+      .add_with_default("max-resolution", &options.max_resolution,
+                        "shrink images whose longest side is longer [px], into the folder "
+                        "images<N> beside the output (0: no limit)");
+}
+
+void set_paths(const Texts& texts, Options& options) {
+  const auto path = [&](const std::string& text) {
+    return in_working_folder(options.parsed.common, text);
+  };
+  options.files.scene = path(texts.input);
+  options.files.working_folder = options.parsed.common.working_folder;
+  options.files.housing = path(texts.housing);
+  options.cloud = path(texts.cloud);
+  options.mesh = path(texts.mesh);
+  options.align = path(texts.align);
+  options.transform = path(texts.transform);
+  options.positions = path(texts.positions);
+  options.transform_out = path(texts.transform_out);
+  options.output = path(texts.output);
+  if (!options.output.empty()) return;
+  options.output = options.files.scene.parent_path() / options.files.scene.stem();
+  options.output += "_transform.mvs";
+}
+
+void check(const Options& options) {
+  const int ways = !options.align.empty() + !options.transform.empty() + !options.positions.empty();
+  if (ways > 1) fail("--align-file, --transform-file, --positions: only one can be given");
+  if (!options.writes_scene() && !options.compute_volume)
+    fail(
+        "nothing to do: give --align-file, --transform-file, --positions, --max-resolution or "
+        "--compute-volume 1");
+  if (options.compute_volume && options.mesh.empty())
+    fail("--compute-volume needs --mesh-file: the mesh whose volume is measured");
+  for (const fs::path& ply : {options.cloud, options.mesh})
+    if (!ply.empty() && ply.extension() != ".ply")
+      fail("{}: not built yet: only PLY files are read", ply.string());
+  if (options.output.extension() != ".mvs")
+    fail("--output-file {}: must end in .mvs", options.output.string());
+  if (options.up_axis < 0 || options.up_axis > 2)
+    fail("--up-axis is {}: must be 0, 1 or 2", options.up_axis);
+  if (!std::isfinite(options.plane_threshold))
+    fail("--plane-threshold is {}: must be a length in metres", options.plane_threshold);
+}
+
+void warn_of_no_effect(const Options& options) {
+  const auto warn = [&](bool without_effect, const char* name, const char* cause) {
+    if (without_effect && given(options.parsed, name))
+      log_warning("--{}: without effect {}", name, cause);
+  };
+  warn(options.align.empty() && options.positions.empty(), "rigid",
+       "without --align-file or --positions");
+  warn(!options.moves(), "scale-ports", "without a transformation");
+  warn(!options.moves(), "transform-out", "without a transformation");
+  for (const char* name : {"plane-threshold", "up-axis"})
+    warn(!options.compute_volume, name, "without --compute-volume 1");
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  Texts texts;
+  ProgramOptions program{"TransformScene",
+                         "moves a scene, its cloud and its mesh by a similarity, and measures "
+                         "volumes",
+                         {},
+                         {}};
+  program.version = version_line(program.name);
+  declare_files(program.visible, texts);
+  declare_moves(program.visible, options, texts);
+  declare_other_work(program.visible, options);
+  std::vector<NotBuilt> refused = not_built();
+  declare_not_built(program.visible, refused);
+  options.parsed = parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  refuse_not_built(refused);
+  set_paths(texts, options);
+  check(options);
+  warn_of_no_effect(options);
+  return options;
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ply/ply_transform.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/ply/ply.h"
+#include "private/bytes/byte_writer.h"
+#include "private/ply/ply_header.h"
+
+namespace axial::io {
+namespace {
+
+constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+using Columns = std::array<std::size_t, 3>;
+
+// The places of three properties that are floats; absent if one of them is.
+Columns columns_of(const PlyElement& element, const std::array<const char*, 3>& names) {
+  Columns columns{kAbsent, kAbsent, kAbsent};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      const bool is_float =
+          property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
+      if (property.name == names[k] && !property.is_list && is_float) columns[k] = i;
+    }
+  if (std::ranges::find(columns, kAbsent) != columns.end()) return {kAbsent, kAbsent, kAbsent};
+  return columns;
+}
+
+// What happens to the vertices of one file.
+struct Vertices {
+  const PlyElement* element = nullptr;
+  Columns position, normal, error;  // only the first column of `error` is used
+  Similarity similarity;            // from the stored positions to the written ones
+};
+
+void write_value(ByteWriter& out, PlyType type, double value) {
+  switch (type) {
+    case PlyType::kInt8:
+      return out.write(static_cast<std::int8_t>(value));
+    case PlyType::kUint8:
+      return out.write(static_cast<std::uint8_t>(value));
+    case PlyType::kInt16:
+      return out.write(static_cast<std::int16_t>(value));
+    case PlyType::kUint16:
+      return out.write(static_cast<std::uint16_t>(value));
+    case PlyType::kInt32:
+      return out.write(static_cast<std::int32_t>(value));
+    case PlyType::kUint32:
+      return out.write(static_cast<std::uint32_t>(value));
+    case PlyType::kFloat32:
+      return out.write(static_cast<float>(value));
+    case PlyType::kFloat64:
+      return out.write(value);
+  }
+}
+
+// One row: the values of every property, one for a scalar.
+using Row = std::vector<std::vector<double>>;
+
+void read_row(PlyBody& body, const PlyElement& element, Row& row) {
+  row.resize(element.properties.size());
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const PlyProperty& property = element.properties[i];
+    row[i].resize(property.is_list ? body.list_size(property) : 1);
+    for (double& value : row[i]) value = body.scalar(property.type, property.name);
+  }
+}
+
+void write_row(ByteWriter& out, const PlyElement& element, const Row& row) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const PlyProperty& property = element.properties[i];
+    if (property.is_list) write_value(out, property.count_type, static_cast<double>(row[i].size()));
+    for (const double value : row[i]) write_value(out, property.type, value);
+  }
+}
+
+void set(Row& row, const Columns& columns, const Eigen::Vector3d& vector) {
+  for (std::size_t k = 0; k < 3; ++k) row[columns[k]][0] = vector(static_cast<Eigen::Index>(k));
+}
+
+Eigen::Vector3d get(const Row& row, const Columns& columns) {
+  return {row[columns[0]][0], row[columns[1]][0], row[columns[2]][0]};
+}
+
+void move_vertex(const Vertices& vertices, std::uint64_t index, const std::string& file, Row& row) {
+  const Eigen::Vector3d x = vertices.similarity(get(row, vertices.position));
+  const bool is_float =
+      vertices.element->properties[vertices.position[0]].type == PlyType::kFloat32;
+  if (!x.allFinite() || (is_float && !x.cast<float>().allFinite()))
+    fail("{}: vertex {} has no finite position after the transformation", file, index);
+  set(row, vertices.position, x);
+  if (vertices.normal[0] != kAbsent)
+    set(row, vertices.normal, vertices.similarity.rotation * get(row, vertices.normal));
+  if (vertices.error[0] != kAbsent) row[vertices.error[0]][0] *= vertices.similarity.scale;
+}
+
+// The lines of the header, with another format and another origin.
+std::string new_header(std::string_view text, const std::string& geo) {
+  std::string header = "ply\nformat binary_little_endian 1.0\n" + geo;
+  text.remove_prefix(text.find('\n') + 1);  // the first line is "ply"
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.starts_with("format") || line.starts_with("comment geo_offset")) continue;
+    header += std::string(line) + "\n";
+  }
+  return header;
+}
+
+// The frame of the stored positions.
+LocalFrame stored_frame(const std::optional<Eigen::Vector3d>& geo_offset,
+                        const Eigen::Vector3d& first, const LocalFrame& frame) {
+  if (geo_offset) return {*geo_offset};
+  const bool is_local = first.norm() < frame.to_local(first).norm();
+  return is_local ? frame : LocalFrame{};
+}
+
+Vertices vertices_of(const PlyHeader& header, const std::string& file) {
+  const auto found = std::ranges::find(header.elements, "vertex", &PlyElement::name);
+  if (found == header.elements.end() || found->count == 0) fail("{}: has no vertices", file);
+  Vertices vertices;
+  vertices.element = &*found;
+  vertices.position = columns_of(*found, {"x", "y", "z"});
+  if (vertices.position[0] == kAbsent) fail("{}: its vertices have no float x, y and z", file);
+  vertices.normal = columns_of(*found, {"nx", "ny", "nz"});
+  vertices.error = columns_of(*found, {"error", "error", "error"});
+  return vertices;
+}
+
+}  // namespace
+
+LocalFrame frame_of_positions(const std::filesystem::path& ply, const LocalFrame& frame) {
+  const PlyPlace place = ply_place(ply);
+  if (!place.frame.is_world()) return place.frame;
+  return stored_frame({}, place.first_vertex, frame);
+}
+
+void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
+                   const FrameMove& move) {
+  const std::string file = input.string(), bytes = read_file(input);
+  const PlyHeader header = parse_ply_header(bytes, file);
+  Vertices vertices = vertices_of(header, file);
+  const LocalFrame stored = frame_of_positions(input, move.from);
+  const bool world = !header.geo_offset && stored.is_world() &&
+                     vertices.element->properties[vertices.position[0]].type == PlyType::kFloat64;
+  vertices.similarity = move.ending_in(world ? LocalFrame{} : move.to).similarity;
+  vertices.similarity.translation = vertices.similarity(stored.origin - move.from.origin);
+  ByteWriter out;
+  out.text(
+      new_header(std::string_view(bytes).substr(0, header.body), geo_comment({move.to, world})));
+  PlyBody body(bytes, file, header);
+  Row row;
+  for (const PlyElement& element : header.elements) {
+    body.require_rows(element);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      read_row(body, element, row);
+      if (&element == vertices.element) move_vertex(vertices, i, file, row);
+      write_row(out, element, row);
+    }
+  }
+  body.require_end();
+  write_atomically(output, out.bytes());
+}
+
+}  // namespace axial::io

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/textured/textured_mesh.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "private/textured/textured_writers.h"
+
+namespace axial::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, TexturedFormat>, 4> kFormats{
+    {{"ply", TexturedFormat::ply},
+     {"obj", TexturedFormat::obj},
+     {"glb", TexturedFormat::glb},
+     {"gltf", TexturedFormat::gltf}}};
+
+std::string extension_of(TexturedFormat format) {
+  for (const auto& [name, known] : kFormats)
+    if (known == format) return fmt::format(".{}", name);
+  return {};
+}
+
+void check(const TexturedMesh& mesh, const std::string& file) {
+  const std::size_t faces = mesh.mesh.faces.size();
+  if (mesh.uv.size() != faces || mesh.texture_of.size() != faces)
+    fail("{}: the mesh has {} faces, {} texture coordinates and {} texture numbers", file, faces,
+         mesh.uv.size(), mesh.texture_of.size());
+  for (std::size_t f = 0; f < faces; ++f) {
+    if (mesh.texture_of[f] >= mesh.textures.size())
+      fail("{}: face {} has texture {}, but there are {}", file, f, mesh.texture_of[f],
+           mesh.textures.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (mesh.mesh.faces[f][k] >= mesh.mesh.vertices.size())
+        fail("{}: face {} refers to vertex {}, but there are {}", file, f, mesh.mesh.faces[f][k],
+             mesh.mesh.vertices.size());
+      if (!mesh.uv[f][k].allFinite())
+        fail("{}: face {} has a texture coordinate that is not finite", file, f);
+    }
+  }
+  for (std::size_t v = 0; v < mesh.mesh.vertices.size(); ++v)
+    if (!mesh.mesh.vertices[v].allFinite()) fail("{}: vertex {} is not finite", file, v);
+}
+
+std::string png_bytes(const cv::Mat3b& image, const std::string& file) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes)) fail("{}: a texture cannot be encoded", file);
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_bytes(const fs::path& path, const std::string& bytes) {
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  if (!stream) fail("{}: cannot be written", path.string());
+}
+
+std::vector<std::string> names_of(std::span<const fs::path> files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return names;
+}
+
+// The number of files before the textures.
+std::size_t files_before_textures(TexturedFormat format) {
+  return format == TexturedFormat::ply || format == TexturedFormat::glb ? 1 : 2;
+}
+
+}  // namespace
+
+std::optional<TexturedFormat> textured_format(std::string_view name) {
+  for (const auto& [known, format] : kFormats)
+    if (known == name) return format;
+  return {};
+}
+
+std::vector<fs::path> textured_files(const fs::path& path, TexturedFormat format,
+                                     std::size_t textures) {
+  const auto beside = [&](const std::string& end) {
+    return path.parent_path() / (path.stem().string() + end);
+  };
+  std::vector<fs::path> files{beside(extension_of(format))};
+  if (format == TexturedFormat::obj) files.push_back(beside(".mtl"));
+  if (format == TexturedFormat::gltf) files.push_back(beside(".bin"));
+  if (format == TexturedFormat::glb) return files;
+  for (std::size_t k = 0; k < textures; ++k) files.push_back(beside(fmt::format("{}.png", k)));
+  return files;
+}
+
+void write_textured_mesh(const fs::path& path, const TexturedMesh& mesh, TexturedFormat format,
+                         const LocalFrame& frame) {
+  const std::vector<fs::path> files = textured_files(path, format, mesh.textures.size());
+  const std::string file = files.front().string();
+  check(mesh, file);
+  const std::size_t before = files_before_textures(format);
+  const std::vector<std::string> textures = names_of(std::span(files).subspan(before));
+  write_together(files, [&](const std::vector<fs::path>& temporaries) {
+    for (std::size_t k = before; k < files.size(); ++k)
+      write_bytes(temporaries[k], png_bytes(mesh.textures[k - before], file));
+    if (format == TexturedFormat::ply)
+      return write_bytes(temporaries[0], textured_ply(mesh, textures, frame));
+    if (format == TexturedFormat::obj) {
+      write_bytes(temporaries[1], textured_mtl(textures));
+      return write_bytes(temporaries[0], textured_obj(mesh, files[1].filename().string(), frame));
+    }
+    if (format == TexturedFormat::gltf) {
+      const GltfFiles gltf = textured_gltf(mesh, textures, files[1].filename().string(), frame);
+      write_bytes(temporaries[1], gltf.buffer);
+      return write_bytes(temporaries[0], gltf.json);
+    }
+    std::vector<std::string> pngs;
+    for (const cv::Mat3b& texture : mesh.textures) pngs.push_back(png_bytes(texture, file));
+    write_bytes(temporaries[0], textured_glb(mesh, pngs, frame));
+  });
+}
+
+UnifiedCorners unify_corners(const TexturedMesh& mesh, std::uint32_t texture) {
+  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  UnifiedCorners result;
+  std::vector<std::uint32_t> first(mesh.mesh.vertices.size(), kNone);  // of a vertex's corners
+  std::vector<std::uint32_t> next;                                     // after each corner
+  for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f) {
+    if (mesh.texture_of[f] != texture) continue;
+    std::array<std::uint32_t, 3>& corners = result.faces.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.mesh.faces[f][k];
+      std::uint32_t i = first[vertex];
+      while (i != kNone && result.uv[i] != mesh.uv[f][k]) i = next[i];
+      if (i == kNone) {
+        i = static_cast<std::uint32_t>(result.vertex.size());
+        result.vertex.push_back(vertex);
+        result.uv.push_back(mesh.uv[f][k]);
+        next.push_back(std::exchange(first[vertex], i));
+      }
+      corners[k] = i;
+    }
+  }
+  return result;
+}
+
+Eigen::Vector2f relative(const Eigen::Vector2f& uv, const cv::Size& texture) {
+  return {(uv.x() + 0.5f) / static_cast<float>(texture.width),
+          (uv.y() + 0.5f) / static_cast<float>(texture.height)};
+}
+
+}  // namespace axial::io

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/images/image.h"
+#include "private/bytes/byte_writer.h"
+#include "private/ply/ply_header.h"
+#include "private/textured/textured_writers.h"
+
+namespace axial::io {
+
+std::string textured_ply(const TexturedMesh& textured, const std::vector<std::string>& textures,
+                         const LocalFrame& frame) {
+  const PlyPlacement placement{frame};
+  const Mesh& mesh = textured.mesh;
+  const bool numbered = textures.size() > 1;
+  ByteWriter out;
+  out.reserve(1000 + 12 * mesh.vertices.size() + (numbered ? 42 : 38) * mesh.faces.size());
+  out.text("ply\nformat binary_little_endian 1.0\n");
+  out.text(geo_comment(placement));
+  for (const std::string& name : textures) out.text(fmt::format("comment TextureFile {}\n", name));
+  out.text(
+      fmt::format("element vertex {}\n{}element face {}\n"
+                  "property list uint8 uint32 vertex_indices\n"
+                  "property list uint8 float32 texcoord\n{}end_header\n",
+                  mesh.vertices.size(), position_properties(placement), mesh.faces.size(),
+                  numbered ? "property int32 texnumber\n" : ""));
+  for (const Eigen::Vector3f& vertex : mesh.vertices) out.write(std::span(vertex.data(), 3));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const std::uint32_t texture = textured.texture_of[f];
+    out.write(std::uint8_t{3});
+    out.write(std::span(mesh.faces[f]));
+    out.write(std::uint8_t{6});
+    for (const Eigen::Vector2f& corner : textured.uv[f]) {
+      const Eigen::Vector2f uv = relative(corner, textured.textures[texture].size());
+      out.write(uv.x());
+      out.write(1 - uv.y());
+    }
+    if (numbered) out.write(static_cast<std::int32_t>(texture));
+  }
+  return out.bytes();
+}
+
+namespace {
+
+// The values of a row of faces that are of interest.
+struct FaceRow {
+  std::vector<double> corners, uv;
+  double texture = 0;
+};
+
+void read_face_row(PlyBody& body, const PlyElement& element, FaceRow& row) {
+  for (const PlyProperty& property : element.properties) {
+    if (!property.is_list) {
+      const double value = body.scalar(property.type, property.name);
+      if (property.name == "texnumber") row.texture = value;
+      continue;
+    }
+    std::vector<double> values(body.list_size(property));
+    for (double& value : values) value = body.scalar(property.type, property.name);
+    if (property.name == "vertex_indices" || property.name == "vertex_index")
+      row.corners = std::move(values);
+    else if (property.name == "texcoord")
+      row.uv = std::move(values);
+  }
+}
+
+void add_face(const FaceRow& row, std::size_t f, const std::string& file, TexturedMesh& result) {
+  if (row.corners.size() != 3)
+    fail("{}: face {} has {} corners, expected 3", file, f, row.corners.size());
+  if (row.uv.size() != 6)
+    fail("{}: face {} has {} numbers in texcoord, expected 6", file, f, row.uv.size());
+  if (!(row.texture >= 0 && row.texture < static_cast<double>(result.textures.size())))
+    fail("{}: face {} has texnumber {}, but there are {} textures", file, f, row.texture,
+         result.textures.size());
+  const auto texture = static_cast<std::uint32_t>(row.texture);
+  const cv::Size size = result.textures[texture].size();
+  TexturedMesh::Corners uv;
+  for (std::size_t k = 0; k < 3; ++k) {
+    uv[k] = {static_cast<float>(row.uv[2 * k] * size.width - 0.5),
+             static_cast<float>((1 - row.uv[2 * k + 1]) * size.height - 0.5)};
+    if (!uv[k].allFinite()) fail("{}: face {} has a texcoord that is not finite", file, f);
+  }
+  result.uv.push_back(uv);
+  result.texture_of.push_back(texture);
+}
+
+// Reads the rows of the faces; the corners themselves are read by read_mesh_ply.
+void read_texture_coordinates(const std::string& bytes, const PlyHeader& header,
+                              const std::string& file, TexturedMesh& result) {
+  PlyBody body(bytes, file, header);
+  for (const PlyElement& element : header.elements) {
+    body.require_rows(element);
+    FaceRow row;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      row = {};
+      read_face_row(body, element, row);
+      if (element.name == "face") add_face(row, i, file, result);
+    }
+    if (element.name == "face") return;
+  }
+}
+
+}  // namespace
+
+TexturedMesh read_textured_ply(const std::filesystem::path& path,
+                               const std::optional<LocalFrame>& frame) {
+  const std::string file = path.string();
+  TexturedMesh result;
+  result.mesh = frame ? read_mesh_ply(path, *frame) : read_mesh_ply(path);
+  const std::string bytes = read_file(path);
+  const PlyHeader header = parse_ply_header(bytes, file);
+  if (header.texture_files.empty()) fail("{}: has no comment TextureFile", file);
+  for (const std::string& name : header.texture_files)
+    result.textures.push_back(read_color_image(path.parent_path() / name));
+  read_texture_coordinates(bytes, header, file, result);
+  return result;
+}
+
+}  // namespace axial::io

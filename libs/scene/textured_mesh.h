@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace axial {
+
+// A triangle mesh with one or more texture images. Corner k of face f has the colour of the texture
+// texture_of[f] at the pixel uv[f][k]: (x, y) with x to the right, y down, and pixel centres at
+// integers, so that the upper left corner of the texture is (-0.5, -0.5). The files have other
+// conventions, which io/textured converts. Inside a face, uv is linear.
+struct TexturedMesh {
+  using Corners = std::array<Eigen::Vector2f, 3>;
+
+  Mesh mesh;
+  std::vector<Corners> uv;                // one per face [px]
+  std::vector<std::uint32_t> texture_of;  // one per face: index into `textures`
+  std::vector<cv::Mat3b> textures;        // B G R
+};
+
+}  // namespace axial

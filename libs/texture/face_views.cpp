@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "texture/face_views.h"
+
+#include <Eigen/Geometry>
+#include <mutex>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "base/parallel.h"
+#include "texture/bilinear.h"
+#include "texture/occluders.h"
+
+namespace axial::texture {
+namespace {
+
+struct SeenFace {
+  std::uint32_t face;
+  Sight sight;
+};
+
+// Area-weighted unit normals of the vertices.
+std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals(mesh.vertices.size(), Eigen::Vector3f::Zero());
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Eigen::Vector3f normal =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+    for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
+  }
+  for (Eigen::Vector3f& normal : normals) normal.normalize();
+  return normals;
+}
+
+// Counts unusable pixels in rectangles.
+class UnusablePixels {
+ public:
+  explicit UnusablePixels(const cv::Mat1b& usable) : usable_(usable) {
+    if (usable.empty()) return;
+    cv::Mat1b unusable;
+    cv::compare(usable, 0, unusable, cv::CMP_EQ);
+    unusable /= 255;
+    cv::integral(unusable, sums_, CV_32S);
+  }
+
+  // Whether a pixel that the face needs is unusable: one that is nearer to it than a pixel.
+  bool touch(const std::array<Eigen::Vector2f, 3>& corners) const {
+    if (sums_.empty()) return false;
+    const Eigen::Vector2f low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+    const Eigen::Vector2f high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+    const int x0 = std::max(0, static_cast<int>(std::floor(low.x())));
+    const int y0 = std::max(0, static_cast<int>(std::floor(low.y())));
+    const int x1 = std::min(usable_.cols - 1, static_cast<int>(std::ceil(high.x())));
+    const int y1 = std::min(usable_.rows - 1, static_cast<int>(std::ceil(high.y())));
+    const int sum = sums_(y1 + 1, x1 + 1) - sums_(y0, x1 + 1) - sums_(y1 + 1, x0) + sums_(y0, x0);
+    if (sum == 0) return false;
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x)
+        if (usable_(y, x) == 0 && near(corners, {static_cast<float>(x), static_cast<float>(y)}))
+          return true;
+    return false;
+  }
+
+ private:
+  static bool near(const std::array<Eigen::Vector2f, 3>& corners, const Eigen::Vector2f& pixel) {
+    const auto cross = [](const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
+      return a.x() * b.y() - a.y() * b.x();
+    };
+    const float turn = cross(corners[1] - corners[0], corners[2] - corners[0]) < 0 ? -1.0f : 1.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2f edge = corners[(k + 1) % 3] - corners[k];
+      constexpr float kReach = 1.42f;  // the diagonal of a pixel: all pixels of bilinear()
+      if (turn * cross(edge, pixel - corners[k]) < -kReach * edge.norm()) return false;
+    }
+    return true;
+  }
+
+  cv::Mat1b usable_;
+  cv::Mat1i sums_;
+};
+
+// What one view sees.
+template <class Camera>
+class Observer {
+ public:
+  Observer(const Mesh& mesh, std::span<const Eigen::Vector3f> normals, const Occluders& occluders,
+           const VisibilityOptions& options, const Camera& camera, const View& view,
+           const ViewImage& image)
+      : mesh_(mesh),
+        normals_(normals),
+        occluders_(occluders),
+        options_(options),
+        camera_(camera),
+        view_(view),
+        image_(image),
+        unusable_(image.usable) {}
+
+  std::vector<SeenFace> seen() {
+    project_vertices();
+    std::vector<SeenFace> result;
+    for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
+      if (const std::optional<Sight> sight = look_at(face)) result.push_back({face, *sight});
+    return result;
+  }
+
+ private:
+  enum class Sees : std::uint8_t { unknown, yes, no, outside };
+
+  struct Vertex {
+    Eigen::Vector2f pixel;
+    Sees state;
+  };
+
+  void project_vertices() {
+    vertices_.resize(mesh_.vertices.size());
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const auto image = camera_.project(view_.pose.to_camera(position(i)));
+      const bool inside = image.visible && image.pixel.x() >= 0 && image.pixel.y() >= 0 &&
+                          image.pixel.x() <= view_.camera.width - 1 &&
+                          image.pixel.y() <= view_.camera.height - 1;
+      vertices_[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::outside};
+    }
+  }
+
+  Eigen::Vector3d position(std::size_t vertex) const {
+    return mesh_.vertices[vertex].cast<double>();
+  }
+
+  // Where the light from a pixel enters the water [world].
+  Eigen::Vector3d exit(const Eigen::Vector2f& pixel) const {
+    return view_.pose.to_world(camera_.exit_point(pixel.cast<double>()));
+  }
+
+  bool hidden(const Eigen::Vector3d& point, const Eigen::Vector2f& pixel) const {
+    return occluders_.between(exit(pixel), point, options_.tolerance);
+  }
+
+  bool sees_vertex(std::uint32_t i) {
+    Vertex& vertex = vertices_[i];
+    if (vertex.state == Sees::unknown)
+      vertex.state = hidden(position(i), vertex.pixel) ? Sees::no : Sees::yes;
+    return vertex.state == Sees::yes;
+  }
+
+  std::optional<Sight> look_at(std::uint32_t face) {
+    const auto& [a, b, c] = mesh_.faces[face];
+    for (const std::uint32_t corner : {a, b, c})
+      if (vertices_[corner].state == Sees::outside) return {};
+    const std::array<Eigen::Vector2f, 3> corners{vertices_[a].pixel, vertices_[b].pixel,
+                                                 vertices_[c].pixel};
+    const Eigen::Vector2f middle = (corners[0] + corners[1] + corners[2]) / 3;
+    const Eigen::Vector3d point = (position(a) + position(b) + position(c)) / 3;
+    const Eigen::Vector3d to_camera = (exit(middle) - point).normalized();
+    const Eigen::Vector3f smooth = (normals_[a] + normals_[b] + normals_[c]).normalized();
+    const double cosine = smooth.cast<double>().dot(to_camera);
+    const Eigen::Vector2f u = corners[1] - corners[0], v = corners[2] - corners[0];
+    const float area = 0.5f * (u.y() * v.x() - u.x() * v.y());  // y down: positive from outside
+    const bool front =
+        area > 0 && (position(b) - position(a)).cross(position(c) - position(a)).dot(to_camera) > 0;
+    if ((!front && !(cosine > 0)) || area == 0 || unusable_.touch(corners)) return {};
+    Sight sight;
+    sight.quality = static_cast<float>(std::abs(area) * std::pow(std::max(1e-3, cosine), 2));
+    sight.whole = front && sees_vertex(a) && sees_vertex(b) && sees_vertex(c) &&
+                  look_inside(face, corners, area, sight);
+    if (!sight.whole && hidden(point, middle)) return {};
+    return sight;
+  }
+
+  // Looks at points inside the face, about every 6 pixels, and finds its mean colour. Returns false
+  // if one of them is hidden. The inside of a face of a few pixels is seen if its corners are.
+  bool look_inside(std::uint32_t face, const std::array<Eigen::Vector2f, 3>& corners, float area,
+                   Sight& sight) const {
+    constexpr float kSmall = 16, kStep = 6;
+    const int n = area < kSmall ? 1 : 2 + static_cast<int>(std::sqrt(2 * area) / kStep);
+    const auto& f = mesh_.faces[face];
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int count = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; i + j < n; ++j, ++count) {
+        const float s = (static_cast<float>(i) + 1 / 3.0f) / static_cast<float>(n);
+        const float t = (static_cast<float>(j) + 1 / 3.0f) / static_cast<float>(n);
+        const Eigen::Vector2f pixel = (1 - s - t) * corners[0] + s * corners[1] + t * corners[2];
+        const Eigen::Vector3d point =
+            (1 - s - t) * position(f[0]) + s * position(f[1]) + t * position(f[2]);
+        if (n > 1 && hidden(point, pixel)) return false;
+        sum += bilinear(image_.color, pixel);
+      }
+    if (n == 1) {
+      for (const Eigen::Vector2f& corner : corners) sum += bilinear(image_.color, corner);
+      count += 3;
+    }
+    for (int k = 0; k < 3; ++k)
+      sight.color[static_cast<std::size_t>(k)] =
+          static_cast<std::uint8_t>(sum[k] / static_cast<float>(count) + 0.5f);
+    return true;
+  }
+
+  const Mesh& mesh_;
+  std::span<const Eigen::Vector3f> normals_;
+  const Occluders& occluders_;
+  const VisibilityOptions& options_;
+  const Camera& camera_;
+  const View& view_;
+  const ViewImage& image_;
+  UnusablePixels unusable_;
+  std::vector<Vertex> vertices_;
+};
+
+// Removes sights of a part of a face where a view sees all of it.
+void prefer_whole(FaceViews& views) {
+  std::uint64_t next = 0, from = 0;
+  for (std::size_t f = 0; f < views.faces(); ++f) {
+    const std::uint64_t to = views.begin[f + 1];
+    const auto seen = std::span(views.sights).subspan(from, to - from);
+    const bool any = std::ranges::any_of(seen, &Sight::whole);
+    views.begin[f] = next;
+    for (const Sight& sight : seen)
+      if (sight.whole || !any) views.sights[next++] = sight;
+    from = to;
+  }
+  views.begin.back() = next;
+  views.sights.resize(next);
+}
+
+FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_views) {
+  FaceViews result;
+  result.begin.assign(faces + 1, 0);
+  for (const auto& seen : of_views)
+    for (const SeenFace& s : seen) ++result.begin[s.face + 1];
+  for (std::size_t f = 0; f < faces; ++f) result.begin[f + 1] += result.begin[f];
+  result.sights.resize(result.begin.back());
+  std::vector<std::uint64_t> next(result.begin.begin(), result.begin.end() - 1);
+  for (std::uint32_t v = 0; v < of_views.size(); ++v) {
+    for (SeenFace& s : of_views[v]) {
+      s.sight.view = v;
+      result.sights[next[s.face]++] = s.sight;
+    }
+    std::vector<SeenFace>().swap(of_views[v]);
+  }
+  prefer_whole(result);
+  return result;
+}
+
+}  // namespace
+
+FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
+                          const VisibilityOptions& options, const ProgressSink& progress) {
+  const Occluders occluders(mesh);
+  const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
+  std::vector<std::vector<SeenFace>> seen(views.size());
+  std::mutex reporting;
+  std::size_t done = 0;
+  for_each_in_flight(views.size(), thread_count(), [&](std::size_t v) {
+    const ViewImage image = images(v);
+    std::visit(
+        [&](const auto& camera) {
+          seen[v] = Observer(mesh, normals, occluders, options, camera, views[v], image).seen();
+        },
+        make_camera<double>(views[v].camera));
+    seen[v].shrink_to_fit();
+    const std::lock_guard lock(reporting);
+    if (progress) progress(++done, views.size());
+  });
+  return by_face(mesh.faces.size(), seen);
+}
+
+}  // namespace axial::texture

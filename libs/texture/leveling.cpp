@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "texture/leveling.h"
+
+#include "base/parallel.h"
+#include "texture/chart_field.h"
+
+namespace axial::texture {
+namespace {
+
+// A side of a seam, in the list of a chart.
+struct Side {
+  std::uint32_t seam;
+  bool is_b;
+};
+
+// The seams of each chart.
+struct Sides {
+  std::vector<std::uint32_t> begin;
+  std::vector<Side> sides;
+
+  Sides(const Charts& charts, std::span<const Seam> seams) : begin(charts.charts.size() + 1, 0) {
+    const auto chart_of = [&](const std::array<std::uint32_t, 2>& nodes) {
+      return charts.nodes[nodes[0]].chart;
+    };
+    for (const Seam& s : seams) ++begin[chart_of(s.a) + 1], ++begin[chart_of(s.b) + 1];
+    for (std::size_t c = 0; c + 1 < begin.size(); ++c) begin[c + 1] += begin[c];
+    sides.resize(begin.back());
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for (std::uint32_t s = 0; s < seams.size(); ++s) {
+      sides[next[chart_of(seams[s].a)]++] = {s, false};
+      sides[next[chart_of(seams[s].b)]++] = {s, true};
+    }
+  }
+  std::span<const Side> of(std::size_t chart) const {
+    return std::span(sides).subspan(begin[chart], begin[chart + 1] - begin[chart]);
+  }
+};
+
+// Everything that the correction of a chart depends on.
+struct Leveling {
+  const Atlas& atlas;
+  const Charts& charts;
+  std::span<const Seam> seams;
+  const SeamColors& colors;
+  std::span<const Eigen::Vector3f> global;  // one per node
+
+  Eigen::Vector2f place(std::uint32_t node, std::size_t chart) const {
+    const cv::Rect& rect = atlas.rects[chart];
+    return atlas.uv[node] - Eigen::Vector2f(static_cast<float>(rect.x), static_cast<float>(rect.y));
+  }
+
+  ChartField global_field(std::size_t chart) const {
+    ChartField field(atlas.rects[chart].size());
+    for (const std::uint32_t f : charts.faces_of(chart)) {
+      const auto& [a, b, c] = charts.corners[f];
+      field.add_triangle({place(a, chart), place(b, chart), place(c, chart)},
+                         {global[a], global[b], global[c]});
+    }
+    for (const std::uint32_t f : charts.faces_of(chart))
+      for (const std::uint32_t node : charts.corners[f])
+        field.add_point(place(node, chart), global[node]);
+    field.widen();
+    field.widen();
+    return field;
+  }
+
+  // Half of the difference that is left along one side of a seam.
+  void add_samples(const Side& side, std::size_t chart,
+                   std::vector<ChartField::Sample>& samples) const {
+    const Seam& seam = seams[side.seam];
+    const auto& nodes = side.is_b ? seam.b : seam.a;
+    const std::span<const Eigen::Vector3f> differences = colors.of(side.seam);
+    const auto n = static_cast<float>(differences.size());
+    for (std::size_t k = 0; k < differences.size(); ++k) {
+      const float t = (static_cast<float>(k) + 0.5f) / n;
+      const auto along = [t](const Eigen::Vector3f& x, const Eigen::Vector3f& y) {
+        return ((1 - t) * x + t * y).eval();
+      };
+      const Eigen::Vector3f left = differences[k] + along(global[seam.b[0]], global[seam.b[1]]) -
+                                   along(global[seam.a[0]], global[seam.a[1]]);
+      samples.push_back({(1 - t) * place(nodes[0], chart) + t * place(nodes[1], chart),
+                         (side.is_b ? -0.5f : 0.5f) * left});
+    }
+  }
+};
+
+}  // namespace
+
+void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
+                 const LevelingOptions& options) {
+  if (seams.empty() || !(options.global || options.local)) return;
+  const SeamColors colors = compare_seams(atlas, charts, seams);
+  std::vector<Eigen::Vector3f> global(charts.nodes.size(), Eigen::Vector3f::Zero());
+  if (options.global) global = level_globally(mesh, charts, seams, colors, options.global_options);
+  const Sides sides(charts, seams);
+  const Leveling leveling{atlas, charts, seams, colors, global};
+  parallel_for(charts.charts.size(), [&](std::size_t chart) {
+    ChartField field = leveling.global_field(chart);
+    std::vector<ChartField::Sample> samples;
+    if (options.local)
+      for (const Side& side : sides.of(chart)) leveling.add_samples(side, chart, samples);
+    field.add_strip(samples, options.strip);
+    field.add_to(atlas.textures[atlas.texture_of[chart]](atlas.rects[chart]));
+  });
+}
+
+}  // namespace axial::texture

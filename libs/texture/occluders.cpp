@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "texture/occluders.h"
+
+#include <embree3/rtcore.h>
+
+#include <type_traits>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace axial::texture {
+namespace {
+
+void check(const Mesh& mesh) {
+  if (mesh.faces.empty()) fail("the mesh has no faces");
+  for (const auto& face : mesh.faces)
+    for (const std::uint32_t corner : face)
+      if (corner >= mesh.vertices.size())
+        fail("a face of the mesh refers to vertex {}, but there are {}", corner,
+             mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    if (!vertex.allFinite()) fail("the mesh has a vertex that is not finite");
+}
+
+}  // namespace
+
+struct Occluders::State {
+  struct Release {
+    void operator()(RTCDevice held) const { rtcReleaseDevice(held); }
+    void operator()(RTCScene held) const { rtcReleaseScene(held); }
+  };
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device;
+  std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene;
+  std::vector<Eigen::Vector3f> vertices;  // and a spare one: Embree reads 16 bytes at a time
+};
+
+Occluders::Occluders(const Mesh& mesh) : state_(std::make_unique<State>()) {
+  check(mesh);
+  State& s = *state_;
+  s.vertices.reserve(mesh.vertices.size() + 1);
+  s.vertices = mesh.vertices;
+  s.vertices.emplace_back(Eigen::Vector3f::Zero());
+  s.device.reset(rtcNewDevice(nullptr));
+  if (!s.device)
+    fail("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
+  s.scene.reset(rtcNewScene(s.device.get()));
+  rtcSetSceneFlags(s.scene.get(),
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT));
+  RTCGeometry geometry = rtcNewGeometry(s.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             s.vertices.data(), 0, sizeof(Eigen::Vector3f), mesh.vertices.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.faces.data(), 0, sizeof(mesh.faces[0]), mesh.faces.size());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(s.scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  const ThreadLimit one_builder(1);  // the same tree for any number of threads
+  rtcCommitScene(s.scene.get());
+  if (const RTCError error = rtcGetDeviceError(s.device.get()); error != RTC_ERROR_NONE)
+    fail("Embree cannot build the scene (error {})", static_cast<int>(error));
+}
+
+Occluders::~Occluders() = default;
+
+bool Occluders::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                        double tolerance) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  const Eigen::Vector3f start = from.cast<float>();
+  const Eigen::Vector3f way = (to - from).cast<float>();
+  RTCRay ray{};
+  ray.org_x = start.x(), ray.org_y = start.y(), ray.org_z = start.z();
+  ray.dir_x = way.x(), ray.dir_y = way.y(), ray.dir_z = way.z();
+  ray.tfar = static_cast<float>(1 - tolerance);
+  ray.mask = 0xFFFFFFFFu;
+  rtcOccluded1(state_->scene.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace axial::texture

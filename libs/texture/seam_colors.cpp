@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "texture/seam_colors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "texture/bilinear.h"
+
+namespace axial::texture {
+namespace {
+
+std::uint32_t samples_of(const Atlas& atlas, const Seam& seam) {
+  const float a = (atlas.uv[seam.a[1]] - atlas.uv[seam.a[0]]).norm();
+  const float b = (atlas.uv[seam.b[1]] - atlas.uv[seam.b[0]]).norm();
+  return std::max(2u, static_cast<std::uint32_t>(std::ceil(2 * std::max(a, b))));
+}
+
+}  // namespace
+
+SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams) {
+  SeamColors result;
+  result.begin.reserve(seams.size() + 1);
+  result.begin.push_back(0);
+  for (const Seam& seam : seams)
+    result.begin.push_back(result.begin.back() + samples_of(atlas, seam));
+  result.differences.resize(result.begin.back());
+  const auto color = [&](const std::array<std::uint32_t, 2>& nodes, float t) {
+    const Eigen::Vector2f at = (1 - t) * atlas.uv[nodes[0]] + t * atlas.uv[nodes[1]];
+    return bilinear(atlas.textures[atlas.texture_of[charts.nodes[nodes[0]].chart]], at);
+  };
+  parallel_for(
+      seams.size(),
+      [&](std::size_t s) {
+        const std::uint32_t n = result.begin[s + 1] - result.begin[s];
+        for (std::uint32_t k = 0; k < n; ++k) {
+          const float t = (static_cast<float>(k) + 0.5f) / static_cast<float>(n);
+          result.differences[result.begin[s] + k] = color(seams[s].b, t) - color(seams[s].a, t);
+        }
+      },
+      kPointGrain);
+  return result;
+}
+
+}  // namespace axial::texture

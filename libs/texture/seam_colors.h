@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The difference of colours between the two sides of each seam.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "texture/atlas.h"
+#include "texture/charts.h"
+
+namespace axial::texture {
+
+// Samples along the seams: those of seam s are at [begin[s], begin[s + 1]). Sample k of n lies at
+// the share (k + 1/2) / n of the edge from its first vertex. There are two per pixel.
+struct SeamColors {
+  std::vector<std::uint32_t> begin;
+  std::vector<Eigen::Vector3f> differences;  // colour in chart b minus colour in chart a, B G R
+
+  std::span<const Eigen::Vector3f> of(std::size_t seam) const {
+    return std::span(differences).subspan(begin[seam], begin[seam + 1] - begin[seam]);
+  }
+};
+
+// `atlas` must be painted and not yet levelled.
+SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams);
+
+}  // namespace axial::texture

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "texture/split_faces.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/log.h"
+#include "base/parallel.h"
+
+namespace axial::texture {
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+// An edge, with a face on its left and one on its right. More faces are left out.
+struct Edge {
+  std::uint32_t from, to;
+  std::array<std::uint32_t, 2> faces;
+};
+
+// The edges of a mesh, and the edge that begins at each corner of a face.
+struct Edges {
+  std::vector<Edge> list;
+  std::vector<Corners> of_face;
+
+  explicit Edges(const Mesh& mesh) : of_face(mesh.faces.size()) {
+    struct Use {
+      std::uint32_t from, to, face, corner;
+    };
+    std::vector<Use> uses;
+    uses.reserve(3 * mesh.faces.size());
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const auto [from, to] = std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
+        uses.push_back({from, to, f, k});
+      }
+    std::ranges::sort(uses, {},
+                      [](const Use& u) { return std::tuple(u.from, u.to, u.face, u.corner); });
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      const Use& use = uses[i];
+      if (i == 0 || use.from != uses[i - 1].from || use.to != uses[i - 1].to)
+        list.push_back({use.from, use.to, {use.face, use.face}});
+      list.back().faces[1] = use.face;
+      of_face[use.face][use.corner] = static_cast<std::uint32_t>(list.size() - 1);
+    }
+  }
+};
+
+std::vector<Eigen::Vector3f> normals_of(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(mesh.faces.size());
+  for (const auto& [a, b, c] : mesh.faces)
+    normals.push_back(
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]));
+  return normals;
+}
+
+// Whether the image of the edge is too far from linear in a view.
+template <class Camera>
+class EdgeTest {
+ public:
+  EdgeTest(const Camera& camera, const View& view, double tolerance)
+      : camera_(camera),
+        view_(view),
+        tolerance_(tolerance),
+        // For a pinhole, the error is at most focal / 4 times the square of the edge's length over
+        // its distance. Refraction makes images larger by the index of water, and it and the lens
+        // bend lines: ten times as much is surely enough.
+        bound_(10 * std::max(view.camera.lens.fx, view.camera.lens.fy) / 4) {}
+
+  bool too_long(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    const Eigen::Vector3d middle = (a + b) / 2;
+    const double square = (middle - view_.pose.centre).squaredNorm();
+    if (bound_ * (b - a).squaredNorm() < tolerance_ * square) return false;
+    const auto from = image_of(a), to = image_of(b), between = image_of(middle);
+    if (!from || !to || !between) return false;
+    return ((*from + *to) / 2 - *between).norm() > tolerance_;
+  }
+
+ private:
+  std::optional<Eigen::Vector2d> image_of(const Eigen::Vector3d& point) const {
+    const auto image = camera_.project(view_.pose.to_camera(point));
+    const bool inside = image.visible && image.pixel.x() >= -0.5 && image.pixel.y() >= -0.5 &&
+                        image.pixel.x() <= view_.camera.width - 0.5 &&
+                        image.pixel.y() <= view_.camera.height - 0.5;
+    if (!inside) return {};
+    return image.pixel;
+  }
+
+  const Camera& camera_;
+  const View& view_;
+  double tolerance_, bound_;
+};
+
+std::vector<char> long_edges(const Mesh& mesh, const Edges& edges, std::span<const View> views,
+                             double tolerance) {
+  const std::vector<Eigen::Vector3f> normals = normals_of(mesh);
+  std::vector<char> found(edges.list.size(), 0);
+  for (const View& view : views)
+    std::visit(
+        [&](const auto& camera) {
+          const EdgeTest test(camera, view, tolerance);
+          parallel_for(
+              edges.list.size(),
+              [&](std::size_t i) {
+                if (found[i]) return;
+                const Edge& edge = edges.list[i];
+                const Eigen::Vector3d a = mesh.vertices[edge.from].cast<double>();
+                const Eigen::Vector3d to_camera = view.pose.centre - a;
+                const auto faces_it = [&](std::uint32_t face) {
+                  return normals[face].cast<double>().dot(to_camera) > 0;
+                };
+                if (!faces_it(edge.faces[0]) && !faces_it(edge.faces[1])) return;
+                found[i] = test.too_long(a, mesh.vertices[edge.to].cast<double>());
+              },
+              kPointGrain);
+        },
+        make_camera<double>(view.camera));
+  return found;
+}
+
+// The vertex in the middle of each marked edge; other entries are not used.
+std::vector<std::uint32_t> add_middles(const Edges& edges, std::span<const char> marked,
+                                       Mesh& mesh) {
+  std::vector<std::uint32_t> middle(edges.list.size(), 0);
+  for (std::size_t i = 0; i < edges.list.size(); ++i) {
+    if (!marked[i]) continue;
+    const auto [from, to, faces] = edges.list[i];
+    middle[i] = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back((mesh.vertices[from] + mesh.vertices[to]) / 2);
+    if (mesh.colors.empty()) continue;
+    Rgb color{};
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] = static_cast<std::uint8_t>((mesh.colors[from][c] + mesh.colors[to][c] + 1) / 2);
+    mesh.colors.push_back(color);
+  }
+  return middle;
+}
+
+// Appends the parts of a face. `middle[k]` is the vertex in the edge that begins at corner k.
+void append_parts(const Corners& face, const std::array<bool, 3>& marked, const Corners& middle,
+                  std::vector<Corners>& faces) {
+  const auto count = std::count(marked.begin(), marked.end(), true);
+  if (count == 0) return faces.push_back(face);
+  if (count == 3) {
+    for (std::size_t k = 0; k < 3; ++k) faces.push_back({face[k], middle[k], middle[(k + 2) % 3]});
+    return faces.push_back(middle);
+  }
+  // Begin at a marked edge; of two, at the second in the order of the corners around the face.
+  std::size_t k = 0;
+  while (!(marked[k] && (count == 1 || marked[(k + 2) % 3]))) ++k;
+  const std::uint32_t a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3], m = middle[k];
+  faces.push_back({m, b, c});
+  if (count == 1) return faces.push_back({a, m, c});
+  const std::uint32_t n = middle[(k + 2) % 3];  // between c and a
+  faces.push_back({m, c, n});
+  faces.push_back({a, m, n});
+}
+
+void split_marked(const Edges& edges, std::span<const char> marked, Mesh& mesh) {
+  const std::vector<std::uint32_t> middle = add_middles(edges, marked, mesh);
+  std::vector<Corners> faces;
+  faces.reserve(mesh.faces.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Corners& e = edges.of_face[f];
+    append_parts(mesh.faces[f], {marked[e[0]] != 0, marked[e[1]] != 0, marked[e[2]] != 0},
+                 {middle[e[0]], middle[e[1]], middle[e[2]]}, faces);
+  }
+  mesh.faces = std::move(faces);
+}
+
+}  // namespace
+
+std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options) {
+  const std::size_t before = mesh.faces.size();
+  constexpr int kMostRounds = 16;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Edges edges(mesh);
+    const std::vector<char> marked = long_edges(mesh, edges, views, 0.75 * options.tolerance);
+    const auto count = static_cast<std::size_t>(std::ranges::count(marked, 1));
+    if (count == 0) break;
+    if (mesh.faces.size() + 2 * count > options.max_faces) {
+      log_warning("faces are not split further: {} faces, and {} edges to split", mesh.faces.size(),
+                  count);
+      break;
+    }
+    split_marked(edges, marked, mesh);
+  }
+  return mesh.faces.size() - before;
+}
+
+}  // namespace axial::texture

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The photographs that give a mesh its colours.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <opencv2/core.hpp>
+
+#include "scene/camera_model.h"
+#include "scene/pose.h"
+
+namespace axial::texture {
+
+// The camera of a photograph, at the resolution at which the photograph is used.
+struct View {
+  CameraModel camera;
+  Pose pose;
+};
+
+struct ViewImage {
+  cv::Mat3b color;   // B G R, of the size of the view's camera
+  cv::Mat1b usable;  // of the same size; 0: the pixel must not be used. Empty: all may be used
+};
+
+// Returns the photograph of view `index`. It is called concurrently, more than once for each view,
+// and must return the same image each time. No more images are held than there are threads.
+using ImageSource = std::function<ViewImage(std::size_t index)>;
+
+}  // namespace axial::texture

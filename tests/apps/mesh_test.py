@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ReconstructMesh: meshes in air and under water, the options of OpenMVS, wrong input."""
+
+import json
+import os
+import random
+import struct
+
+from openmvs_scene import Scene
+from programs import main, read, write
+
+
+class PlyMesh:
+    """A mesh that our programs wrote: float positions and triangles."""
+
+    def __init__(self, data):
+        head, body = data.split(b"end_header\n", 1)
+        counts = {line.split()[1]: int(line.split()[2]) for line in head.split(b"\n")
+                  if line.startswith(b"element")}
+        vertices, faces = counts[b"vertex"], counts[b"face"]
+        self.vertices = [struct.unpack_from("<3f", body, 12 * i) for i in range(vertices)]
+        self.faces = [struct.unpack_from("<3I", body, 12 * vertices + 13 * i + 1)
+                      for i in range(faces)]
+
+
+class Mesh(Scene):
+    def mesh(self, medium, *arguments):
+        folder = self.copy(medium)
+        self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, *arguments)
+        return folder
+
+    def evaluated(self, medium, file):
+        """The median distance of the mesh to the true surface [m]."""
+        report = self.path("report.json")
+        port = ["--housing", os.path.join(self.truth, "housing.json")] if medium == "water" else []
+        self.succeeds("EvaluateReconstruction", "-i", file, "-m",
+                      os.path.join(self.truth, "mesh.ply"), "--cameras", self.truth, *port,
+                      "--samples", 20000, "--json", report)
+        with open(report) as text:
+            return json.load(text)["accuracy"]["median"]
+
+    def test_the_mesh_is_on_the_surface_in_air_and_under_water(self):
+        for medium in self.MEDIA:
+            folder = self.mesh(medium, *(("--refractive",) if medium == "water" else ()))
+            mesh = PlyMesh(read(os.path.join(folder, "scene_dense_mesh.ply")))
+            self.assertGreater(len(mesh.faces), 1000)
+            # The images have 320 x 240 pixels: a pixel is 2 to 3 mm wide on the surface.
+            self.assertLess(self.evaluated(medium, os.path.join(folder, "scene_dense_mesh.ply")),
+                            0.002)
+
+    def test_one_thread_gives_the_same_bytes(self):
+        folder = self.mesh("water", "--max-threads", "2")
+        first = read(os.path.join(folder, "scene_dense_mesh.ply"))
+        folder = self.mesh("water", "--max-threads", "1")
+        self.assertEqual(read(os.path.join(folder, "scene_dense_mesh.ply")), first)
+
+    def test_options_of_openmvs(self):
+        folder = self.mesh("air", "-p", "scene_dense.ply", "-o", "new/result.mvs", "-d", "4",
+                           "--decimate", "0.5", "--smooth", "2", "--close-holes", "10", "-f", "1",
+                           "--edge-length", "0", "--archive-type", "-1", "--cuda-device", "-2")
+        few = PlyMesh(read(os.path.join(folder, "new", "result.ply")))
+        folder = self.mesh("air", "-d", "4")
+        all_of_them = PlyMesh(read(os.path.join(folder, "scene_dense_mesh.ply")))
+        self.assertLess(len(few.faces), 0.6 * len(all_of_them.faces))
+
+    def test_obj_has_the_same_faces(self):
+        folder = self.mesh("air", "--export-type", "obj")
+        obj = read(os.path.join(folder, "scene_dense_mesh.obj")).decode().split("\n")
+        folder = self.mesh("air")
+        ply = PlyMesh(read(os.path.join(folder, "scene_dense_mesh.ply")))
+        faces = [tuple(int(word) - 1 for word in line.split()[1:]) for line in obj
+                 if line.startswith("f ")]
+        self.assertEqual(faces, ply.faces)
+        points = [tuple(float(word) for word in line.split()[1:]) for line in obj
+                  if line.startswith("v ")]
+        for a, b in zip(points, ply.vertices, strict=True):
+            self.assertEqual(struct.pack("<3f", *a), struct.pack("<3f", *b))
+
+    def test_without_a_cloud_the_points_of_the_scene_are_meshed(self):
+        folder = self.copy("air", "scene_dense.ply")
+        said = self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder).stdout
+        self.assertIn("Cloud scene_dense.mvs: ", said)
+
+    def test_a_mesh_is_cleaned(self):
+        folder = self.mesh("air")
+        self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, "--mesh-file",
+                      "scene_dense_mesh.ply", "-o", "half", "--target-face-num", "500")
+        half = PlyMesh(read(os.path.join(folder, "half.ply")))
+        self.assertLess(abs(len(half.faces) - 500), 60)
+
+    def refused(self, folder, expected, *arguments):
+        self.refuses(expected, "ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, *arguments)
+
+    def test_wrong_input_is_refused_in_one_line(self):
+        folder = self.copy("air")
+        cloud = os.path.join(folder, "scene_dense.ply")
+        good = read(cloud)
+        header, body = good.split(b"end_header\n", 1)
+        rng = random.Random(1)
+        cuts = [0, 1, len(header) // 2, len(header) + 11, len(good) // 2, len(good) - 1]
+        for content in [good[:cut] for cut in cuts] + [rng.randbytes(500), b"ply\n"]:
+            write(cloud, content)
+            self.refused(folder, "scene_dense.ply")
+        write(cloud, good.replace(b"view_indices", b"view_indicez"))
+        self.refused(folder, "have no views")
+        write(cloud, good)
+        self.refused(folder, "not built yet", "--split-max-area", "3")
+        self.refused(folder, "--decimate 1.5", "--decimate", "1.5")
+        self.refused(folder, "--export-type glb", "--export-type", "glb")
+        self.refused(folder, "no.ply", "-p", "no.ply")
+        self.refused(folder, "--max-memory", "--max-memory", "1")
+        self.refused(folder, "housing", "--refractive")
+        self.refused(folder, "is an input", "-o", "scene_dense.ply")
+
+    def test_views_out_of_range_are_refused(self):
+        folder = self.copy("air")
+        cloud = os.path.join(folder, "scene_dense.ply")
+        header = (b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                  b"property float z\nproperty list uchar uint view_indices\nend_header\n")
+        write(cloud, header + b"0 0 1 1 0\n1 0 1 1 0\n0 1 1 1 0\n0 0 2 1 9\n")
+        self.refused(folder, "point 3 names view 9")
+        write(cloud, header + b"0 0 1 1 0\n1 0 1 1 0\n0 1 1 1 0\n1 1 1 1 0\n")
+        self.refused(folder, "scene_dense.ply")
+
+
+if __name__ == "__main__":
+    main()

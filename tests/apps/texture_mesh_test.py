@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""TextureMesh on the wall of tiny_scene.py: names of files, formats, masks, wrong input."""
+
+import json
+import os
+import re
+import struct
+
+from programs import contents, files_below, grey_png, main, read, run, write
+from tiny_scene import DISTANCE, HEIGHT, NAN, WIDTH, TinyScene
+
+
+def mesh_ply(vertices, faces):
+    """A PLY mesh in ascii."""
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", "property float x",
+             "property float y", "property float z", f"element face {len(faces)}",
+             "property list uchar int vertex_indices", "end_header"]
+    lines += [" ".join(map(str, v)) for v in vertices]
+    lines += [" ".join(map(str, (len(f), *f))) for f in faces]
+    return "\n".join(lines) + "\n"
+
+
+def wall(z=DISTANCE, cells=12, half=0.3):
+    """A grid on the wall. Its outside looks at the cameras, to smaller z."""
+    at = lambda i: -half + 2 * half * i / cells
+    vertices = [(at(i), at(j), z) for j in range(cells + 1) for i in range(cells + 1)]
+    faces = []
+    for j in range(cells):
+        for i in range(cells):
+            a = j * (cells + 1) + i
+            b, c, d = a + 1, a + cells + 2, a + cells + 1
+            faces += [(a, d, c), (a, c, b)]
+    return vertices, faces
+
+
+class TextureTest(TinyScene):
+    def setUp(self):
+        super().setUp()
+        self.mesh = self.path("work", "scene.ply")
+        write(self.mesh, mesh_ply(*wall()))
+
+    def texture(self, *arguments):
+        return ("TextureMesh", "-i", self.scene, "-w", self.work, *arguments)
+
+    def header(self, name):
+        return read(self.path("work", name)).split(b"end_header\n")[0].decode()
+
+
+class Files(TextureTest):
+    def test_default_names_are_those_of_openmvs(self):
+        before = files_below(self.work)
+        self.succeeds(*self.texture())
+        self.assertEqual(files_below(self.work) - before,
+                         {"scene_texture.ply", "scene_texture0.png"})
+        header = self.header("scene_texture.ply")
+        self.assertIn("comment TextureFile scene_texture0.png\n", header)
+        self.assertIn("element face 288\n", header)
+        self.assertNotIn("texnumber", header)
+
+    def test_every_format_has_its_files(self):
+        before = files_below(self.work)
+        self.succeeds(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
+        self.assertEqual(files_below(self.work) - before,
+                         {"out.ply", "out.obj", "out.mtl", "out.glb", "out.gltf", "out.bin", "out0.png"})
+        self.assertIn("mtllib out.mtl\n", read(self.path("work", "out.obj")).decode())
+        self.assertIn("map_Kd out0.png\n", read(self.path("work", "out.mtl")).decode())
+        glb = read(self.path("work", "out.glb"))
+        gltf = json.loads(glb[20:20 + struct.unpack_from("<I", glb, 12)[0]])
+        indices = gltf["accessors"][gltf["meshes"][0]["primitives"][0]["indices"]]
+        self.assertEqual(indices["count"], 3 * 288)
+
+    def test_several_textures_have_numbers(self):
+        self.succeeds(*self.texture("--max-texture-size", "64"))
+        header = self.header("scene_texture.ply")
+        self.assertGreater(len(re.findall("TextureFile scene_texture[0-9].png\n", header)), 1)
+        self.assertIn("property int32 texnumber\n", header)
+
+    def test_any_number_of_threads_gives_the_same_bytes(self):
+        found = []
+        for threads in (1, 2):
+            self.succeeds(*self.texture("--max-threads", threads, "--export-type", "ply,glb"))
+            found.append(contents(self.work))
+        self.assertEqual(found[0], found[1])
+
+    def test_the_views_file_names_images(self):
+        write(self.path("work", "views.txt"), "# two of three\n0001.png\n2\n")
+        self.succeeds(*self.texture("--views-file", "views.txt"))
+        write(self.path("work", "views.txt"), "0001.png\n0007.png\n")
+        self.refuses_and_keeps("views.txt: line 2: no image has the ID or the name 0007.png",
+                               *self.texture("--views-file", "views.txt"))
+
+
+class Masks(TextureTest):
+    """Labels of all pixels of all images, beside the images."""
+
+    def mask(self, *labels):
+        for image, label in zip(self.images, labels):
+            write(image + ".png", grey_png([bytes([label]) * WIDTH] * HEIGHT))
+
+    def test_the_label_is_the_one_that_was_given(self):
+        """OpenMVS 2.3 leaves out label 0 whatever label is given."""
+        self.mask(3, 3, 3)
+        self.refuses_and_keeps("no view sees a face of the mesh",
+                               *self.texture("--ignore-mask-label", "3"))
+        self.succeeds(*self.texture("--ignore-mask-label", "0"))
+
+    def test_masks_can_be_off(self):
+        self.mask(0, 0, 0)
+        for label in ("-1", "-2"):
+            self.succeeds(*self.texture("--ignore-mask-label", label))
+
+    def test_only_views_without_the_label_are_used(self):
+        self.succeeds(*self.texture("--views-file", write_views(self, "0001.png"), "-o", "one"))
+        self.mask(0, 255, 0)
+        self.succeeds(*self.texture("--ignore-mask-label", "0", "-o", "two"))
+        self.assertEqual(read(self.path("work", "one0.png")), read(self.path("work", "two0.png")))
+
+
+def write_views(test, *names):
+    write(test.path("work", "views.txt"), "\n".join(names) + "\n")
+    return "views.txt"
+
+
+class WrongInput(TextureTest):
+    def check(self, expected, vertices, faces):
+        write(self.mesh, mesh_ply(vertices, faces))
+        self.refuses_and_keeps(expected, *self.texture())
+
+    def test_wrong_meshes(self):
+        vertices, faces = wall(cells=2)
+        self.check("scene.ply: the mesh has no faces", vertices, [])
+        self.check("scene.ply: a face refers to vertex 9, but there are 9", vertices,
+                   [*faces, (0, 1, 9)])
+        self.check("scene.ply", [*vertices[:-1], (0, NAN, 1)], faces)
+        self.check("no view sees a face of the mesh", *wall(z=-1))
+        self.check("no view sees a face of the mesh", vertices, [f[::-1] for f in faces])
+
+    def test_files_that_are_no_meshes(self):
+        good = read(self.mesh)
+        for size in (0, 3, 100, len(good) // 2, len(good) - 20):
+            write(self.mesh, good[:size])
+            self.refuses_and_keeps("scene.ply", *self.texture())
+        write(self.mesh, os.urandom(1000))
+        self.refuses_and_keeps("scene.ply", *self.texture())
+        os.remove(self.mesh)
+        self.refuses_and_keeps("scene.ply", *self.texture())
+
+    def test_missing_and_damaged_images(self):
+        good = read(self.images[1])
+        write(self.images[1], good[:len(good) // 2])
+        self.refuses_and_keeps("0001.png", *self.texture())
+        os.remove(self.images[1])
+        self.refuses_and_keeps("0001.png", *self.texture())
+
+    def test_options_out_of_range(self):
+        for option, value, expected in (
+                ("--export-type", "stl", "must be one or more of ply, obj, glb, gltf"),
+                ("--decimate", "0.5", "--decimate 0.5: not built yet"),
+                ("--close-holes", "10", "--close-holes 10: not built yet"),
+                ("--virtual-face-images", "3", "--virtual-face-images 3: not built yet"),
+                ("--orthographic-image-resolution", "100", "not built yet"),
+                ("--outlier-threshold", "2", "must be from 0 to"),
+                ("--max-texture-size", "4", "must be from 16 to 32768"),
+                ("--empty-color", "16777216", "must be from 0 to 16777215"),
+                ("--ignore-mask-label", "-3", "must be from -2 to 65535"),
+                ("--camera-model", "fisheye", "must be one of auto, pinhole, flatport")):
+            self.refuses_and_keeps(expected, *self.texture(option, value))
+        self.refuses_and_keeps("scene.housing.json", *self.texture("--refractive"))
+
+    def test_openmvs_scripts_run(self):
+        self.succeeds(*self.texture("--decimate", "1", "--close-holes", "30", "--virtual-face-images",
+                                    "0", "--patch-packing-heuristic", "103", "--cuda-device", "-2",
+                                    "--global-seam-leveling", "1", "--local-seam-leveling", "0",
+                                    "--texture-size-multiple", "16", "--empty-color", "255"))
+
+    def test_help_without_input(self):
+        self.assertEqual(run("TextureMesh").returncode, 1)
+        self.assertEqual(run("TextureMesh", "--help").returncode, 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""TransformScene moves scenes, clouds and meshes so that every view sees the same picture."""
+
+import json
+import math
+import os
+import re
+import struct
+
+import tiny_scene
+from programs import ProgramTest, files_below, main, read, write
+
+TURN = ((0.36, 0.48, -0.8), (-0.8, 0.60, 0.0), (0.48, 0.64, 0.60))  # a rotation in exact decimals
+SHIFT = (1.5, -2.25, 0.75)
+UTM = (512345.25, 5412345.5, 105.75)
+PORT = {"type": "flat", "normal": [0, 0, 1], "distance_m": 0.02, "thickness_m": 0.005,
+        "n_glass": 1.49, "n_water": 1.333}
+
+
+def times(matrix, x):
+    return tuple(sum(a * b for a, b in zip(row, x)) for row in matrix)
+
+
+def moved(x, scale=1, shift=SHIFT):
+    return tuple(scale * a + b for a, b in zip(times(TURN, x), shift))
+
+
+def matrix_text(scale=1, shift=SHIFT, turn=TURN):
+    return "".join(" ".join(repr(scale * a) for a in row) + f" {b!r}\n"
+                   for row, b in zip(turn, shift))
+
+
+def inverse_text(scale=1, shift=SHIFT):
+    back = tuple(zip(*TURN))
+    return matrix_text(1 / scale, tuple(-a / scale for a in times(back, shift)), back)
+
+
+class Mvs:
+    """The cameras, poses and points of a .mvs with one camera on each platform, field by field."""
+
+    def __init__(self, data):
+        self.data, self.at = data, 12
+        self.k, self.poses, self.images = [], [], []
+        for _ in range(self.count()):
+            self.string()
+            assert self.count() == 1
+            self.string(), self.string()
+            size = self.take("<II")
+            k = self.take("<9d")
+            self.take("<12d")
+            poses = [(self.take("<9d"), self.take("<3d")) for _ in range(self.count())]
+            self.k.append((size, k, poses))
+        for _ in range(self.count()):
+            name = self.string()
+            self.string()
+            platform, _, pose, _ = self.take("<4I")
+            self.take("<3f")
+            for _ in range(self.count()):
+                self.take("<II4f")
+            size, k, poses = self.k[platform]
+            self.images.append(name)
+            self.poses.append((size, k, *poses[pose]))
+        self.points = []
+        for _ in range(self.count()):
+            self.points.append(self.take("<3f"))
+            for _ in range(self.count()):
+                self.take("<If")
+
+    def take(self, kind):
+        values = struct.unpack_from(kind, self.data, self.at)
+        self.at += struct.calcsize(kind)
+        return values
+
+    def count(self):
+        return self.take("<Q")[0]
+
+    def string(self):
+        length = self.count()
+        self.at += length
+        return self.data[self.at - length:self.at].decode()
+
+    def pixel(self, image, x):
+        _, k, r, c = self.poses[image]
+        d = [a - b for a, b in zip(x, c)]
+        p = [sum(r[3 * i + j] * d[j] for j in range(3)) for i in range(3)]
+        return k[0] * p[0] / p[2] + k[2], k[4] * p[1] / p[2] + k[5]
+
+
+def ply_points(data):
+    """The positions of an ascii or binary little-endian PLY whose vertices come first, and its
+    offset."""
+    head, body = data.split(b"end_header\n", 1)
+    head = head.decode()
+    count = int(re.search(r"element vertex (\d+)", head)[1])
+    vertex = head.split("element vertex")[1].split("element")[0]
+    kinds = {"float": "f", "float32": "f", "double": "d", "float64": "d", "uchar": "B",
+             "uint8": "B"}
+    row = "<" + "".join(kinds[kind] for kind in re.findall(r"property (\w+) \w+\n", vertex))
+    offset = re.search(r"comment geo_offset (\S+) (\S+) (\S+)", head)
+    if "format ascii" in head:
+        rows = [tuple(map(float, line.split())) for line in body.decode().splitlines()[:count]]
+    else:
+        rows = [struct.unpack_from(row, body, i * struct.calcsize(row)) for i in range(count)]
+    return rows, tuple(map(float, offset.groups())) if offset else None
+
+
+def ascii_ply(kind, vertices, faces=(), more_vertex="", more_face="", comments=""):
+    return (f"ply\nformat ascii 1.0\n{comments}element vertex {len(vertices)}\n"
+            + "".join(f"property {kind} {axis}\n" for axis in "xyz") + more_vertex
+            + (f"element face {len(faces)}\nproperty list uchar int vertex_indices\n{more_face}"
+               if faces else "") + "end_header\n"
+            + "".join(" ".join(map(repr, row)) + "\n" for row in vertices)
+            + "".join(" ".join(map(str, row)) + "\n" for row in faces))
+
+
+CUBE = [(x, y, z) for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
+CUBE_FACES = [(3, 0, 2, 1), (3, 1, 2, 3), (3, 4, 5, 6), (3, 5, 7, 6), (3, 0, 1, 4), (3, 1, 5, 4),
+              (3, 2, 6, 3), (3, 3, 6, 7), (3, 0, 4, 2), (3, 2, 4, 6), (3, 1, 3, 5), (3, 3, 7, 5)]
+
+
+class Transform(tiny_scene.TinyScene):
+    def setUp(self):
+        super().setUp()
+        self.cloud, self.mesh = self.path("work", "cloud.ply"), self.path("work", "mesh.ply")
+        points = [x for x, _ in tiny_scene.sparse_points()]
+        write(self.cloud, ascii_ply("float", [(*x, 0.0, 0.0, -1.0) for x in points],
+                                    more_vertex="".join(f"property float n{a}\n" for a in "xyz")))
+        write(self.mesh, ascii_ply("float", points, [(3, 0, 1, 2), (3, 2, 1, 3)]))
+        write(self.path("t.txt"), matrix_text(2.5))
+
+    def transform(self, *arguments, scene="scene.mvs", output="moved.mvs"):
+        return self.succeeds("TransformScene", "-i", scene, "-w", self.work, "-o", output,
+                             *arguments)
+
+    def refused(self, expected, *arguments):
+        self.refuses(expected, "TransformScene", "-i", "scene.mvs", "-w", self.work, "-o",
+                     "moved.mvs", *arguments)
+
+    def at(self, name):
+        return read(self.path("work", name))
+
+    def near(self, found, expected, within):
+        for a, b in zip(found, expected, strict=True):
+            self.assertLess(abs(a - b), within)
+
+    def port(self, port):
+        write(self.path("work", "scene.housing.json"), json.dumps(
+            {"version": 1, "ports": {"main": port}, "default": "main"}))
+
+
+class Moves(Transform):
+    def test_there_and_back(self):
+        write(self.path("back.txt"), inverse_text(2.5))
+        self.transform("-t", self.path("t.txt"), "-p", "cloud.ply", "-m", "mesh.ply")
+        self.transform("-t", self.path("back.txt"), "-p", "moved.ply", "-m", "moved_mesh.ply",
+                       scene="moved.mvs", output="again.mvs")
+        before, after, again = (Mvs(self.at(name)) for name in ("scene.mvs", "moved.mvs",
+                                                                "again.mvs"))
+        for old, new, back in zip(before.poses, after.poses, again.poses):
+            self.near(new[3], moved(old[3], 2.5), 1e-9)
+            self.near(back[2] + back[3], old[2] + old[3], 1e-9)
+        self.assertEqual(again.images, before.images)
+        for name in ("cloud.ply", "mesh.ply"):
+            there = "moved.ply" if name == "cloud.ply" else "moved_mesh.ply"
+            old, new = ply_points(self.at(name))[0], ply_points(self.at(there))[0]
+            back = ply_points(self.at(there.replace("moved", "again")))[0]
+            self.assertEqual(len(new), len(old))
+            for a, b, c in zip(old, new, back):
+                self.near(c, a, 1e-6)  # float32 of a few metres
+                for image in range(3):
+                    self.near(after.pixel(image, b[:3]), before.pixel(image, a[:3]), 1e-4)
+                if name == "cloud.ply":
+                    self.near(b[3:], times(TURN, a[3:]), 1e-6)
+        for a, b in zip(before.points, after.points):
+            self.near(after.pixel(1, b), before.pixel(1, a), 1e-4)
+
+    def test_far_away_and_back(self):
+        """Poses in UTM are double; floats are near the origin, and the offset is in files."""
+        write(self.path("t.txt"), matrix_text(1, UTM))
+        write(self.path("back.txt"), inverse_text(1, UTM))
+        said = self.transform("-t", self.path("t.txt"), "-p", "cloud.ply", "-m", "mesh.ply",
+                              "--transform-out", self.path("out.txt"))
+        self.assertNotIn("far from the origin", said.stdout + said.stderr)
+        offset = json.loads(self.at("moved.geo.json"))["geo_offset"]
+        self.near(offset, UTM, 20)
+        before, after = Mvs(self.at("scene.mvs")), Mvs(self.at("moved.mvs"))
+        for old, new in zip(before.poses, after.poses):
+            expected = [a + (b - c) for a, b, c in zip(times(TURN, old[3]), UTM, offset)]
+            self.near(new[3], expected, 5e-9)  # a double of 5e6 has steps of 1e-9
+        for name, there in (("cloud.ply", "moved.ply"), ("mesh.ply", "moved_mesh.ply")):
+            new, of_file = ply_points(self.at(there))
+            self.assertEqual(list(of_file), offset)
+            for a, b in zip(ply_points(self.at(name))[0], new):
+                for image in range(3):
+                    self.near(after.pixel(image, b[:3]), before.pixel(image, a[:3]), 1e-3)
+        numbers = [float(word) for word in read(self.path("out.txt")).split()]
+        self.near(numbers, [float(w) for w in matrix_text(1, UTM).split()] + [0, 0, 0, 1], 5e-9)
+        self.transform("-t", self.path("back.txt"), "-p", "moved.ply", scene="moved.mvs",
+                       output="again.mvs")
+        self.assertFalse(os.path.exists(self.path("work", "again.geo.json")))
+        for old, back in zip(before.poses, Mvs(self.at("again.mvs")).poses):
+            self.near(back[2] + back[3], old[2] + old[3], 5e-9)
+        back, of_file = ply_points(self.at("again.ply"))
+        self.assertIsNone(of_file)
+        for a, b in zip(ply_points(self.at("cloud.ply"))[0], back):
+            self.near(a, b, 1e-5)
+
+    def test_everything_else_in_a_ply_stays(self):
+        mesh = ascii_ply("double", [(*x, 200, i / 8) for i, x in enumerate(CUBE)],
+                         [(*face, 6, .1, .2, .3, .4, .5, .6, 7) for face in CUBE_FACES],
+                         "property uchar red\nproperty float quality\n",
+                         "property list uchar double texcoord\nproperty int texnumber\n",
+                         "comment TextureFile a.png\n")
+        write(self.mesh, mesh)
+        self.transform("-t", self.path("t.txt"), "-m", "mesh.ply")
+        head, body = self.at("moved_mesh.ply").split(b"end_header\n")
+        self.assertIn(b"comment TextureFile a.png\n", head)
+        rows = [struct.unpack_from("<3dBf", body, 29 * i) for i in range(8)]
+        for i, (row, x) in enumerate(zip(rows, CUBE)):
+            self.near(row[:3], moved(x, 2.5), 1e-12)
+            self.assertEqual(row[3:], (200, i / 8))
+        faces = [struct.unpack_from("<B3iB6di", body, 29 * 8 + 66 * i) for i in range(12)]
+        self.assertEqual([face[:4] for face in faces], CUBE_FACES)
+        self.assertEqual({face[4:] for face in faces}, {(6, .1, .2, .3, .4, .5, .6, 7)})
+        self.assertEqual(len(body), 29 * 8 + 66 * 12)
+
+    def test_shrunk_images(self):
+        said = self.transform("--max-resolution", 48).stdout
+        self.assertIn("3 of 3 images were shrunk", said)
+        before, after = Mvs(self.at("scene.mvs")), Mvs(self.at("moved.mvs"))
+        for (_, k, *pose), (size, small, *same), name in zip(before.poses, after.poses,
+                                                             after.images):
+            self.assertEqual(size, (48, 36))
+            self.assertEqual(pose, same)
+            for i in (0, 4):
+                self.assertAlmostEqual(small[i], k[i] / 2, 9)
+            for i in (2, 5):
+                self.assertAlmostEqual(small[i] + 0.5, (k[i] + 0.5) / 2, 9)
+            png = self.at(name)
+            self.assertIn("images48", name)
+            self.assertEqual(struct.unpack(">II", png[16:24]), (48, 36))
+        self.succeeds("DensifyPointCloud", "-i", "moved.mvs", "-w", self.work, "--resolution-level",
+                      0, "--min-resolution", 16)
+
+
+class Alignment(Transform):
+    def write_reference(self, names=None, count=3, scale=2.5):
+        names = names or [self.path("other", name) for name in tiny_scene.names()]
+        centres = [moved(c, scale) for c in tiny_scene.CENTRES][:count]
+        rotation = [x for column in zip(*TURN) for x in column]  # the pose of an unturned camera
+        write(self.path("work", "reference.mvs"),
+              tiny_scene.mvs(names[:count], centres=centres, rotation=rotation,
+                             points=[(moved(x, scale), list(range(count)))
+                                     for x, _ in tiny_scene.sparse_points()]))
+        return centres, rotation
+
+    def check(self, centres, within=1e-6):
+        for pose, centre in zip(Mvs(self.at("moved.mvs")).poses, centres):
+            self.near(pose[3], centre, within)
+
+    def test_to_a_scene_by_name(self):
+        centres, rotation = self.write_reference()
+        said = self.transform("-a", "reference.mvs").stdout
+        self.assertIn("Aligned by 3 images with the same names: scale 2.5", said)
+        self.check(centres)
+        for pose in Mvs(self.at("moved.mvs")).poses:
+            self.near(pose[2], rotation, 1e-9)
+
+    def test_to_a_scene_whose_images_have_another_order(self):
+        names = [self.path("other", name) for name in tiny_scene.names()]
+        centres, rotation = self.write_reference()
+        order = (2, 0, 1)
+        write(self.path("work", "reference.mvs"),
+              tiny_scene.mvs([names[i] for i in order], centres=[centres[i] for i in order],
+                             rotation=rotation))
+        self.transform("-a", "reference.mvs")
+        self.check(centres)
+
+    def test_to_a_scene_by_order(self):
+        centres, _ = self.write_reference(["x.png", "y.png", "z.png"])
+        said = self.transform("-a", "reference.mvs").stdout
+        self.assertIn("3 images in their order, because names do not match", said)
+        self.check(centres)
+        self.write_reference(["x.png", "y.png"], count=2)
+        self.refused("reference.mvs: 0 of its images have the name of an image of the scene, and "
+                     "it has 2 images, not 3", "-a", "reference.mvs")
+
+    def test_to_positions(self):
+        lines = [f"{name} {x!r} {y!r} {z!r}" for name, (x, y, z) in
+                 zip(tiny_scene.names(), (moved(c, 2.5, UTM) for c in tiny_scene.CENTRES))]
+        write(self.path("known.txt"), "\n".join(["# name x y z", *lines, "absent.jpg 1 2 3"]))
+        said = self.transform("--positions", self.path("known.txt"))
+        self.assertIn("known.txt:5: the scene has no image 'absent.jpg'", said.stdout + said.stderr)
+        offset = json.loads(self.at("moved.geo.json"))["geo_offset"]
+        self.check([[a - b for a, b in zip(moved(c, 2.5, UTM), offset)]
+                    for c in tiny_scene.CENTRES])
+        write(self.path("known.txt"), "\n".join([*lines, lines[0]]))
+        self.refused("known.txt:4: 0000.png occurs twice", "--positions", self.path("known.txt"))
+        write(self.path("known.txt"), "\n".join(lines[:2]))
+        self.refused("known.txt: 2 common positions are too few", "--positions",
+                     self.path("known.txt"))
+
+
+class Ports(Transform):
+    def test_a_scale_behind_a_port(self):
+        self.port(PORT)
+        self.refused("the transformation has the scale 2.5, but the lengths of port 'main'", "-t",
+                     self.path("t.txt"))
+        self.transform("-t", self.path("t.txt"), "--scale-ports")
+        port = json.loads(self.at("moved.housing.json"))["ports"]["main"]
+        self.assertAlmostEqual(port["distance_m"], 0.05, 12)
+        self.assertAlmostEqual(port["thickness_m"], 0.0125, 12)
+        write(self.path("t.txt"), matrix_text(1.0000001))
+        self.transform("-t", self.path("t.txt"))
+        self.assertEqual(json.loads(self.at("moved.housing.json"))["ports"]["main"]["distance_m"],
+                         0.02)
+
+    def test_rigid_alignment(self):
+        self.port(PORT)
+        lines = [f"{name} {x} {y} {z}" for name, (x, y, z) in
+                 zip(tiny_scene.names(), (moved(c, 1.01) for c in tiny_scene.CENTRES))]
+        write(self.path("known.txt"), "\n".join(lines))
+        self.refused("the scale 1.01", "--positions", self.path("known.txt"))
+        said = self.transform("--positions", self.path("known.txt"), "--rigid").stdout
+        self.assertIn("scale 1,", said)
+
+    def test_a_water_surface_moves(self):
+        surface = {"type": "water-surface", "normal": [0, 0, 1], "point_m": [0.5, 0, 0.25],
+                   "n_air": 1.0, "n_water": 1.333}
+        self.port(surface)
+        self.transform("-t", self.path("t.txt"))
+        found = json.loads(self.at("moved.housing.json"))["ports"]["main"]
+        self.near(found["normal"], times(TURN, (0, 0, 1)), 1e-12)
+        self.near(found["point_m"], moved((0.5, 0, 0.25), 2.5), 1e-12)
+
+
+class Volume(Transform):
+    def measured(self, said, what):
+        return float(re.search(re.escape(what) + r": (\S+) m\^3", said)[1])
+
+    def test_a_cube_on_a_ground(self):
+        # The ground is 6 m x 6 m. The cube of 1 m stands on it, without a bottom; its sides and its
+        # top look outwards. Up is -z, where the cameras are.
+        ground = [(x, y, 5.0) for y in (-3.0, 3.0) for x in (-3.0, 3.0)]
+        cube = [(x, y, 5.0 - z) for x, y, z in CUBE]
+        faces = [(3, 0, 2, 1), (3, 1, 2, 3)] + [
+            (3, *(c + 4 for c in reversed(face[1:]))) for face in CUBE_FACES[2:]]
+        write(self.mesh, ascii_ply("float", ground + cube, faces))
+        said = self.succeeds("TransformScene", "-i", "scene.mvs", "-w", self.work, "-m", "mesh.ply",
+                             "--compute-volume", 1).stdout
+        # The foot of the sides is within the threshold and raises the fitted plane by 0.1 mm.
+        self.assertAlmostEqual(self.measured(said, "Volume above the ground plane"), 1, 3)
+        normal = re.search(r"normal \((\S+), (\S+), (\S+)\)", said).groups()
+        self.near(map(float, normal), (0, 0, -1), 1e-3)
+        self.assertNotIn("moved.mvs", files_below(self.work))
+        said = self.transform("-t", self.path("t.txt"), "-m", "mesh.ply", "--compute-volume", 1,
+                              "--up-axis", 0).stdout
+        self.assertAlmostEqual(self.measured(said, "Volume above the ground plane") / 2.5 ** 3, 1, 3)
+        self.refused("mesh.ply: it is not closed (8 border edges", "-m", "mesh.ply",
+                     "--compute-volume", 1, "--plane-threshold", -1)
+
+    def test_a_closed_mesh(self):
+        write(self.mesh, ascii_ply("float", CUBE, CUBE_FACES))
+        said = self.transform("-t", self.path("t.txt"), "-m", "mesh.ply", "--compute-volume", 1,
+                              "--plane-threshold", -1).stdout
+        self.assertAlmostEqual(self.measured(said, "Volume that the mesh encloses"), 2.5 ** 3, 4)
+
+
+class WrongInput(Transform):
+    def test_refusals(self):
+        t = ("-t", self.path("t.txt"))
+        self.refused("nothing to do")
+        self.refused("only one can be given", *t, "-a", "scene.mvs")
+        self.refused("--compute-volume needs --mesh-file", "--compute-volume", 1)
+        self.refused("--transfer-texture-file x.ply: not built yet", *t, "--transfer-texture-file",
+                     "x.ply")
+        self.refused("--sample-mesh 5: not built yet", *t, "--sample-mesh", 5)
+        self.refused("x.glb: not built yet", *t, "-m", "x.glb")
+        self.refused("missing.ply", *t, "-p", "missing.ply")
+        self.refused("missing.txt", "-t", "missing.txt")
+        self.refused("--up-axis is 3", *t, "--up-axis", 3)
+        self.refuses("--output-file", "TransformScene", "-i", "scene.mvs", "-w", self.work, "-o",
+                     "scene.mvs", *t)
+        write(self.path("work", "moved.ply"), read(self.cloud))
+        self.refused("--output-file", *t, "-p", "moved.ply")
+
+    def test_matrices(self):
+        for text, expected in (
+                ("1 0 0 0 0 1 0 0 0 0 1", "contains 11 numbers"),
+                ("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2", "the last row is 0 0 0 2"),
+                ("1 0 0 0 0 1 0 0 0 0 -1 0", "mirrors"),
+                ("1 0 0 0 0 2 0 0 0 0 1 0", "is not a rotation"),
+                ("1 0 0 0 0 0 0 0 0 0 0 0", "mirrors or flattens"),
+                ("1 0 0 nan 0 1 0 0 0 0 1 0", "contains nan"), ("", "contains 0 numbers")):
+            with self.subTest(text=text):
+                write(self.path("t.txt"), text)
+                self.refused(expected, "-t", self.path("t.txt"))
+        write(self.path("t.txt"), "matrix: 1, 0, 0, 5; 0, 1, 0, 6;\n0, 0, 1, 7; 0, 0, 0, 1")
+        self.transform("-t", self.path("t.txt"))
+        self.near(Mvs(self.at("moved.mvs")).poses[0][3],
+                  [a + b for a, b in zip(tiny_scene.CENTRES[0], (5, 6, 7))], 1e-12)
+
+    def test_clouds_and_meshes(self):
+        t = ("-t", self.path("t.txt"))
+        good = read(self.cloud)
+        for data, expected in ((b"", "cloud.ply"), (b"garbage", "cloud.ply"),
+                               (good[:-9], "cloud.ply"), (good + b"1 2 3\n", "cloud.ply"),
+                               (good.replace(b"property float y", b"property int y"), "cloud.ply"),
+                               (good.replace(b"vertex 60", b"vertex 0"), "has no vertices")):
+            write(self.cloud, data)
+            self.refused(expected, *t, "-p", "cloud.ply")
+        write(self.cloud, ascii_ply("float", [(1.0, math.inf, 2.0)]))
+        self.refused("vertex 0 has a position that is not finite", *t, "-p", "cloud.ply")
+
+
+if __name__ == "__main__":
+    main()

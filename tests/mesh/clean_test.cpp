@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/clean.h"
+
+#include <Eigen/Geometry>
+
+#include "base/error.h"
+#include "support/error_of.h"
+#include "topology.h"
+
+namespace axial::mesh {
+namespace {
+
+using test::error_of;
+
+// A grid of size x size squares of side 1, halved into triangles, in the plane z = 0.
+Mesh grid(std::uint32_t size, const Eigen::Vector3f& origin = Eigen::Vector3f::Zero()) {
+  Mesh mesh;
+  for (std::uint32_t y = 0; y <= size; ++y)
+    for (std::uint32_t x = 0; x <= size; ++x)
+      mesh.vertices.push_back(origin +
+                              Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), 0));
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const std::uint32_t a = y * (size + 1) + x, b = a + 1, c = a + size + 1, d = c + 1;
+      mesh.faces.push_back({a, b, d});
+      mesh.faces.push_back({a, d, c});
+    }
+  return mesh;
+}
+
+void append(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& face : other.faces)
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+}
+
+CleanOptions nothing() {
+  CleanOptions options;
+  options.spurious = 0;
+  options.spikes = false;
+  options.close_holes = 0;
+  options.smooth = 0;
+  return options;
+}
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& face : mesh.faces) {
+    const Eigen::Vector3f a = mesh.vertices[face[1]] - mesh.vertices[face[0]],
+                          b = mesh.vertices[face[2]] - mesh.vertices[face[0]];
+    sum += 0.5 * static_cast<double>(a.cross(b).norm());
+  }
+  return sum;
+}
+
+TEST(Clean, AGoodMeshStays) {
+  const Mesh mesh = grid(10);
+  CleanOptions options;
+  options.close_holes = 30;  // the border has 40 edges
+  options.spurious = 5;
+  options.spikes = false;  // corners of the grid
+  const Mesh cleaned = clean(mesh, options);
+  EXPECT_EQ(cleaned.vertices, mesh.vertices);
+  EXPECT_EQ(cleaned.faces.size(), mesh.faces.size());
+  EXPECT_DOUBLE_EQ(area(cleaned), 100);
+}
+
+TEST(Clean, SmallPiecesAreRemoved) {
+  Mesh mesh = grid(30);
+  append(mesh, grid(3, {0, 0, 50}));
+  CleanReport report;
+  CleanOptions options = nothing();
+  options.spurious = 20;
+  EXPECT_EQ(clean(mesh, options, &report).faces.size(), 1800u);
+  EXPECT_EQ(report.removed_components, 1u);
+  options.spurious = 3;
+  EXPECT_EQ(clean(mesh, options).faces.size(), 1818u);
+}
+
+TEST(Clean, SpikesAreRemoved) {
+  Mesh mesh = grid(4);
+  mesh.vertices.emplace_back(2, -1, 0);
+  mesh.faces.push_back({1, 25, 2});  // below the lowest row: hangs by one edge
+  CleanOptions options = nothing();
+  EXPECT_EQ(clean(mesh, options).faces.size(), 33u);
+  options.spikes = true;
+  // The two corner faces of a grid also have two border edges.
+  CleanReport report;
+  const std::size_t faces = clean(mesh, options, &report).faces.size();
+  EXPECT_EQ(report.removed_spikes, 3u);
+  EXPECT_EQ(faces, 30u);
+}
+
+TEST(Clean, HolesUpToTheLimitAreClosed) {
+  Mesh mesh = grid(12);
+  // Without the two faces of a square in the middle: a hole of four edges.
+  mesh.faces.erase(mesh.faces.begin() + 2 * (6 * 12 + 6), mesh.faces.begin() + 2 * (6 * 12 + 7));
+  CleanOptions options = nothing();
+  options.close_holes = 3;
+  EXPECT_DOUBLE_EQ(area(clean(mesh, options)), 143);
+  options.close_holes = 4;
+  CleanReport report;
+  const Mesh closed = clean(mesh, options, &report);
+  EXPECT_NEAR(area(closed), 144, 1e-6);
+  EXPECT_EQ(report.closed_holes, 1u);
+  EXPECT_EQ(test::facts_of(closed).border_edges, 48u);
+}
+
+TEST(Clean, EdgesOfThreeFacesAndReversedFacesAreMended) {
+  Mesh mesh = grid(4);
+  mesh.vertices.emplace_back(2.5f, 2.f, 1.f);
+  mesh.faces.push_back({12, 13, 25});  // stands on an edge in the middle
+  std::swap(mesh.faces[3][0], mesh.faces[3][1]);
+  const test::MeshFacts facts = test::facts_of(clean(mesh, nothing()));
+  EXPECT_EQ(facts.bad_edges, 0u);
+  EXPECT_EQ(facts.bad_vertices, 0u);
+}
+
+TEST(Clean, TwoSheetsThatTouchAtACornerArePulledApart) {
+  // Two tetrahedra with a common corner.
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  for (const auto& [a, b, c, d] : {std::array<std::uint32_t, 4>{0, 1, 2, 3}, {0, 5, 4, 6}}) {
+    mesh.faces.push_back({a, c, b});
+    mesh.faces.push_back({a, b, d});
+    mesh.faces.push_back({a, d, c});
+    mesh.faces.push_back({b, c, d});
+  }
+  CleanReport report;
+  CleanOptions options = nothing();
+  options.spikes = true;
+  const Mesh cleaned = clean(mesh, options, &report);
+  EXPECT_EQ(cleaned.faces.size(), 8u);
+  EXPECT_EQ(cleaned.vertices.size(), 8u);
+  EXPECT_EQ(test::facts_of(cleaned).bad_vertices, 0u);
+  EXPECT_EQ(report.removed_intersections, 0u);
+}
+
+TEST(Clean, FacesThatCrossAreRemoved) {
+  Mesh mesh = grid(12);
+  Mesh wall = grid(12);
+  for (Eigen::Vector3f& v : wall.vertices) v = {v.x() + 0.3f, 6.4f, v.y() - 6.2f};
+  append(mesh, wall);
+  CleanReport report;
+  const Mesh cleaned = clean(mesh, nothing(), &report);
+  EXPECT_GT(report.removed_intersections, 0u);
+  CleanReport again;
+  EXPECT_EQ(clean(cleaned, nothing(), &again).faces.size(), cleaned.faces.size());
+  EXPECT_EQ(again.removed_intersections, 0u);
+}
+
+TEST(Clean, SmoothingDampsNoiseAndKeepsThePlace) {
+  Mesh mesh = grid(20);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    mesh.vertices[i].z() = i % 2 ? 0.1f : -0.1f;
+  CleanOptions options = nothing();
+  options.smooth = 5;
+  double before = 0, after = 0;
+  for (const Eigen::Vector3f& v : mesh.vertices) before += std::abs(static_cast<double>(v.z()));
+  for (const Eigen::Vector3f& v : clean(mesh, options).vertices)
+    after += std::abs(static_cast<double>(v.z()));
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(Clean, DecimationKeepsAPlaneAndRemeshingTheLength) {
+  CleanOptions options = nothing();
+  options.decimate = 0.25;
+  const Mesh coarse = clean(grid(20), options);
+  EXPECT_NEAR(static_cast<double>(coarse.faces.size()), 200, 20);
+  EXPECT_NEAR(area(coarse), 400, 4);
+  options = nothing();
+  options.target_faces = 100;
+  EXPECT_NEAR(static_cast<double>(clean(grid(20), options).faces.size()), 100, 15);
+  options = nothing();
+  options.edge_length = 0.5;
+  const Mesh fine = clean(grid(10), options);
+  EXPECT_GT(fine.faces.size(), 600u);  // equilateral triangles of side 0.5: 924
+  EXPECT_LT(fine.faces.size(), 1600u);
+  EXPECT_NEAR(area(fine), 100, 1);
+}
+
+TEST(Clean, RefusesMeshesWithoutFaces) {
+  EXPECT_THAT(error_of([] { clean({}); }), testing::HasSubstr("no faces"));
+  CleanOptions options;
+  options.spurious = 1000;
+  EXPECT_THAT(error_of([&] { clean(grid(3), options); }), testing::HasSubstr("spurious"));
+}
+
+}  // namespace
+}  // namespace axial::mesh
