@@ -50,6 +50,7 @@ class Refinement {
 
   Report run() {
     prepare(ScaledViews(views_, pictures_, 1));
+    flatten_folds(mesh_, topology_);
     first_ = mesh_.vertices;
     for (unsigned scale = options_.scales; scale-- > 0;)
       refine_at(std::pow(options_.scale_step, scale), options_.scales - 1 - scale);
