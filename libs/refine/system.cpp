@@ -50,6 +50,7 @@ System::System(const Mesh& mesh, const Topology& topology, const Shape& shape,
       off_diagonal_(topology.neighbours.item.size()),
       cosine_(topology.neighbours.item.size()) {
   for_each_item(right_.size(), [&](std::size_t v) { gather(v, equations); });
+  for_each_item(right_.size(), [&](std::size_t v) { add_slopes(v); });
   for_each_item(right_.size(), [&](std::size_t v) { weigh_bending(v, smoothness); });
   add_bending_of_mesh();
 }
@@ -64,11 +65,6 @@ void System::gather(std::size_t v, std::span<const FaceEquations> equations) {
   constexpr std::size_t kEntry[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   for (std::size_t e = first(v); e < last(v); ++e)
     cosine_[e] = shape_.normals[v].dot(shape_.normals[topology_.neighbours.item[e]]);
-  for (std::size_t e = first(v); e < last(v); ++e) {
-    const double weight = slope_weight(v, topology_.neighbours.item[e]);
-    stiffness_[v] += weight;
-    off_diagonal_[e] -= static_cast<float>(weight);
-  }
   for (const std::uint32_t f : topology_.faces.of(v)) {
     const auto& face = mesh_.faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -85,7 +81,16 @@ void System::gather(std::size_t v, std::span<const FaceEquations> equations) {
 
 double System::slope_weight(std::size_t v, std::uint32_t neighbour) const {
   const double squared = (mesh_.vertices[neighbour] - mesh_.vertices[v]).squaredNorm();
-  return squared > 0 ? kDependentResiduals / (kSlope * kSlope * squared) : 0;
+  const bool measured = diagonal_[v] > 0 || diagonal_[neighbour] > 0;
+  return measured && squared > 0 ? kDependentResiduals / (kSlope * kSlope * squared) : 0;
+}
+
+void System::add_slopes(std::size_t v) {
+  for (std::size_t e = first(v); e < last(v); ++e) {
+    const double weight = slope_weight(v, topology_.neighbours.item[e]);
+    stiffness_[v] += weight;
+    off_diagonal_[e] -= static_cast<float>(weight);
+  }
 }
 
 double System::bending_of_mesh(std::size_t v) const {

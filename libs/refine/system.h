@@ -46,6 +46,7 @@ class System {
   double bend_transposed(std::size_t v, const Vector& bending) const;
   void gather(std::size_t v, std::span<const FaceEquations> equations);
   double slope_weight(std::size_t v, std::uint32_t neighbour) const;
+  void add_slopes(std::size_t v);
   void weigh_bending(std::size_t v, double smoothness);
   void add_bending_of_mesh();
   Vector times(const Vector& t) const;
