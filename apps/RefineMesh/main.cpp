@@ -49,8 +49,10 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame) {
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
            mesh.faces.size());
-  if (!options.clean) return mesh;
-  return naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
+  if (options.decimate == 1) return mesh;
+  mesh::CleanOptions fewer = options.cleaning;
+  fewer.decimate = options.decimate;
+  return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
 std::vector<refine::View> views_of(const densify::Project& project) {
@@ -122,6 +124,8 @@ int run(int argc, char** argv) {
   check_outputs(options, project);
   Mesh mesh = read_mesh(options, project.frame);
   refine_mesh(mesh, project, options);
+  return_freed_memory();
+  mesh = naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
   write(options.output, mesh, project.frame);
   return 0;
 }

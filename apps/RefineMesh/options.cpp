@@ -68,7 +68,7 @@ void declare_refinement(OptionList& list, Raw& raw, Options& options) {
       .add_with_default("decimate", &raw.decimate,
                         "part of the faces to keep before refining, from 0 to 1 (0: all)")
       .add_with_default("close-holes", &raw.close_holes,
-                        "if given: close holes of at most this many edges before refining")
+                        "close holes of at most this many edges (0: none)")
       .add_with_default("max-face-area", &options.refine.max_face_area,
                         "faces are split until none is larger than this in two images [px^2] (0: "
                         "no face is split)")
@@ -155,9 +155,7 @@ void convert(const Raw& raw, Options& options) {
   options.scene.max_threads = options.parsed.common.max_threads;
   options.scene.estimate_colors = 0;
   options.scene.name_of = option_of;
-  options.clean = raw.decimate > 0 && raw.decimate < 1;
-  if (options.clean) options.cleaning.decimate = raw.decimate;
-  options.clean |= given(options.parsed, "close-holes");
+  if (raw.decimate > 0) options.decimate = raw.decimate;
   options.cleaning.close_holes = raw.close_holes;
   options.cleaning.spurious = 0;
   options.cleaning.spikes = false;

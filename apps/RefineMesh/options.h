@@ -17,8 +17,8 @@ struct Options {
   densify::Settings scene;       // scene, images, masks, cameras and memory
   std::filesystem::path mesh;    // .ply
   std::filesystem::path output;  // .ply or .obj
-  bool clean = false;            // before refining, as `cleaning` says
-  mesh::CleanOptions cleaning;
+  double decimate = 1;           // part of the faces to keep before refining
+  mesh::CleanOptions cleaning;   // of the refined mesh
   refine::Options refine;
 };
 

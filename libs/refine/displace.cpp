@@ -12,6 +12,7 @@ namespace {
 constexpr float kLongestStep = 1.0f / 3;  // of the edge
 constexpr float kLeastTurn = 0.5f;        // cosine
 constexpr int kShortenings = 6;
+constexpr int kFoldRounds = 3;
 
 void move_to(Mesh& mesh, std::span<const Eigen::Vector3f> from, const Shape& shape,
              std::span<const float> steps) {
@@ -61,6 +62,36 @@ void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
   for (int k = 0; k < kShortenings; ++k) {
     if (!shorten(mesh, topology, former, steps, k + 1 == kShortenings)) return;
     move_to(mesh, from, shape, steps);
+  }
+}
+
+void flatten_folds(Mesh& mesh, const Topology& topology) {
+  const std::size_t count = mesh.vertices.size();
+  for (int round = 0; round < kFoldRounds; ++round) {
+    const Shape shape = shape_of(mesh, topology);
+    std::vector<std::uint8_t> folded(mesh.faces.size());
+    parallel_for(
+        mesh.faces.size(),
+        [&](std::size_t f) {
+          const Eigen::Vector3f normal = face_vector(mesh, mesh.faces[f]);
+          Eigen::Vector3f around = Eigen::Vector3f::Zero();
+          for (const std::uint32_t v : mesh.faces[f]) around += shape.normals[v];
+          folded[f] = !(normal.dot(around) > 0);
+        },
+        kPointGrain);
+    const std::vector<Eigen::Vector3f> from = mesh.vertices;
+    parallel_for(
+        count,
+        [&](std::size_t v) {
+          const auto neighbours = topology.neighbours.of(v);
+          const bool moves = std::ranges::any_of(topology.faces.of(v),
+                                                 [&](std::uint32_t f) { return folded[f] != 0; });
+          if (!moves || topology.border[v] || neighbours.empty()) return;
+          Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+          for (const std::uint32_t n : neighbours) sum += from[n];
+          mesh.vertices[v] = sum / static_cast<float>(neighbours.size());
+        },
+        kPointGrain);
   }
 }
 

@@ -12,4 +12,10 @@ namespace axial::refine {
 void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
               std::span<const float> displacement);
 
+// Flattens folds: moves the vertices of faces that turn away from the surface around them by more
+// than 90 degrees to the mean of their neighbours, in some rounds. Vertices on borders stay. A fold
+// is narrower than the noise of the cloud; its hidden side has no measurement, and a step would
+// push its visible side through it.
+void flatten_folds(Mesh& mesh, const Topology& topology);
+
 }  // namespace axial::refine

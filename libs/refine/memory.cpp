@@ -10,9 +10,9 @@
 namespace axial::refine {
 namespace {
 
-// First positions, shape, topology with 6 neighbours and 6 faces, the system (with 12 numbers in
+// First positions, shape, topology with 6 neighbours and 6 faces, the system (with 13 numbers in
 // double and two in float of every neighbour), visibility, and the numbers of a reference view.
-constexpr std::uint64_t kOfVertex = 12 + 20 + 60 + 96 + 48 + 28 + 12;
+constexpr std::uint64_t kOfVertex = 12 + 20 + 12 + 60 + 104 + 48 + 28 + 12;
 // Equations, former planes, lists of pixels, lists of bands.
 constexpr std::uint64_t kOfFace = sizeof(FaceEquations) + 12 + 8 + 8;
 // Of a reference view: depths and faces twice while they are drawn, corners, six images in float,

@@ -20,7 +20,7 @@
 namespace axial::refine {
 namespace {
 
-constexpr unsigned kMostSteps = 6;  // at each resolution
+constexpr unsigned kLeastSteps = 2, kMostSteps = 6;  // at each resolution
 // Steps end when they become smaller than this part of the first step at the resolution.
 constexpr double kLastStep = 0.3;
 constexpr unsigned kMostSplits = 6;  // each divides the area of a face by four
@@ -49,16 +49,12 @@ class Refinement {
       : mesh_(mesh), views_(views), pictures_(pictures), options_(options), progress_(progress) {}
 
   Report run() {
-    const ScaledViews full(views_, pictures_, 1);
-    plan_memory();
-    split(full);
-    plan_memory();
-    topology_ = topology_of(mesh_);
+    prepare(ScaledViews(views_, pictures_, 1));
+    flatten_folds(mesh_, topology_);
     first_ = mesh_.vertices;
-    choose(full);
     for (unsigned scale = options_.scales; scale-- > 0;)
       refine_at(std::pow(options_.scale_step, scale), options_.scales - 1 - scale);
-    report_.moved = median_of(offsets_of_measured());
+    report_.moved = median_of(distances_of_measured());
     return report_;
   }
 
@@ -71,24 +67,23 @@ class Refinement {
     kept_ = views_to_keep(sizes, options_);
   }
 
-  void split(const ScaledViews& views) {
-    for (unsigned k = 0; k < kMostSplits && options_.max_face_area > 0; ++k) {
-      const Topology topology = topology_of(mesh_);
+  // Splits large faces, and chooses the pairs of views.
+  void prepare(const ScaledViews& views) {
+    for (unsigned k = 0;; ++k) {
+      plan_memory();
+      topology_ = topology_of(mesh_);
       MeshImages images(mesh_, views, kept_);
       const Visibility visibility =
-          find_visibility(mesh_, shape_of(mesh_, topology), views, images);
-      const std::vector<bool> large =
-          larger_than(options_.max_face_area, mesh_, views, visibility, images);
-      const std::size_t added = split_faces(mesh_, large);
-      report_.split_faces += added;
-      if (added == 0) return;
+          find_visibility(mesh_, shape_of(mesh_, topology_), views, images);
+      if (k < kMostSplits && options_.max_face_area > 0) {
+        const std::size_t added = split_faces(
+            mesh_, larger_than(options_.max_face_area, mesh_, views, visibility, images));
+        report_.split_faces += added;
+        if (added > 0) continue;
+      }
+      pairs_ = choose_pairs(mesh_, views, visibility, options_.max_views);
+      break;
     }
-  }
-
-  void choose(const ScaledViews& views) {
-    MeshImages images(mesh_, views, kept_);
-    const Visibility visibility = find_visibility(mesh_, shape_of(mesh_, topology_), views, images);
-    pairs_ = choose_pairs(mesh_, views, visibility, options_.max_views);
     if (pairs_.empty()) fail("no two views see the same part of the mesh");
     report_.pairs = pairs_.size();
     log_info("{} vertices, {} faces ({} added by splitting), {} pairs of views",
@@ -104,14 +99,14 @@ class Refinement {
       const Shape shape = shape_of(mesh_, topology_);
       MeshImages images(mesh_, views, kept_);
       if (!visibility) visibility = find_visibility(mesh_, shape, views, images);
-      const std::vector<FaceEquations> equations = measure(views, shape, *visibility, images);
+      const std::vector<FaceEquations> equations =
+          measure(views, shape, *visibility, images, kLeastSteps * done + std::min(k, kLeastSteps));
       const double moved = step(equations, shape, factor);
       log_details("Step {} at {} of the size: median displacement {}", k, factor, moved);
       ++report_.steps;
       if (k == 0) first_step = moved;
-      if (k > 0 && moved <= kLastStep * first_step) break;
+      if (k + 1 >= kLeastSteps && moved <= kLastStep * first_step) break;
     }
-    if (progress_) progress_(done + 1, options_.scales);
   }
 
   // The partners of view i for which it is the reference view.
@@ -130,8 +125,10 @@ class Refinement {
     return partners;
   }
 
+  // `steps_done`: before this step, of kLeastSteps at each resolution.
   std::vector<FaceEquations> measure(const ScaledViews& views, const Shape& shape,
-                                     const Visibility& visibility, MeshImages& images) const {
+                                     const Visibility& visibility, MeshImages& images,
+                                     unsigned steps_done) const {
     std::vector<FaceEquations> equations(mesh_.faces.size());
     for (std::size_t i = 0; i < views.count(); ++i) {
       const std::vector<std::size_t> partners = partners_of(i);
@@ -146,8 +143,16 @@ class Refinement {
         reference.add({*other, source.grey, source.mask, s}, i, visibility);
       }
       reference.finish(equations);
+      tell(steps_done, i + 1);
     }
     return equations;
+  }
+
+  // `views_done`: in the step after `steps_done`.
+  void tell(unsigned steps_done, std::size_t views_done) const {
+    const std::size_t total = options_.scales * kLeastSteps * views_.size();
+    // Whether a resolution takes more steps than the least number is not known before.
+    if (progress_) progress_(std::min(steps_done * views_.size() + views_done, total), total);
   }
 
   // Moves the vertices. Returns the median displacement of measured vertices.
@@ -167,7 +172,7 @@ class Refinement {
     return median_of(std::move(moved));
   }
 
-  std::vector<float> offsets_of_measured() {
+  std::vector<float> distances_of_measured() {
     std::vector<float> moved;
     for (std::size_t v = 0; v < first_.size(); ++v)
       if (information_[v] > 0) moved.push_back((mesh_.vertices[v] - first_[v]).norm());

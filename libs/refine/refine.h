@@ -12,7 +12,8 @@
 //
 //       sum over pairs and pixels of w (e + sum_k g_k t_k)^2
 //     + sum over vertices of a_v (t_v + o_v)^2
-//     + smoothness * integral of s (curvature of the displaced surface)^2.
+//     + smoothness * integral of s (curvature of the displaced surface)^2
+//     + the squares of the slopes between displacements of neighbours (system.h).
 //
 // w: the inverse of the variance of the residuals in the window, so that occluded and otherwise
 // different windows count little. o_v: the distance that the vertex has come from its first
@@ -85,8 +86,9 @@ struct Report {
   double moved = 0;
 };
 
-// Refines `mesh`. Vertices that no pair measures stay, except near measured ones, where the surface
-// stays smooth. A vertex that splitting adds has the mean colour of its edge.
+// Refines `mesh`. Folds narrower than the noise are flattened first (displace.h). Then, vertices
+// that no pair measures stay, except near measured ones, where the surface stays smooth. Faces may
+// intersect each other afterwards. A vertex that splitting adds has the mean colour of its edge.
 //
 // Error if the mesh has no faces, a face has an index out of range, a coordinate is not finite, no
 // two views see the same surface, or max_bytes is not enough. The result does not depend on the

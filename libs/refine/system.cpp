@@ -9,7 +9,10 @@
 namespace axial::refine {
 namespace {
 
-constexpr double kSharp = 0.03;  // |b| / e at which the weight of bending is one half
+constexpr double kSharp = 0.1;  // |b| / e at which the weight of bending is one half
+// The expected difference of the displacements of two neighbours, per distance; and the variance
+// of residuals that depend on each other (see anchor.cpp), relative to that of independent ones.
+constexpr double kSlope = 0.2, kDependentResiduals = 9;
 // Added to the diagonal, relative to it: an eigenvalue is never zero.
 constexpr double kDamping = 1e-3;
 constexpr unsigned kMaxIterations = 100;
@@ -43,9 +46,11 @@ System::System(const Mesh& mesh, const Topology& topology, const Shape& shape,
       right_(mesh.vertices.size()),
       bending_weight_(mesh.vertices.size()),
       anchor_(mesh.vertices.size()),
+      stiffness_(mesh.vertices.size()),
       off_diagonal_(topology.neighbours.item.size()),
       cosine_(topology.neighbours.item.size()) {
   for_each_item(right_.size(), [&](std::size_t v) { gather(v, equations); });
+  for_each_item(right_.size(), [&](std::size_t v) { add_slopes(v); });
   for_each_item(right_.size(), [&](std::size_t v) { weigh_bending(v, smoothness); });
   add_bending_of_mesh();
 }
@@ -71,6 +76,20 @@ void System::gather(std::size_t v, std::span<const FaceEquations> equations) {
         else
           off_diagonal_[edge_to(v, face[j])] += equations[f].matrix[kEntry[k][j]];
     }
+  }
+}
+
+double System::slope_weight(std::size_t v, std::uint32_t neighbour) const {
+  const double squared = (mesh_.vertices[neighbour] - mesh_.vertices[v]).squaredNorm();
+  const bool measured = diagonal_[v] > 0 || diagonal_[neighbour] > 0;
+  return measured && squared > 0 ? kDependentResiduals / (kSlope * kSlope * squared) : 0;
+}
+
+void System::add_slopes(std::size_t v) {
+  for (std::size_t e = first(v); e < last(v); ++e) {
+    const double weight = slope_weight(v, topology_.neighbours.item[e]);
+    stiffness_[v] += weight;
+    off_diagonal_[e] -= static_cast<float>(weight);
   }
 }
 
@@ -103,6 +122,8 @@ void System::add_anchor(std::span<const double> weight, std::span<const float> o
   for_each_item(right_.size(), [&](std::size_t v) {
     anchor_[v] = weight[v];
     right_[v] -= weight[v] * offset[v];
+    for (const std::uint32_t n : topology_.neighbours.of(v))
+      right_[v] -= slope_weight(v, n) * (offset[v] - offset[n]);
   });
 }
 
@@ -128,7 +149,7 @@ System::Vector System::times(const Vector& t) const {
     if (bending_weight_[v] > 0) bending[v] = bending_weight_[v] * bend(v, t);
   });
   for_each_item(t.size(), [&](std::size_t v) {
-    double sum = ((1 + kDamping) * diagonal_[v] + anchor_[v]) * t[v];
+    double sum = ((1 + kDamping) * diagonal_[v] + anchor_[v] + stiffness_[v]) * t[v];
     for (std::size_t e = first(v); e < last(v); ++e)
       sum += off_diagonal_[e] * t[topology_.neighbours.item[e]];
     result[v] = sum + bend_transposed(v, bending);
@@ -139,7 +160,7 @@ System::Vector System::times(const Vector& t) const {
 System::Vector System::preconditioner() const {
   Vector inverse(right_.size());
   for_each_item(inverse.size(), [&](std::size_t v) {
-    double sum = (1 + kDamping) * diagonal_[v] + anchor_[v] + bending_weight_[v];
+    double sum = (1 + kDamping) * diagonal_[v] + anchor_[v] + stiffness_[v] + bending_weight_[v];
     for (std::size_t e = first(v); e < last(v); ++e) {
       const std::uint32_t n = topology_.neighbours.item[e];
       const double share = cosine_[e] / degree(n);

@@ -26,7 +26,8 @@ class System {
   // The sum of w g^2 of every vertex; zero for a vertex that is not measured.
   std::vector<double> information() const { return diagonal_; }
 
-  // Adds weight * (displacement + offset)^2 to the sum that is minimised. Call it at most once.
+  // Adds weight * (displacement + offset)^2 to the sum that is minimised, and counts the slopes of
+  // displacement + offset. Call it at most once.
   void add_anchor(std::span<const double> weight, std::span<const float> offset);
 
   // The displacement of every vertex [mesh units], by conjugate gradients with the diagonal as
@@ -44,6 +45,8 @@ class System {
   double bend(std::size_t v, const Vector& t) const;
   double bend_transposed(std::size_t v, const Vector& bending) const;
   void gather(std::size_t v, std::span<const FaceEquations> equations);
+  double slope_weight(std::size_t v, std::uint32_t neighbour) const;
+  void add_slopes(std::size_t v);
   void weigh_bending(std::size_t v, double smoothness);
   void add_bending_of_mesh();
   Vector times(const Vector& t) const;
@@ -53,6 +56,7 @@ class System {
   const Topology& topology_;
   const Shape& shape_;
   Vector diagonal_, right_, bending_weight_, anchor_;
+  Vector stiffness_;                          // sum of the slope weights of every vertex
   std::vector<float> off_diagonal_, cosine_;  // of every neighbour of every vertex
 };
 

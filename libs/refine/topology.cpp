@@ -34,6 +34,22 @@ void gather_corners(const Mesh& mesh, const Lists& faces, std::size_t vertex,
   std::sort(corners.begin(), corners.end());
 }
 
+// The mean normals of each vertex and its neighbours.
+std::vector<Eigen::Vector3f> mean_normals(std::span<const Eigen::Vector3f> normals,
+                                          const Topology& topology) {
+  std::vector<Eigen::Vector3f> result(normals.size());
+  parallel_for(
+      normals.size(),
+      [&](std::size_t v) {
+        Eigen::Vector3f sum = normals[v];
+        for (const std::uint32_t n : topology.neighbours.of(v)) sum += normals[n];
+        const float norm = sum.norm();
+        result[v] = norm > 0 ? Eigen::Vector3f(sum / norm) : Eigen::Vector3f::Zero();
+      },
+      kPointGrain);
+  return result;
+}
+
 }  // namespace
 
 Topology topology_of(const Mesh& mesh) {
@@ -84,6 +100,7 @@ Shape shape_of(const Mesh& mesh, const Topology& topology) {
             neighbours.empty() ? 0 : std::sqrt(squared / static_cast<float>(neighbours.size()));
       },
       kPointGrain);
+  shape.normals = mean_normals(shape.normals, topology);
   return shape;
 }
 

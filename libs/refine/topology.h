@@ -29,9 +29,11 @@ struct Topology {
 Topology topology_of(const Mesh& mesh);
 
 struct Shape {
-  std::vector<Eigen::Vector3f> normals;  // of vertices, unit length; zero without a face of area
-  std::vector<float> edge;               // root of the mean squared length of the vertex's edges
-  std::vector<float> area;               // a third of the area of the vertex's faces
+  // Mean normals of every vertex and its neighbours, of unit length; zero without a face of area.
+  // Neighbours have similar normals, so that vertices that move along them do not cross each other.
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<float> edge;  // root of the mean squared length of the vertex's edges
+  std::vector<float> area;  // a third of the area of the vertex's faces
 };
 
 Shape shape_of(const Mesh& mesh, const Topology& topology);

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh of the textured scene (support/textured_scene.h), and photographs of the scene.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "refine/refine.h"
+#include "support/textured_scene.h"
+
+namespace axial::test {
+
+enum class Optics { pinhole, distorted, flat_port };
+
+inline CameraModel camera_behind(Optics optics) {
+  CameraModel model;
+  model.width = 200, model.height = 150;
+  model.lens = {170, 171, 99, 75};
+  if (optics == Optics::distorted) model.distortion.emplace().above = {1, -0.1, 0.02, 0, 0};
+  if (optics == Optics::flat_port) {
+    refractive::FlatPort<double> port;
+    port.normal = Eigen::Vector3d(0.03, -0.02, 1).normalized();
+    port.distance = 0.03;
+    port.thickness = 0.01;
+    port.n_air = 1, port.n_glass = 1.5, port.n_water = 1.333;
+    model.port = port;
+  }
+  return model;
+}
+
+class PhotographedMesh {
+ public:
+  explicit PhotographedMesh(Optics optics = Optics::pinhole) {
+    for (const double x : {-0.25, 0.05, 0.3})
+      for (const double y : {-0.15, 0.2}) {
+        refine::View view{camera_behind(optics), {}};
+        view.pose.centre = {x, y, 0.4};
+        views.push_back(view);
+        pictures.push_back({render(scene, view.camera, view.pose).image, {}});
+      }
+  }
+
+  // The height of the surface, downwards, below (x, y).
+  double height(double x, double y) const { return scene.depth({x, y, 0}, {0, 0, 1}); }
+
+  // A grid of vertices on the surface, with noise of the standard deviation `noise` [m].
+  Mesh mesh(double noise, double spacing = 0.015) const {
+    Mesh result;
+    const int count = static_cast<int>(1.1 / spacing);
+    for (int row = 0; row <= count; ++row)
+      for (int column = 0; column <= count; ++column) {
+        const double x = -0.55 + spacing * column, y = -0.55 + spacing * row;
+        const double z = height(x, y) + noise * normal(result.vertices.size());
+        result.vertices.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+      }
+    const auto at = [&](int row, int column) {
+      return static_cast<std::uint32_t>(row * (count + 1) + column);
+    };
+    for (int row = 0; row < count; ++row)
+      for (int column = 0; column < count; ++column) {
+        // Seen from above, where z is smaller, the corners are counter-clockwise.
+        result.faces.push_back({at(row, column), at(row + 1, column + 1), at(row, column + 1)});
+        result.faces.push_back({at(row, column), at(row + 1, column), at(row + 1, column + 1)});
+      }
+    return result;
+  }
+
+  // The median height of the vertices above or below the true surface [m], away from the border.
+  double error(const Mesh& mesh) const { return median_error(mesh.vertices); }
+
+  // The same of the centres of the faces.
+  double error_of_faces(const Mesh& mesh) const {
+    std::vector<Eigen::Vector3f> centres;
+    for (const auto& [a, b, c] : mesh.faces)
+      centres.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
+    return median_error(centres);
+  }
+
+  refine::Report refine(Mesh& mesh, const refine::Options& options = {}) const {
+    return refine::refine(
+        mesh, views, [&](std::size_t i) { return pictures[i]; }, options);
+  }
+
+  TexturedScene scene{.cell = 0.025};
+  std::vector<refine::View> views;
+  std::vector<refine::Picture> pictures;
+
+ private:
+  double median_error(std::span<const Eigen::Vector3f> points) const {
+    std::vector<double> errors;
+    for (const Eigen::Vector3f& x : points)
+      if (std::abs(x.x()) < 0.4f && std::abs(x.y()) < 0.4f)
+        errors.push_back(std::abs(x.z() - height(x.x(), x.y())));
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    return *middle;
+  }
+
+  // A standard normal number that depends on `key`, by the method of Box and Muller.
+  static double normal(std::uint64_t key) {
+    const double a = 1 - unit_float(scramble(2 * key + 1)), b = unit_float(scramble(2 * key + 2));
+    return std::sqrt(-2 * std::log(std::max(a, 1e-9))) * std::cos(2 * M_PI * b);
+  }
+};
+
+}  // namespace axial::test
