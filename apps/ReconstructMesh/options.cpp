@@ -110,6 +110,15 @@ void check_values(const Options& options, const Raw& raw) {
     fail("--export-type {}: must be one of ply, obj", raw.export_type);
 }
 
+// The extension .obj chooses the format if --export-type is not given. Other extensions of meshes
+// and scenes are replaced.
+fs::path mesh_file(fs::path path, std::string type, bool type_given) {
+  const std::string extension = path.extension().string();
+  if (!type_given && extension == ".obj") type = "obj";
+  if (extension == ".mvs" || extension == ".ply" || extension == ".obj") path.replace_extension();
+  return path += "." + type;
+}
+
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   options.scene = io::scene_files(raw.scene, raw.input, common);
@@ -119,7 +128,7 @@ void take_paths(const Raw& raw, Options& options) {
   options.output = in_working_folder(common, raw.output);
   if (options.output.empty())
     options.output = scene.parent_path() / (scene.stem().string() + "_mesh");
-  options.output.replace_extension(raw.export_type);
+  options.output = mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
 }
 
 // Warns of valid options that have no effect.

@@ -76,6 +76,12 @@ class Mesh(Scene):
         for a, b in zip(points, ply.vertices, strict=True):
             self.assertEqual(struct.pack("<3f", *a), struct.pack("<3f", *b))
 
+    def test_the_name_of_the_output_chooses_the_format(self):
+        folder = self.mesh("air", "-o", "a.obj")
+        self.assertTrue(read(os.path.join(folder, "a.obj")).startswith(b"v "))
+        folder = self.mesh("air", "-o", "scan.v2")
+        self.assertTrue(read(os.path.join(folder, "scan.v2.ply")).startswith(b"ply"))
+
     def test_without_a_cloud_the_points_of_the_scene_are_meshed(self):
         folder = self.copy("air", "scene_dense.ply")
         said = self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder).stdout
