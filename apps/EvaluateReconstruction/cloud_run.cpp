@@ -313,9 +313,10 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
   if (mesh) report.update(evaluate::to_json(*mesh));
+  const evaluate::CloudEvaluation& evaluation = result;  // a lambda cannot capture a binding
   report.update(naming(options.input, [&] {
     return report_parts(options,
-                        {colored.positions, input.uncertainty, truth, surface, views, result});
+                        {colored.positions, input.uncertainty, truth, surface, views, evaluation});
   }));
   return report;
 }

@@ -37,7 +37,7 @@ std::optional<Plane> random_plane(const Points& samples, std::size_t trial,
     const std::uint64_t bits = scramble(scramble(scramble(options.seed) ^ trial) + k);
     return samples[bits % samples.size()];
   };
-  const Eigen::Vector3d a = pick(0);
+  const Eigen::Vector3d& a = pick(0);
   const Eigen::Vector3d normal = (pick(1) - a).cross(pick(2) - a);
   if (!(normal.norm() > 0)) return {};
   Plane plane{normal.normalized(), 0};

@@ -13,7 +13,7 @@ namespace {
 // Without `volatile`, GCC 12 removes the conversion of two neighbouring coordinates to float and
 // back (with -O3 it makes one vector conversion of them, which it takes for none).
 double rounded_to_float(double x) {
-  const volatile float rounded = static_cast<float>(x);
+  const volatile auto rounded = static_cast<float>(x);
   return static_cast<double>(rounded);
 }
 
@@ -45,7 +45,7 @@ Mesh from_halfedges(HalfedgeMesh& mesh) {
   result.vertices.reserve(mesh.number_of_vertices());
   result.faces.reserve(mesh.number_of_faces());
   for (const auto vertex : mesh.vertices())
-    result.vertices.push_back(position(mesh, vertex).cast<float>());
+    result.vertices.emplace_back(position(mesh, vertex).cast<float>());
   for (const auto face : mesh.faces()) {
     std::array<std::uint32_t, 3> corners{};
     std::size_t k = 0;

@@ -56,7 +56,7 @@ class Merger {
     for (const std::uint32_t k : neighbours(i, 2 * limit_ / sharpest))
       if (is_near(i, k)) absorb(i, k);
     absorb(i, i);
-    result.positions.push_back(cloud_.positions[i] + sum_ / weights_);
+    result.positions.emplace_back(cloud_.positions[i] + sum_ / weights_);
     result.pixel_widths.push_back(1 / sharpest);
     for (const auto& [view, weight] : views_) {
       result.view_images.push_back(view);

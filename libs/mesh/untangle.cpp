@@ -58,8 +58,9 @@ std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> fa
 void smooth_around(HalfedgeMesh& mesh, const std::vector<Face>& faces) {
   const std::vector<Vertex> corners = corners_of(mesh, faces);
   std::vector<Eigen::Vector3d> moved;
+  moved.reserve(corners.size());
   for (const Vertex vertex : corners)
-    moved.push_back(0.5 * (position(mesh, vertex) + mean_of_neighbours(mesh, vertex)));
+    moved.emplace_back(0.5 * (position(mesh, vertex) + mean_of_neighbours(mesh, vertex)));
   for (std::size_t i = 0; i < corners.size(); ++i) move_to(mesh, corners[i], moved[i]);
 }
 

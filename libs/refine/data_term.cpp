@@ -110,8 +110,8 @@ void ReferenceView::match_vertices(const Source& source, std::size_t reference,
 }
 
 void ReferenceView::warp_row(const Source& source, int y) {
-  const float right = static_cast<float>(source.picture.cols - 2);
-  const float bottom = static_cast<float>(source.picture.rows - 2);
+  const auto right = static_cast<float>(source.picture.cols - 2);
+  const auto bottom = static_cast<float>(source.picture.rows - 2);
   for (int x = 0; x < warped_.cols; ++x) {
     warped_(y, x) = kNone;
     const std::uint32_t f = raster_.face(x, y);

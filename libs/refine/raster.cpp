@@ -38,7 +38,7 @@ void draw_face(const VertexImage& a, const VertexImage& b, const VertexImage& c,
       const double px = static_cast<double>(x) - a.x, py = static_cast<double>(y) - a.y;
       const double b1 = (px * acy - py * acx) / twice, b2 = (abx * py - aby * px) / twice;
       if (b1 < -kEdgeTolerance || b2 < -kEdgeTolerance || b1 + b2 > 1 + kEdgeTolerance) continue;
-      const float depth =
+      const auto depth =
           static_cast<float>(a.depth + b1 * (b.depth - a.depth) + b2 * (c.depth - a.depth));
       if (depth < raster.depth(y, x)) {
         raster.depth(y, x) = depth;
