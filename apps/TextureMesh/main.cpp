@@ -10,6 +10,7 @@
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
+#include "io/openmvs/point_source.h"
 #include "photographs.h"
 #include "settings.h"
 
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  Mesh mesh = io::read_mesh_ply(settings.mesh, frame);
+  Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
            mesh.faces.size());

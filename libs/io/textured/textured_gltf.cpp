@@ -90,16 +90,20 @@ class GltfModel {
     std::ostringstream out;
     tinygltf::TinyGLTF writer;
     tinygltf::Buffer& held = model_.buffers.emplace_back();
-    held.data.assign(bytes_.begin(), bytes_.end());
     if (binary) {
+      constexpr std::uint64_t kMostBytes = (1ull << 32) - (1ull << 26);  // with room for the text
+      if (bytes_.size() > kMostBytes)
+        fail("a GLB holds at most 4 GiB, but mesh and textures have {} MB; glTF has no such limit",
+             bytes_.size() / 1'000'000);
+      held.data.assign(bytes_.begin(), bytes_.end());
       std::string().swap(bytes_);
-      writer.WriteGltfSceneToStream(&model_, out, false, true);
+      if (!writer.WriteGltfSceneToStream(&model_, out, false, true)) fail("the glTF writer failed");
       return std::move(out).str();
     }
     // The writer puts a buffer into the text as base64. With a byte in its place, the text is that
     // of a short buffer, whose length and address are then replaced.
     held.data.assign(1, 0);
-    writer.WriteGltfSceneToStream(&model_, out, false, false);
+    if (!writer.WriteGltfSceneToStream(&model_, out, false, false)) fail("the glTF writer failed");
     std::string json = std::move(out).str();
     const std::string begin = "\"buffers\":[{\"byteLength\":1,\"uri\":\"";
     const std::size_t at = json.find(begin);

@@ -24,19 +24,20 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
                                                   TexturedFormat format, std::size_t textures);
 
 // Writes the mesh and its textures. Either all files are written, or none is.
-//   - PLY: comments TextureFile; for each face texcoord, a list of u v of its corners, and
-//   texnumber
-//     if there is more than one texture. u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
+//   - PLY: comments TextureFile; for each face texcoord, a list of u v of its corners, and the
+//     index texnumber if there is more than one texture. u = (x + 0.5) / width,
+//     v = 1 - (y + 0.5) / height.
 //   - OBJ: the same u and v, each pair once for each vertex and texture; a group and a material
 //     "material_K" for each texture.
-//   - glTF: a primitive for each texture, with vertices and bounds of its own, u = (x + 0.5) /
-//   width
-//     and v = (y + 0.5) / height; materials without lighting (KHR_materials_unlit). The axes are
-//     those of the scene. GLB is the same in one file.
+//   - glTF: a primitive for each texture, with vertices and bounds of its own,
+//     u = (x + 0.5) / width and v = (y + 0.5) / height; materials without lighting
+//     (KHR_materials_unlit). The axes are those of the scene. GLB is the same in one file, of at
+//     most 4 GiB.
 // Positions are written in `frame`, as float. If that is not the world, PLY has the comment
 // geo_offset, OBJ a comment "# geo_offset X Y Z", and glTF the same key in the extras of its node.
 // Error if uv and texture_of do not have an entry for each face, if an index is out of range or a
-// coordinate is not finite, and if a file cannot be written.
+// coordinate is not finite, if a GLB would be larger than
+// 4 GiB, and if a file cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
 
