@@ -79,7 +79,7 @@ Shares share_out_memory(const Options& options, const densify::Project& project)
   const std::uint64_t used = std::max(resident_memory(), densify::kProgramBytes) + decode;
   const std::uint64_t room = limit > used ? limit - used : 0;
   Shares shares;
-  shares.images = std::clamp<std::size_t>(room / 4 / std::max<std::uint64_t>(image, 1), 2,
+  shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
                                           std::max<std::size_t>(project.views.size(), 2));
   const std::uint64_t images = shares.images * image;
   shares.for_refinement = room > images ? room - images : 1;
