@@ -6,9 +6,8 @@
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
-#include "io/obj/mesh_obj.h"
+#include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
-#include "io/ply/ply.h"
 #include "options.h"
 #include "scene/region.h"
 
@@ -74,10 +73,7 @@ Mesh clean_given(const io::SceneWithCameras& scene, const Options& options) {
 }
 
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
-  if (file.extension() == ".obj")
-    io::write_mesh_obj(file, mesh, frame);
-  else
-    io::write_mesh_ply(file, mesh, {frame});
+  io::write_mesh(file, mesh, frame);
   log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
 

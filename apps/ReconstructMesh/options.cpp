@@ -8,6 +8,7 @@
 #include "base/not_built.h"
 #include "base/setting_names.h"
 #include "base/version.h"
+#include "io/obj/mesh_file.h"
 #include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
@@ -110,15 +111,6 @@ void check_values(const Options& options, const Raw& raw) {
     fail("--export-type {}: must be one of ply, obj", raw.export_type);
 }
 
-// The extension .obj chooses the format if --export-type is not given. Other extensions of meshes
-// and scenes are replaced.
-fs::path mesh_file(fs::path path, std::string type, bool type_given) {
-  const std::string extension = path.extension().string();
-  if (!type_given && extension == ".obj") type = "obj";
-  if (extension == ".mvs" || extension == ".ply" || extension == ".obj") path.replace_extension();
-  return path += "." + type;
-}
-
 void take_paths(const Raw& raw, Options& options) {
   const CommonOptions& common = options.parsed.common;
   options.scene = io::scene_files(raw.scene, raw.input, common);
@@ -128,7 +120,8 @@ void take_paths(const Raw& raw, Options& options) {
   options.output = in_working_folder(common, raw.output);
   if (options.output.empty())
     options.output = scene.parent_path() / (scene.stem().string() + "_mesh");
-  options.output = mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
+  options.output =
+      io::mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
 }
 
 // Warns of valid options that have no effect.

@@ -12,9 +12,8 @@
 #include "densify/memory_limit.h"
 #include "densify/project.h"
 #include "io/cameras/geo_offset.h"
-#include "io/obj/mesh_obj.h"
+#include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
-#include "io/ply/ply.h"
 #include "options.h"
 
 namespace axial::apps {
@@ -106,10 +105,7 @@ void refine_mesh(Mesh& mesh, const densify::Project& project, const Options& opt
 }
 
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
-  if (file.extension() == ".obj")
-    io::write_mesh_obj(file, mesh, frame);
-  else
-    io::write_mesh_ply(file, mesh, {frame});
+  io::write_mesh(file, mesh, frame);
   log_info("{}: {} vertices, {} faces", file.string(), mesh.vertices.size(), mesh.faces.size());
 }
 

@@ -9,6 +9,7 @@
 #include "base/setting_names.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
+#include "io/obj/mesh_file.h"
 #include "io/openmvs/scene_options.h"
 
 namespace axial::apps {
@@ -146,7 +147,8 @@ void take_paths(const Raw& raw, Options& options) {
   options.output = in_working_folder(common, raw.output);
   if (options.output.empty())
     options.output = scene.input.parent_path() / (scene.input.stem().string() + "_refine");
-  options.output.replace_extension(raw.export_type);
+  options.output =
+      io::mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
   scene.output = std::filesystem::path(options.output).replace_extension(".mvs");
 }
 

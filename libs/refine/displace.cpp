@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 
@@ -38,7 +39,7 @@ bool shorten(const Mesh& mesh, const Topology& topology,
       [&](std::size_t v) {
         for (const std::uint32_t f : topology.faces.of(v))
           if (turned[f]) {
-            steps[v] *= to_zero ? 0.0f : 0.5f;
+            steps[v] = to_zero ? 0 : 0.5f * steps[v];
             return;
           }
       },
@@ -56,7 +57,7 @@ void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
   std::vector<float> steps(displacement.begin(), displacement.end());
   for (std::size_t v = 0; v < steps.size(); ++v) {
     const float longest = kLongestStep * shape.edge[v];
-    steps[v] = std::clamp(steps[v], -longest, longest);
+    steps[v] = std::isfinite(steps[v]) ? std::clamp(steps[v], -longest, longest) : 0;
   }
   move_to(mesh, from, shape, steps);
   for (int k = 0; k < kShortenings; ++k) {
@@ -76,7 +77,7 @@ void flatten_folds(Mesh& mesh, const Topology& topology) {
           const Eigen::Vector3f normal = face_vector(mesh, mesh.faces[f]);
           Eigen::Vector3f around = Eigen::Vector3f::Zero();
           for (const std::uint32_t v : mesh.faces[f]) around += shape.normals[v];
-          folded[f] = !(normal.dot(around) > 0);
+          folded[f] = normal.dot(around) < 0;
         },
         kPointGrain);
     const std::vector<Eigen::Vector3f> from = mesh.vertices;

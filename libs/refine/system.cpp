@@ -80,16 +80,20 @@ void System::gather(std::size_t v, std::span<const FaceEquations> equations) {
 }
 
 double System::slope_weight(std::size_t v, std::uint32_t neighbour) const {
-  const double squared = (mesh_.vertices[neighbour] - mesh_.vertices[v]).squaredNorm();
+  // Vertices that nearly coincide would count more than a float can hold.
+  const double least = 1e-3 * static_cast<double>(std::min(shape_.edge[v], shape_.edge[neighbour]));
+  const double squared =
+      std::max(static_cast<double>((mesh_.vertices[neighbour] - mesh_.vertices[v]).squaredNorm()),
+               least * least);
   const bool measured = diagonal_[v] > 0 || diagonal_[neighbour] > 0;
   return measured && squared > 0 ? kDependentResiduals / (kSlope * kSlope * squared) : 0;
 }
 
 void System::add_slopes(std::size_t v) {
   for (std::size_t e = first(v); e < last(v); ++e) {
-    const double weight = slope_weight(v, topology_.neighbours.item[e]);
-    stiffness_[v] += weight;
-    off_diagonal_[e] -= static_cast<float>(weight);
+    const auto weight = static_cast<float>(slope_weight(v, topology_.neighbours.item[e]));
+    stiffness_[v] += static_cast<double>(weight);
+    off_diagonal_[e] -= weight;
   }
 }
 
@@ -181,7 +185,9 @@ std::vector<float> System::solve() const {
   const double enough = kTolerance * kTolerance * product;
   for (unsigned k = 0; k < kMaxIterations && product > enough; ++k) {
     const Vector image = times(direction);
-    const double step = product / dot(direction, image);
+    const double curvature = dot(direction, image);
+    if (!(curvature > 0)) break;
+    const double step = product / curvature;
     for_each_item(count, [&](std::size_t i) {
       t[i] += step * direction[i];
       residual[i] -= step * image[i];

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "refine/memory.h"
 #include "refine/photographed_mesh.h"
 #include "support/error_of.h"
 
@@ -108,7 +109,11 @@ TEST(Refine, TheResultDoesNotDependOnThreadsAndMemory) {
   }
   const ThreadLimit limit(2);
   Options options;
-  options.max_bytes = 12'000'000;
+  // Enough for the images of the vertices of two views, of six.
+  const Sizes sizes{one.vertices.size(), one.faces.size(), scene.views.size(), 200 * 150};
+  options.max_bytes = bytes_needed(sizes, 2);
+  ASSERT_EQ(views_to_keep(sizes, options), 2u);
+  ASSERT_GT(sizes.views, 2u);
   scene.refine(two, options);
   EXPECT_TRUE(one.vertices == two.vertices);
   options.max_bytes = 1'000'000;
