@@ -67,7 +67,7 @@ class Refined(Scene):
             self.assertLess(refined, 0.6 * start, medium)
             self.assertIn("vertices measured in", said)
         # The last folder is under water. Without the port, the photographs contradict each other.
-        self.refine(folder, "--ignore-ports", "1", result="ignored.ply")
+        self.refine(folder, "--camera-model", "pinhole", result="ignored.ply")
         self.assertGreater(self.error("water", os.path.join(folder, "ignored.ply")), 1.5 * refined)
 
     def test_threads_and_memory_do_not_change_the_bytes(self):
@@ -129,7 +129,7 @@ class Refined(Scene):
             self.refuses("wrong.ply", *command)
         self.refuses("absent.ply", *command[:-1], "absent.ply")
         self.refuses("--scale-step 1", *command, "--scale-step", "1")
-        self.refuses("--refractive", *command, "--refractive", "--ignore-ports", "1")
+        self.refuses("--refractive", *command, "--refractive", "--camera-model", "pinhole")
         self.refuses("housing file not found", *command, "--refractive")
         self.refuses("--output-file", *command, "-o", "wrong.ply")
 
