@@ -10,13 +10,13 @@
 
 namespace axial::pose {
 
-// A known length between two camera centres (`first` and `second` are indices of images) or between
-// two points (they are sources of points, BundlePoint::source).
+// A known length between two camera centres or between two points.
 struct KnownDistance {
   enum class Between { images, points } between = Between::images;
-  std::size_t first = 0, second = 0;  // indices of images, or sources of points
-  double metres = 0;                  // [m], above 0
-  double sigma = 0;                   // [m], above 0
+  // Between images: indices into Bundle::images. Between points: values of BundlePoint::source.
+  std::size_t first = 0, second = 0;
+  double metres = 0;  // [m], above 0
+  double sigma = 0;   // [m], above 0
 };
 
 // A known camera centre.
@@ -35,8 +35,9 @@ struct Unknowns {
 };
 
 struct AdjustOptions : Unknowns {  // for all cameras
-  // The unknowns of cameras behind domes, where they differ from the unknowns of all cameras: the
-  // first three numbers of a dome and of a flat port have different meanings.
+  // The unknowns of cameras behind domes. Empty: cameras behind domes have the same unknowns as
+  // all other cameras. The first three numbers of a dome and of a flat port have different
+  // meanings.
   std::optional<Unknowns> of_domes;
 
   // The unknowns that apply to `camera`.
@@ -55,35 +56,47 @@ struct AdjustOptions : Unknowns {  // for all cameras
 struct AdjustReport {
   bool converged = false;
   int iterations = 0;
-  double initial_cost = 0, final_cost = 0;  // halves of the sums of squares [pixel_sigma^2]
+  double initial_cost = 0, final_cost = 0;  // half the sum of squares, after the Huber loss
 };
 
 // Refractive bundle adjustment: changes the poses, the points and the free numbers of the cameras
-// so that the squared reprojection errors (exact projection, Huber loss) are least. The first image
-// with observations stays where it is, unless three known positions, known points or known poses
-// fix the model's place. Runs in one thread, because the sums of several threads would depend on
-// their order. Error for a free number that a camera in air does not have, for a length or standard
-// deviation that is not positive, for a bundle without observations, and if the solver fails.
+// to minimize the cost. The cost is the sum of the squared reprojection errors of the exact
+// projection (with Huber loss, in units of `pixel_sigma`) and of the squared deviations from
+// known distances, positions and measured numbers (in their standard deviations).
+//
+// The pose of the first image with observations stays constant, unless three known positions,
+// known points or known poses fix the model's place. The solver runs in one thread, because sums
+// over several threads would depend on the order of the threads.
+//
+// Throws an Error if a number of a port is free for a camera in air, if a known length, a
+// standard deviation of known values or `pixel_sigma` is not positive, if a known distance names
+// a point that the bundle does not have, if the bundle has no observations, or if the solver
+// fails.
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
 
-// Standard deviation of the observations [px], estimated from their reprojection errors: the sum of
-// squares divided by the number of residuals minus the number of unknowns.
+// Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
+// be the number of observations, S the sum of their squared errors, and U the number of unknowns.
+// The result is sqrt(S / max(1, 2 N - U)), and at least 1e-9 px. Infinite errors count with the
+// mean square of the finite errors.
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviations of the results of bundle adjustment.
 struct Uncertainty {
   double pixel_sigma = 0;  // [px] of the observations, from their residuals
-  // Of the free numbers, one vector for each camera. Infinite where the observations do not
-  // determine a number; 0 for numbers that are not free.
+  // One vector for each camera, in the units of housing_change.h. The standard deviation of a
+  // free number is infinite if the observations do not determine the number. Numbers that are not
+  // free have 0.
   std::vector<HousingChange<double>> camera_sigmas;
-  // Relative standard deviation of the scale: of the distance from the first image with
-  // observations to the image farthest from it. Infinite where nothing determines the scale, for
-  // example for cameras in air; 0 where poses are known.
+  // The relative standard deviation of the scale. It is computed for one length: the distance
+  // between the first image with observations and the observed image farthest from it. Infinite
+  // if nothing determines the scale, for example for cameras in air. 0 if poses are known.
   double scale_sigma = 0;
 };
 
-// First-order standard deviations from the normal equations at the solution, with the points
-// eliminated. `bundle` is adjusted with the same `options`.
+// First-order standard deviations of the result of adjust(), from the normal equations with the
+// points eliminated. Precondition: adjust() was called for `bundle` with the same `options`. The
+// observations are weighted with their observed standard deviation and not with
+// `options.pixel_sigma`.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options);
 
 }  // namespace axial::pose

@@ -12,23 +12,26 @@
 
 namespace axial::pose {
 
-// Residual blocks: first one for each observation, in the bundle's order, then the known distances,
-// positions and numbers of cameras.
+// The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the
+// order of the bundle. The blocks of the known distances, of the known positions and of the
+// measured numbers of cameras follow.
 class AdjustProblem {
  public:
-  // Both arguments must outlive this. The bundle is not changed before write_back(). Error as
-  // adjust().
+  // Both arguments must outlive this object. The constructor does not change the bundle. Throws
+  // the errors of adjust() for invalid arguments.
   AdjustProblem(const Bundle& bundle, const AdjustOptions& options);
 
   ceres::Problem& problem() { return *problem_; }
 
-  // The parameter blocks under adjustment. Blocks that stay constant are left out. A point has 3
-  // numbers. Points with a known distance are among the camera blocks, because they depend on each
-  // other: the solver eliminates the point blocks, which must be independent.
+  // The parameter blocks that the solver changes. Constant blocks are left out. A point block has
+  // 3 numbers. The solver eliminates the blocks of point_blocks(), and no residual may depend on
+  // two of them. Points with a known distance to another point are therefore among
+  // camera_blocks().
   std::vector<double*> camera_blocks();  // images, changes of cameras, points with a known distance
   std::vector<double*> point_blocks();   // all other points
 
-  // The first image with observations. Its pose stays constant.
+  // The index of the first image with observations. Its pose is constant unless something else
+  // fixes the model's place (see adjust()).
   std::size_t anchor() const;
   bool is_observed(std::size_t image) const {
     return problem_->HasParameterBlock(poses_[image].data());

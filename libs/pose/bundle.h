@@ -16,7 +16,7 @@ namespace axial::pose {
 
 struct BundleCamera {
   HousedCamera measured;
-  // How far lens and port are from the measured ones.
+  // The difference between the present and the measured numbers of lens and port.
   HousingChange<double> change = HousingChange<double>::Zero();
 
   // The camera with the change applied.
@@ -48,7 +48,7 @@ struct Bundle {
   std::vector<Observation> observations;
 };
 
-// The cameras of the bundle as they are now.
+// The cameras of the bundle with their changes applied, in the same order.
 std::vector<PhotographCamera> cameras_now(const Bundle& bundle);
 
 // The index of the point whose source is `source`. Error if no point of the bundle has that source,
@@ -58,8 +58,9 @@ std::size_t point_of(const Bundle& bundle, std::size_t source);
 // The number of observations in each image.
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
-// Reprojection errors [px of the photograph] of all observations, in their order. Infinite where
-// light from the point does not reach the lens, or has no image (PhotographImage::visible).
+// The reprojection errors [px of the photograph] of all observations, in the order of the
+// observations. An error is infinite if the point has no image (PhotographImage::visible is
+// false).
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
 // The same errors, one list for each image; the list is empty for an image without observations.

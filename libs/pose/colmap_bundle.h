@@ -15,31 +15,37 @@ struct ColmapBundle {
   Bundle bundle;
   std::vector<io::ColmapCamera> lenses;  // per bundle camera: the lens in air; ids count from 1
   std::vector<std::string> ports;        // per bundle camera: the name of its port
-  std::size_t unseen = 0;                // observations left out: their lens has no direction there
+  std::size_t unseen = 0;                // observations left out, without a direction of the lens
 };
 
-// The bundle of the poses, points and tracks of `model`. The lenses of `model` are not used: each
-// camera gets the lens in air of `lenses` with its id, or the only one if `lenses` holds one,
-// behind its port of `housing`. Error for a camera without a lens, for a camera whose size differs
-// from its lens, for a lens of a model that is not supported, for a port that is not defined, and
-// for a camera behind a water surface.
+// Makes a bundle from the poses, points and tracks of `model`. The lenses of `model` are not
+// used. `lenses` holds lenses calibrated in air: if `lenses` has exactly one entry, all cameras
+// of `model` get this lens. Otherwise each camera gets the lens with its own id. `housing` gives
+// the port of each image. The bundle has one camera for each pair of lens and port that occurs.
+//
+// Throws an Error if a camera has no lens, if the image sizes of a camera and its lens differ, if
+// the model of a lens is not supported, if a port is not defined, or if a camera is behind a
+// water surface.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
-// With which cameras the poses of a model with ports were computed: the RMS reprojection error [px]
-// of its tracks with the cameras behind their ports, and with the same cameras in air. 0 where a
-// model has no tracks.
+// Two RMS reprojection errors [px] of the tracks of a model: with its cameras behind their ports,
+// and with the same cameras in air. The smaller error tells with which cameras the poses were
+// computed. Both are 0 if the model has no tracks.
 struct PortFit {
   double behind_ports = 0, in_air = 0;
 };
 PortFit port_fit(const io::ColmapModel& model);
 
-// `model` with the poses, points, tracks and mean reprojection errors of the bundle, its lenses in
-// air and its ports. Images without observations are left out.
+// Converts a bundle back. `model` is the model from which to_bundle() made the bundle. The result
+// has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one
+// camera for each camera of the bundle, with the lens in air and the port as they are now. Images
+// without observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
-// The ports of the bundle as they are now, by camera id. A port that several cameras share, and
-// that was adjusted, becomes one port for each camera.
+// The present ports of the bundle by camera id, where the ids are those of ColmapBundle::lenses.
+// `measured` is the housing from which the bundle was made. If several cameras share a port, each
+// of them with a change gets a port of its own.
 io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
 
 }  // namespace axial::pose

@@ -24,19 +24,25 @@ struct Sigmas {
 // itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// Sets the unknowns of `adjust` from `refine`, a comma-separated list of normal, distance, centre,
-// thickness, index and focal. Normal and distance apply to flat ports, centre to
-// domes, the other words to all cameras.
+// Sets the unknowns of `adjust` from `refine`, a comma-separated list of normal, distance,
+// centre, thickness, index and focal. Normal and distance apply to flat ports. Centre applies to
+// domes. The other words apply to all cameras.
 //
-// Error for an unknown word; for normal or distance without a flat port; for centre without a dome;
-// for any number of a port where some cameras are in air; for a negative standard deviation, or one
-// of a number that `refine` does not name; for a thickness without a standard deviation, since its
-// effect looks like that of the distance; for a distance of a flat port where neither its standard
-// deviation nor any length is known, since photographs show only the ratio of lengths.
+// Throws an Error in these cases:
+// - The list has an unknown word.
+// - Normal or distance is listed and there is no flat port, or centre and there is no dome.
+// - Any word other than focal is listed and some cameras are in air.
+// - A standard deviation is negative or not finite, or it is positive and its number is not
+//   listed.
+// - Thickness is listed without a positive standard deviation: its effect looks like that of the
+//   distance.
+// - Distance is listed without a positive standard deviation, and `adjust` has no known
+//   distances, positions, points or poses: photographs show only the ratio of lengths.
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
-// "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also names
-// the settings that make lengths known: "distances" and "poses_known" of AdjustOptions.
+// "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also
+// names "distances" and "poses_known", the settings of AdjustOptions that make lengths known.
+// `name_of` turns a name into the name that the user knows.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of = own_name);
 
@@ -54,8 +60,8 @@ struct FreeValue {
   double scale = 1;           // factor from the unit of housing_change.h to `unit`: 1000 for mm
 };
 
-// The numbers of `camera` under adjustment, with their standard deviations. `sigmas` as
-// Uncertainty::camera_sigmas.
+// The free numbers of `camera` with their present values and their standard deviations. `sigmas`:
+// the entry of Uncertainty::camera_sigmas for this camera.
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
                                    const AdjustOptions& options);
 

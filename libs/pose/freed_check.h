@@ -20,28 +20,36 @@ struct FreedNumber {
   double deviations = 0;                 // |found - stated| in standard deviations
 };
 
-// Of the numbers of lens and port that `options` does not leave free, the one that lowers the RMS
-// error most when it is adjusted. Only a decrease by 7 % or more, and by 0.02 px or more, counts: a
-// good lens calibration leaves smaller errors. Adjusts a bounded part of the refined bundle (40
-// images, 600 points) for up to 20 iterations for each number, with the model's lengths held.
+// Frees, in turn, the index of the water, the normal and the distance of flat ports or the centre
+// of domes, and the focal length. Numbers that `options` leaves free are skipped. The numbers of
+// a normal or of a centre are freed together. Returns the number with the smallest RMS error
+// after the adjustment. If several numbers were freed together, the result is the number that
+// changed most.
 //
-// A wrong port distance is found only if the scale was given. If refraction alone determined the
-// scale, poses at another scale fit as well.
+// A number counts only if freeing it lowers the RMS error by at least 7 % and by at least 0.02
+// px, and if it then differs from the stated value by more than 6 standard deviations. Errors of
+// a good lens calibration lower the RMS error by less.
 //
-// Empty if the stated numbers fit, if the bundle is too small, if its ports are not all flat or all
-// domes, or if an adjustment fails.
+// Each adjustment uses at most 40 images and 600 points of the refined bundle and runs for at
+// most 20 iterations. The model's scale is held. A wrong port distance is therefore found only if
+// the scale was given. If refraction alone determined the scale, the scale has adapted to the
+// wrong distance.
+//
+// Returns nothing if the stated numbers fit, if fewer than 3 images or 20 points are left, if the
+// ports are neither all flat nor all domes, or if an adjustment fails.
 std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options);
 
-// The warning that names the number. `scale_sigma`: the relative standard deviation of lengths that
-// the adjustment reports; infinite if it reports none. `name_of` names the setting "refine", the
-// list of numbers to adjust.
+// The warning that names the number. `scale_sigma`: the relative standard deviation of lengths
+// from the adjustment. If it is 0 or infinite, the warning does not mention lengths. `name_of`
+// gives the name of the setting "refine", the list of numbers to adjust.
 std::string warning_of(const FreedNumber& freed, double scale_sigma,
                        SettingNames name_of = own_name);
 
-// One line for each reason that dropped more than a quarter of the observations (observations that
-// repeat a point in an image do not count). Only large errors question the housing; few
-// observations in an image, or narrow angles, are properties of the survey.
+// One line for each reason that dropped more than a quarter of the observations. Observations
+// that repeat a point in an image are not counted. Only the line about large errors asks the user
+// to check the housing. Too few observations in an image and narrow angles are properties of the
+// survey.
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits);
 
 }  // namespace axial::pose

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The unknown numbers of a camera behind a port: the differences between lens and port and their
-// measured values.
+// The unknown numbers of a camera behind a port: the differences between the present numbers of
+// lens and port and their measured values.
 #pragma once
 
 #include <array>
@@ -11,10 +11,13 @@
 
 namespace axial::pose {
 
-// The numbers 0 to 2 of a flat port: tilts [rad] of the normal towards the two axes across it, and
-// distance [m]. Of a dome: its centre [m]. Of both: refractive index of the water (3) and thickness
-// of the glass [m] (4). Of all cameras, also in air: the logarithm of the factor of both focal
-// lengths (5).
+// The numbers of a change, by index:
+// - 0 to 2 of a flat port: the tilts of the normal [rad, for small tilts] towards the rows 0 and
+//   1 of axis_from_camera(measured normal), and the difference of the distance [m].
+// - 0 to 2 of a dome: the difference of the centre [m].
+// - 3: the difference of the refractive index of the water.
+// - 4: the difference of the thickness of the glass [m].
+// - 5: the logarithm of the factor of both focal lengths. Cameras in air have this number alone.
 inline constexpr int kHousingNumbers = 6;
 inline constexpr int kPortNumbers = 5;  // the first numbers belong to the port
 inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
@@ -61,11 +64,16 @@ refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& me
 // The camera with `change` applied to lens and port.
 HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change);
 
-// The derivative by the numbers of the port of the point at `lambda` [m] on the ray in water of the
-// in-air direction (u, v, 1), in the camera frame. `tangents`: (u, v). The image of a point is the
-// direction whose ray meets the point. The derivative of the tangents by the numbers is therefore
-// -d(tangents)/dX times this derivative (implicit function theorem). Only the ray, a closed form,
-// is differentiated, and no iteration. Zero without a port.
+// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, in the
+// camera frame. The ray is the refracted ray of the in-air direction (u, v, 1), with (u, v) =
+// `tangents`. Returns the derivative of X with respect to the numbers 0 to 4 of `change`, at
+// constant tangents and lambda. The port is `measured` with `change` applied. Without a port the
+// result is zero.
+//
+// Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
+// function theorem, the derivative of its tangents with respect to the numbers is -d(tangents)/dX
+// times the result. Only the ray, which has a closed form, is differentiated, and not the
+// iteration of the projection.
 Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
     const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
     const Eigen::Vector2d& tangents, double lambda);

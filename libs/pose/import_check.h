@@ -11,19 +11,21 @@
 
 namespace axial::pose {
 
-// A warning of one line if `model`, with its cameras behind the ports of `housing`, does not fit
-// its tracks or its photographs. Empty if everything fits or if the data cannot tell (port_check.h
-// says when tracks can tell). Triangulates a bounded sample of the points anew.
+// Returns a warning of one line if the cameras of `model`, behind the ports of `housing`, do not
+// fit the tracks or the photographs. Returns nothing if everything fits or if the data cannot
+// tell (port_check.h says when tracks can tell). The points of a bounded sample are triangulated
+// anew. The result is the same for any number of threads.
 //
-// Tracks that fit cameras in air may come from photographs in air. Then up to six photographs of
-// `image_folder` decide; with an empty path there is no warning. Tracks of a model that carries
-// ports itself always come from photographs taken through these ports. The line is the same for any
-// number of threads.
+// If the tracks fit cameras in air, they may come from photographs in air. Then up to six
+// photographs of `image_folder` decide, and an empty path gives no warning. Exception: the tracks
+// of a model that carries ports always come from photographs taken through these ports.
 //
-// Poses at too large a scale are not found here: their points move by about a pixel, and patches
-// hardly show that. The depth maps of DensifyPointCloud show it (depth/agreement.h).
+// Poses at too large a scale are not found here. They move the images of points by about a pixel,
+// and patches of photographs hardly show this movement. The depth maps of DensifyPointCloud show
+// it (depth/agreement.h).
 //
-// Throws nothing for files that cannot be read.
+// Throws no Error. An unsupported lens, an image whose rays do not reach its port, or a
+// photograph that cannot be read gives no warning.
 std::optional<std::string> import_warning(const io::ColmapModel& model, const io::Housing& housing,
                                           const std::filesystem::path& image_folder);
 

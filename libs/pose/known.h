@@ -9,10 +9,11 @@
 
 namespace axial::pose {
 
-// Why known lengths and positions of `options` cannot be used to determine the scale of the bundle:
-// one line for each reason, empty if there is none. A distance cannot be used if one of its ends
-// has no observations, or if no chain of points connects its ends. Positions cannot be used if
-// fewer than three belong to images with observations, or if these positions lie on one line.
+// Returns one line for each reason why known lengths or positions of `options` cannot be used to
+// determine the scale of the bundle. Empty if there is no reason. A distance cannot be used if
+// one of its ends has no observations, or if no chain of common points connects its ends.
+// Positions are checked only if an image with a known position has no observations. They cannot
+// be used if fewer than three remain, or if the remaining positions lie on one line.
 std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options);
 
 // The indices into `options.positions` of the positions whose images have no observations.

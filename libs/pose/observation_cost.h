@@ -13,20 +13,22 @@
 
 namespace axial::pose {
 
-// A pose relative to the pose it starts from: a rotation vector w [rad], applied after the start's
-// rotation R, and the camera centre C [m]. X_camera = exp([w]x) R (X - C).
+// The parameter block of a pose. The numbers 0 to 2 are a rotation vector w [rad], and the
+// numbers 3 to 5 are the camera centre C [m, world frame]. Let R be the rotation of the pose at
+// which the adjustment starts. A world point X has the camera coordinates exp([w]x) R (X - C).
 inline constexpr int kPoseNumbers = 6;
 using PoseNumbers = std::array<double, kPoseNumbers>;
 
-// The numbers of `start` itself (w = 0), and the pose with `numbers` relative to `start`.
+// numbers_of() returns the numbers of `start` itself, with w = 0. pose_with() returns the pose of
+// `numbers`, where R is the rotation of `start`.
 PoseNumbers numbers_of(const Pose& start);
 Pose pose_with(const Pose& start, const PoseNumbers& numbers);
 
 // The left Jacobian J of the rotation group: d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 
-// The cameras with the numbers that the solver has now. They are built once for each evaluation,
-// and not for each observation.
+// The cameras for the present values of the solver's parameter blocks. They are built once for
+// each evaluation point, and not for each observation.
 class CurrentCameras : public ceres::EvaluationCallback {
  public:
   // `changes`: the solver's parameter blocks, one per camera. Both arguments must outlive this.
@@ -43,9 +45,10 @@ class CurrentCameras : public ceres::EvaluationCallback {
   std::vector<PhotographCamera> cameras_;
 };
 
-// Residual [px of the photograph] of one observation. Parameter blocks: the pose's numbers, the
-// point [m], the camera's change. A point that is not visible (PhotographImage) has a large
-// constant residual with zero derivatives; the loss function bounds its weight.
+// The residual [px of the photograph] of one observation: the projected minus the observed pixel.
+// Parameter blocks: the numbers of the pose, the point [m, world frame] and the change of the
+// camera. A point that is not visible (PhotographImage::visible) has a large constant residual
+// with zero derivatives. The loss function bounds the weight of this residual.
 class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
  public:
   // All arguments must outlive the cost.

@@ -21,9 +21,9 @@ struct HousedCamera {
 
 // The image of a point.
 struct PhotographImage {
-  // Not visible: no light from the point reaches the lens, the lens has no image of this light, or
-  // the image lies outside the photograph widened by an eighth of its longer side. Everything else
-  // is then meaningless.
+  // True if the point has an image. False if no light from the point reaches the lens, if the
+  // lens has no image of this light, or if the image lies outside the photograph widened by an
+  // eighth of its longer side. If false, all other members are meaningless.
   bool visible = false;
   Eigen::Vector2d pixel;
   Eigen::Vector2d tangents;     // (u, v) of the in-air direction (u, v, 1) of the light
@@ -39,7 +39,8 @@ class PhotographCamera {
   // The image of X [camera frame] by the exact projection, with derivatives.
   PhotographImage image(const Eigen::Vector3d& X) const;
 
-  // The ray in water of the pixel. A pixel at which the lens images no direction gets NaN.
+  // The ray in water of `pixel`, in the camera frame [m]. Origin and direction are NaN if the
+  // lens images no direction at this pixel.
   refractive::AxialRay<double> ray(const Eigen::Vector2d& pixel) const;
 
   const Eigen::Vector2d& principal_point() const { return principal_point_; }

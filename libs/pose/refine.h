@@ -25,23 +25,30 @@ struct RefineReport {
   DropCounts dropped;        // dropped for other reasons
   std::size_t points_before = 0, points_after = 0;
   AdjustReport last;
-  // The lines of lost_knowledge(). Not empty: refining ended early, because known lengths or
-  // positions can no longer be used.
+  // The lines of lost_knowledge(). If there are any, known lengths or positions can no longer be
+  // used. If they occur before the last adjustment, refine() ends there, and `rms_after`,
+  // `observations_after` and `points_after` stay 0.
   std::vector<std::string> lost;
 };
 
 // Scales a bundle of any scale to metres, as a first guess, and triangulates its points anew. A
-// pinhole engine's model has no scale. Three or more known positions place the bundle; otherwise
-// the first known distance scales it. If neither is known, a short adjustment is tried for a series
-// of scene distances, and the scale with the least error is taken: refraction depends on the
-// distance in metres. Known poses are in metres and stay as they are. Error for a known distance
-// that has no length in the model, or a point that the bundle does not have.
+// pinhole engine's model has no scale. The first rule that applies is used:
+// - Known poses are in metres and stay as they are.
+// - Three or more known positions place the bundle by a similarity.
+// - The first known distance scales the bundle.
+// - Otherwise a short adjustment is tried for a series of median scene distances from 0.25 to 16
+//   m, and the scale with the smallest error is taken. Refraction depends on the distance in
+//   metres.
+//
+// Throws an Error if the known distance is zero in the model, or if it names a point that the
+// bundle does not have.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
-// Adjusts and filters a bundle in metres for `options.rounds` rounds, then once more. From the
-// second round on, the noise that was found weighs the observations. uncertainty() of the bundle
-// and `options.adjust` gives the standard deviations of the result. `progress` gets one line for
-// each round. Error if no observation is left.
+// Adjusts and filters a bundle in metres for `options.rounds` rounds, then once more. The first
+// round uses `options.adjust.pixel_sigma`, and limits of errors four times as wide. Later rounds
+// use observed_pixel_sigma() of the round before. `progress` gets one line for each round. For
+// the standard deviations of the result, call uncertainty() with the refined bundle and
+// `options.adjust`. Throws an Error if no observation is left.
 RefineReport refine(Bundle& bundle, const RefineOptions& options,
                     const std::function<void(const std::string&)>& progress = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks whether photographs show what tracks and cameras predict: compares small patches of two
 // photographs around the images of one point. Tracks may come from other photographs of the same
-// views (in air). Then only the photographs tell whether a port is right.
+// views, taken in air. In this case only the photographs tell whether a port is right.
 #pragma once
 
 #include <array>
@@ -15,19 +15,22 @@
 
 namespace axial::pose {
 
-// Up to three pairs of images of a sample with many points in common, with their photographs in
-// memory. Photographs that cannot be read, or whose size differs from their camera's, are left out.
+// Up to three pairs of images of a sample, with their photographs in memory. The images of a pair
+// have many points in common. Pairs are left out if a photograph cannot be read or has another
+// size than its camera.
 class TrackPictures {
  public:
-  // `sample`, and its bundle in air with images and points in the same order and points
-  // triangulated from the tracks. Both must outlive this.
+  // `in_air`: the bundle of `sample` with its cameras in air. Images and points have the same
+  // order as in `sample`, and the points are triangulated from the tracks. Both objects must
+  // outlive this object.
   TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
                 const std::filesystem::path& image_folder);
 
-  // The median normalised cross-correlation of patches: at the pixels of the tracks (at_tracks), or
-  // where the cameras of `bundle` project the points (behind). `bundle` is `in_air` with other
-  // cameras or at another scale. 1 for the same picture, near 0 for unrelated places. Empty if
-  // fewer than 30 points have enough texture.
+  // The median of the normalised cross-correlations of corresponding patches: 1 for the same
+  // picture, near 0 for unrelated places. at_tracks() centres the patches at the pixels of the
+  // tracks. behind() centres them where the cameras of `bundle` project the points, where
+  // `bundle` is `in_air` with other cameras or at another scale. Nothing if fewer than 30 points
+  // can be compared: their patches must lie in both photographs and have enough texture.
   std::optional<double> at_tracks() const;
   std::optional<double> behind(const Bundle& bundle) const;
 

@@ -10,21 +10,22 @@ namespace axial::pose {
 struct SampleLimits {
   std::size_t points = 2000;
   std::size_t images = 300;
-  std::size_t track = 8;  // observations of each point
+  std::size_t track = 8;  // largest number of observations of a point
   // The points are taken from this many images, evenly spaced in the model's order.
   std::size_t seeds = 20;
 };
 
-// A sample of the points that two images or more observe, with their observations, and the images
-// and cameras of these observations. A track has at most one observation of each image. Runs in
-// linear time in the model's images and points. The same model gives the same sample, and a model
-// without tracks gives an empty sample.
+// A sample of the points that two or more images observe. It holds these points, their
+// observations, and the images and cameras of the observations, within `limits`. A track has at
+// most one observation in each image. The time is linear in the numbers of images and points of
+// the model. The same model gives the same sample, and a model without tracks gives an empty
+// sample.
 io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits = {});
 
-// A sample of a bundle: images that are connected by common points, and the points that the largest
-// numbers of these images observe. The search for images begins in the middle of the bundle's order
-// and goes outwards. `seeds` and `track` of the limits are not used. With `behind_ports`, only
-// images whose camera is behind a port are taken.
+// A sample of a bundle: images that are connected by common points, and the points with the most
+// observations in these images. The images are found by a breadth-first search that begins at the
+// middle of the bundle's list of images. `limits.seeds` and `limits.track` are not used. With
+// `behind_ports`, only images whose camera is behind a port are taken.
 Bundle sample_bundle(const Bundle& bundle, const SampleLimits& limits, bool behind_ports);
 
 }  // namespace axial::pose

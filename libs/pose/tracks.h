@@ -10,21 +10,22 @@
 
 namespace axial::pose {
 
-// The point with the least sum of squared distances to the rays (metres, any common frame). Empty
-// for fewer than two rays, for parallel rays, and for rays that meet behind their origins.
+// The point with the smallest sum of squared distances to the rays [m, any common frame]. Nothing
+// for fewer than two rays, for parallel rays, or if the point lies behind the origin of a ray.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
-// Triangulates all points from the rays of their observations. Points without a solution keep their
-// position.
+// Triangulates all points from the rays of their observations. A point for which the function
+// above returns nothing keeps its position.
 void triangulate(Bundle& bundle);
 
-// If a point has several observations in one image, as tracks of some engines have, keeps the
-// observation with the least error, the first of equal ones. Returns the number dropped.
+// For each point with several observations in one image, as in the tracks of some engines, keeps
+// only the observation with the smallest error (the first of equal errors). Returns the number of
+// dropped observations.
 std::size_t drop_repeated(Bundle& bundle);
 
 struct TrackLimits {
   double max_error = 4;               // [px]
-  double min_angle = 1.5;             // [degrees] between some two rays of a point
+  double min_angle = 1.5;             // [degrees], of the widest angle between two rays of a point
   std::size_t min_observations = 30;  // of an image: fewer may fit a wrong pose
 };
 
@@ -35,10 +36,14 @@ struct DropCounts {
   std::size_t weak_points = 0;  // point seen by one image, or under too narrow an angle
 };
 
-// Drops observations with errors above the limit. Then drops all observations of images that have
-// too few, and of points that fewer than two images see or that are seen under too narrow an angle,
-// and repeats this until nothing changes. Points without observations are removed. Returns the
-// number of dropped observations, and adds the numbers by reason to `counts`.
+// Drops observations that do not fit. First drops all observations with errors above the limit.
+// Then repeats two steps until nothing changes:
+// - Drops all observations of images with fewer than `min_observations`.
+// - Removes points that fewer than two images observe or whose widest angle is below `min_angle`,
+//   with their observations.
+//
+// Returns the number of dropped observations. Adds the numbers by reason to `counts` if it is not
+// null.
 std::size_t filter(Bundle& bundle, const TrackLimits& limits, DropCounts* counts = nullptr);
 
 }  // namespace axial::pose

@@ -25,15 +25,17 @@ using CameraList = std::variant<
     std::vector<refractive::LensPinholeCamera<T>>, std::vector<refractive::LensFlatPortCamera<T>>,
     std::vector<refractive::LensDomePortCamera<T>>, std::vector<AnyCamera<T>>>;
 
-// Makes the cameras of `models`, in the same order, with the simplest camera type that fits all of
-// them:
-//   - Without any port the cameras are pinholes, and no time is spent on refraction. If some
-//     cameras have a port, a camera without one gets a port whose indices are all 1, which is
-//     exactly the pinhole.
-//   - Without any distortion the lenses have none, and no time is spent on it. If some lenses are
-//     distorted, a lens without distortion gets coefficients that change nothing.
-//   - If there are flat ports as well as domes, the list is of AnyCamera, and each camera keeps its
-//     own kind.
+// Makes the cameras of `models`, in the same order, with the simplest camera type that fits all
+// of them:
+// - If there are flat ports as well as domes, the list is of AnyCamera. Each camera keeps its own
+//   kind, and the next rules do not apply.
+// - Without any port the cameras are pinholes, and no time is spent on refraction. If some
+//   cameras have a port, a camera without a port gets a port whose indices are all 1. The result
+//   is exactly the pinhole.
+// - Without any distortion the lenses have none, and no time is spent on distortion. If some
+//   lenses are distorted, a lens without distortion gets coefficients that change nothing.
+// - If `method` is the line search and there are flat ports, the list is of LineSearchCamera.
+//
 // Throws an Error if `method` is the line search and there is a dome or a distorted lens.
 template <class T>
 CameraList<T> make_camera_list(std::span<const CameraModel> models,

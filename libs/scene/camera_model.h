@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one image as data, and the construction of a camera object from these data. Besides
-// camera_list.h, only this part lists the kinds of cameras.
+// The camera of one image as data, and the construction of a camera object from these data. Only
+// this header and camera_list.h list the kinds of cameras.
 #pragma once
 
 #include <optional>
@@ -43,15 +43,16 @@ using CameraVariant =
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 
-// A camera without a lens: its pixels are tangents in air (u, v) of the direction (u, v, 1) in the
-// camera frame. It is the inner camera of a lens of any kind (lens_camera.h). A tangent can be up
-// to 1e6, and the incidence on a flat port up to 88.8 degrees.
+// A camera whose pixels are the tangents in air (u, v) of the direction (u, v, 1) in the camera
+// frame. A lens of any kind can be put before it (lens_camera.h). A tangent can be up to 1e6, and
+// the incidence on a flat port up to 88.8 degrees.
 using TangentCamera =
     std::variant<refractive::PinholeCamera<double>, refractive::FlatPortCamera<double>,
                  refractive::DomePortCamera<double>>;
 
-// Makes the camera behind `port`; an empty port is air. Points are projected fastest if the angle
-// between their direction in air and the optical axis is at most that of the tangent `usual`.
+// Makes the camera behind `port`, or in air if `port` is empty. Let a be the angle between the
+// direction in air and the optical axis. `usual` is the tangent of the largest usual angle:
+// points are projected fastest if tan(a) is at most `usual`.
 TangentCamera make_tangent_camera(const std::optional<refractive::Port<double>>& port,
                                   double usual);
 

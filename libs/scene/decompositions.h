@@ -24,14 +24,14 @@ struct EigenPairs {
 // read. A matrix with NaN gives NaN.
 EigenPairs symmetric_eigen(const Eigen::MatrixXd& matrix);
 
-// The ratio of the second largest to the largest principal extent of `points` about their mean. An
-// extent is the root of an eigenvalue of the points' second moments. `points`: one per column,
-// finite. The result is 0 for points on a line, for fewer than two points and for points that
-// coincide.
+// Let the principal extents of `points` be the square roots of the eigenvalues of their second
+// moments about their mean. Returns the ratio of the second largest to the largest extent.
+// `points`: one point per column, all finite. The result is 0 for points on a line, for fewer
+// than two points and for points that coincide.
 double relative_width(const Eigen::Matrix3Xd& points);
 
-// Points with a smaller relative width are treated as a line. A fit to them does not determine the
-// rotation about this line.
+// Points with a smaller relative_width() are treated as a line. A fit to such points does not
+// determine the rotation about the line.
 inline constexpr double kLineWidth = 1e-3;
 
 // The map x -> scale * rotation * x + translation. `rotation` has determinant 1.
@@ -43,21 +43,21 @@ struct Similarity {
   Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
     return scale * (rotation * x) + translation;
   }
-  // The pose of the camera after the map. From it, mapped points lie in the same directions as the
-  // points before.
+  // The pose of a camera that is moved together with the points: in the camera frame, the
+  // directions of the points stay the same.
   Pose operator()(const Pose& pose) const {
     return {pose.rotation * rotation.transpose(), (*this)(pose.centre)};
   }
-  // Returns the map that applies `first`, then this one.
+  // Returns the map that applies `first`, then this map.
   Similarity after(const Similarity& first) const;
   // The homogeneous 4 x 4 matrix.
   Eigen::Matrix4d matrix() const;
 };
 
 // The similarity that maps `from` to `to` with the smallest sum of squared distances (S. Umeyama,
-// 1991). Precondition: both have the same number of points, at least one, as columns. Points on a
-// line do not determine the rotation about this line (see relative_width). Without `with_scale` the
-// scale is 1.
+// 1991). Points are columns. Precondition: `from` and `to` have the same number of points, at
+// least one. Points on a line do not determine the rotation about the line (see relative_width).
+// Without `with_scale` the scale is 1.
 Similarity best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                            bool with_scale = true);
 

@@ -13,8 +13,9 @@
 namespace axial {
 
 // Depth is lambda of the paper's eq. (4): the distance [m] along the pixel's ray in the scene
-// medium from the ray's origin on the axis. For a camera without a port it is the range from the
-// camera centre. Only files contain z-depth.
+// medium, from the ray's origin on the axis. For a camera without a port this is the distance
+// from the camera centre. Files of depth maps contain z-depth instead. Readers and writers
+// convert.
 struct DepthMap {
   std::string image_path;
   std::vector<std::uint32_t> ids;  // global ids: the reference view, then its source views
@@ -30,8 +31,8 @@ struct DepthMap {
   int height() const { return depth.rows; }
 };
 
-// The memory of a map of `pixels` pixels [bytes]: of its depths alone, and with normals and
-// confidences.
+// The memory [bytes] of a map of `pixels` pixels: of the depths alone, and of depths, normals and
+// confidences together.
 constexpr std::uint64_t bytes_of_depths(std::uint64_t pixels) {
   return 4 * pixels;
 }

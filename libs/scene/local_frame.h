@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A frame with its origin near the scene, for scenes far from the origin of their world, as in UTM
-// coordinates. So far from the origin, float coordinates are too coarse for the scene's details.
+// A frame with its origin near the scene, for scenes far from the origin of their world, for
+// example in UTM coordinates. At such coordinates, float is too coarse for the details of the
+// scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,23 +22,27 @@ struct LocalFrame {
 };
 
 // Returns the world if `place` lies within 1,000 units of its origin. Otherwise the origin of the
-// result is `place`, rounded to 10 units. Because of this rounding, conversion to the local frame
-// and back changes a coordinate by no more than the rounding of a double of the local coordinate's
-// size.
+// result is `place`, rounded to 10 units. Let x be the local value of a coordinate. Because the
+// origin is rounded, conversion to the local frame and back changes the coordinate by no more
+// than the rounding error of a double of the size of x.
 LocalFrame frame_near(const Eigen::Vector3d& place);
 
-// Returns the world if there are no `centres`, or if all camera centres and the median of `points`
-// lie within 1,000 units of the world's origin. `points` may be empty. Otherwise the origin of the
-// result is the median of the centres, coordinate by coordinate, rounded to 10 units. The order of
-// centres and points does not matter.
+// Chooses a frame for a scene. `points` may be empty. The order of centres and points does not
+// matter. The first rule that applies is used:
+// - Without `centres`, the result is the world.
+// - If all camera centres and the median of `points` lie within 1,000 units of the world's
+//   origin, the result is the world. Without points, only the centres decide.
+// - Otherwise the origin of the result is the median of the centres, rounded to 10 units.
+//
+// Medians are taken coordinate by coordinate.
 LocalFrame frame_of(std::span<const Eigen::Vector3d> centres,
                     std::span<const Eigen::Vector3d> points);
 
-// The same with the centres of the calibrated cameras and the sparse points of `scene`.
+// Chooses the frame from the centres of the calibrated cameras and the sparse points of `scene`.
 LocalFrame frame_of(const Scene& scene);
 
-// Transforms `scene` from world coordinates to `frame`: poses, sparse points and region. Sparse
-// points are float, and do not become more precise in the local frame.
+// Transforms the poses, sparse points and region of `scene` from world coordinates to `frame`.
+// Sparse points are float, and do not become more precise in the local frame.
 void enter(const LocalFrame& frame, Scene& scene);
 
 }  // namespace axial

@@ -9,22 +9,25 @@
 namespace axial {
 
 // A similarity between local frames: `similarity` maps coordinates in `from` to coordinates in
-// `to`. Far from the origin of the world, no large numbers take part in it.
+// `to`. Its numbers stay small even if the scene is far from the origin of the world.
 struct FrameMove {
   Similarity similarity;
   LocalFrame from, to;
 
-  // The same map with the result in another frame.
+  // The same map, with its results in coordinates of `frame`.
   FrameMove ending_in(const LocalFrame& frame) const;
   // The map from world to world coordinates.
   Similarity between_worlds() const;
 };
 
-// `worlds` maps world to world coordinates. The result starts and ends in `frame`.
+// Returns the map `worlds`, which maps world to world coordinates, as a map from `frame` to
+// `frame`.
 FrameMove move_in(const LocalFrame& frame, const Similarity& worlds);
 
-// Moves poses, points, normals, depth ranges and the region of interest. `scene` is in the frame
-// that `similarity` starts from. The cameras' ports stay as they are.
+// Moves the poses and depth ranges of the calibrated images, the sparse points, their normals and
+// the region of interest. Before the call `scene` is in the frame from which `similarity` maps,
+// and after the call in the frame to which `similarity` maps. The cameras' ports stay as they
+// are, even if the scale changes.
 void apply(const Similarity& similarity, Scene& scene);
 
 }  // namespace axial

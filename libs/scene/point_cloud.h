@@ -10,8 +10,9 @@
 
 namespace axial {
 
-// A dense cloud. Arrays without another remark are empty or as long as `positions`. The views of
-// all points are stored in one array; those of point i are at [view_begin[i], view_begin[i + 1]).
+// A dense point cloud. Unless its remark says otherwise, an array is empty or as long as
+// `positions`. The views of all points are stored in one array: the views of point i have the
+// indices [view_begin[i], view_begin[i + 1]).
 struct PointCloud {
   std::vector<Eigen::Vector3f> positions;  // world frame
   std::vector<Eigen::Vector3f> normals;    // world frame, unit
@@ -29,7 +30,8 @@ struct PointCloud {
   }
 };
 
-// The sparse points of `scene` as a cloud, with their views, normals and colours.
+// The sparse points of `scene` as a cloud, with their views, normals and colours. The weight of a
+// view is its SparseView::confidence.
 PointCloud cloud_of(const Scene& scene);
 
 }  // namespace axial

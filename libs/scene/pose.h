@@ -5,7 +5,8 @@
 
 namespace axial {
 
-// x_in_camera = rotation * (x_in_world - centre). Camera axes: x right, y down, z forward.
+// The pose of a camera in the world: x_in_camera = rotation * (x_in_world - centre). Camera axes:
+// x right, y down, z forward.
 struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

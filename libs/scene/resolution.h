@@ -14,13 +14,15 @@ struct ResolutionOptions {
   int max = 2560;      // upper bound of the longest side [px]
 };
 
-// The size [px] at which an image of width x height pixels is processed. The longest side is halved
-// `level` times, but not below `min`, and then limited to `max`. The aspect ratio is kept; sides
-// are rounded and at least 1. Throws an Error if a side or `max` is not positive.
+// The size [px] at which an image of width x height pixels is processed. The longest side is
+// halved up to `level` times, as long as the result is at least `min`. A result above `max` is
+// then reduced to `max`. The aspect ratio is kept: sides are rounded and at least 1. Throws an
+// Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
-// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. The
-// ratios may differ by the factor 1 + 1.5 / (the shortest of the four sides).
+// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. Let
+// s be the shortest of the four sides. The quotient of the ratios may differ from 1 by at most
+// 1.5 / s. False if s is below 1.
 bool same_shape(cv::Size a, cv::Size b);
 
 // Resizes `image` to `size`, with an area filter if no side grows and a cubic filter otherwise. If
@@ -28,7 +30,8 @@ bool same_shape(cv::Size a, cv::Size b);
 // camera of the result. Throws an Error for an empty image or size.
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);
 
-// As resized_image(), but takes the nearest pixel, because labels must not be averaged.
+// As resized_image(), but with the nearest pixel instead of a filter, because labels must not be
+// averaged.
 cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size);
 
 }  // namespace axial

@@ -16,14 +16,15 @@ namespace axial {
 
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
-// The suitability of another image as source view. The fields are those of ViewScore in the OpenMVS
-// scene format.
+// How suitable another image (the neighbour) is as a source view of this image. The fields are
+// those of ViewScore in the OpenMVS scene format. score_neighbours() defines scale, area and
+// score.
 struct ViewScore {
   std::uint32_t image = 0;   // index into Scene::images
   std::uint32_t points = 0;  // sparse points seen by both
-  float scale = 1;           // mean ratio of the footprints [px/m] of this and the other image
+  float scale = 1;           // mean of (footprint in this image / footprint in the neighbour)
   float angle = 0;           // mean triangulation angle [rad]
-  float area = 0;            // fraction of the image covered by shared points
+  float area = 0;            // fraction of this image that shared points cover
   float score = 0;           // higher is better
 };
 

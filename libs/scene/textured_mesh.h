@@ -11,10 +11,10 @@
 
 namespace axial {
 
-// A triangle mesh with one or more texture images. Corner k of face f has the colour of the texture
-// texture_of[f] at the pixel uv[f][k]: (x, y) with x to the right, y down, and pixel centres at
-// integers, so that the upper left corner of the texture is (-0.5, -0.5). The files have other
-// conventions, which io/textured converts. Inside a face, uv is linear.
+// A triangle mesh with one or more texture images. Corner k of face f has the colour that the
+// texture texture_of[f] has at the pixel uv[f][k]. Inside a face, uv is linear. Pixels are (x, y)
+// with x to the right, y down, and pixel centres at integers: the upper left corner of a texture
+// is (-0.5, -0.5). The files have other conventions, and io/textured converts between them.
 struct TexturedMesh {
   using Corners = std::array<Eigen::Vector2f, 3>;
 

@@ -16,10 +16,11 @@ namespace axial {
 struct ViewSelectionOptions {
   double optimal_angle = 12.0 * std::numbers::pi / 180.0;  // best triangulation angle [rad]
   std::uint32_t min_shared_points = 3;                     // with fewer, an image is no candidate
-  std::size_t min_trusted_views = 2;   // images that must see a sparse point to trust it
-  std::size_t min_init_points = 4;     // with fewer trusted points, the image is unusable
-  std::size_t min_views = 2;           // with fewer candidates, the image is unusable; at most the
-                                       // number of other calibrated images
+  std::size_t min_trusted_views = 2;  // images that must see a sparse point to trust it
+  std::size_t min_init_points = 4;    // with fewer trusted points, the image is unusable
+  // With fewer candidates, the image is unusable. A value above the number of other calibrated
+  // images is reduced to this number.
+  std::size_t min_views = 2;
   double weight_outside_region = 0.7;  // of points outside Scene::region
 
   // For filter_neighbours(). The fields of ViewScore explain the quantities.
@@ -34,32 +35,44 @@ struct ViewSelectionOptions {
   double min_score_ratio = 0.03;  // relative to the best score
 };
 
-// Results for one image from the sparse cloud, besides its neighbours.
+// What score_neighbours() finds for one image from the sparse cloud, besides the neighbours.
 struct ViewPreparation {
   // Indices into Scene::points of the trusted points that the image sees, in ascending order.
   std::vector<std::uint32_t> init_points;
-  // Range of depths (lambda, see DepthMap) to search [m]: from 0.9 times the smallest to 1.1 times
-  // the largest depth of init_points. 0 and 0 without init_points.
+  // Range of depths (lambda, see DepthMap) to search [m]: from 0.9 times the smallest to 1.1
+  // times the largest depth of init_points. Both are 0 without init_points.
   float min_depth = 0, max_depth = 0;
   std::string problem;  // the reason why the image cannot be a reference view; empty: it can
   bool usable() const { return problem.empty(); }
 };
 
-// Scores the neighbours of all images. For every calibrated image it fills from scene.points
-//   - neighbours: unfiltered, by decreasing score, images of equal score by index,
-//   - min_depth, average_depth and max_depth: z-depth over all points that the image sees.
-// Returns one ViewPreparation per image.
+// Scores the neighbours of all images. For every calibrated image it computes from scene.points
+// and stores in SceneImage:
+// - neighbours: unfiltered, by decreasing score, images of equal score by index.
+// - min_depth, average_depth and max_depth: z-depth over all points that the image sees.
 //
-// The score of a pair of images is the sum of the weights of its shared points times the covered
-// fraction of the image (at least 0.01). A point's weight depends on the angle between its two rays
-// in the medium, on the ratio of its two footprints and on the region. The footprint [px/m] is the
-// smaller singular value of the projection's Jacobian, with its rows scaled to the focal length fx;
-// for a pinhole it is fx / z.
+// Returns one ViewPreparation per image. Throws an Error if a point has a view of an image that
+// does not exist.
 //
-// Ignored are observations that the camera cannot have made (points behind it or outside the port's
-// field), points that are not finite, and uncalibrated images. A repeated observation counts once.
-// The time is linear in the number of pairs of observations of a point. Throws an Error for views
-// of images that do not exist.
+// The score of the neighbour B of an image A is the sum of the weights of their shared points,
+// times max(area, 0.01). The weight of a point is the product of three factors:
+// - Angle: a function of the angle between the two rays of the point in the medium. It is 1 at
+//   `optimal_angle`, falls on both sides like a normal distribution, and is at least 0.1.
+// - Scale: let r be the footprint of the point in A divided by its footprint in B. The factor is
+//   r^2 for r < 1, 1 for r from 1 to 1.6, and (1.6 / r)^2 above.
+// - Region: 1 inside Scene::region or without a region, `weight_outside_region` outside.
+//
+// The area is a fraction of image A. A is divided into a grid of 16 x 16 equal cells. The area is
+// the share of cells that contain the image in A of at least one shared point. Only points whose
+// images lie inside both A and B count for the area.
+//
+// The footprint [px/m] of a point in an image is the smaller singular value of the Jacobian of
+// the projection, after its second row is multiplied by fx / fy. For a pinhole it is fx / z.
+//
+// The function ignores uncalibrated images, points that are not finite, and observations that the
+// camera cannot have made (points behind the camera or outside the port's field). A repeated
+// observation counts once. Let n be the number of views of a point. The time grows with the sum
+// of n^2 over all points and with the square of the number of images.
 std::vector<ViewPreparation> score_neighbours(Scene& scene,
                                               const ViewSelectionOptions& options = {},
                                               const ProgressSink& progress = {});
@@ -73,30 +86,33 @@ struct ScoringMemory {
   std::uint64_t work = 0;  // [bytes], freed at the end
   std::uint64_t kept = 0;  // [bytes], the lists of neighbours and of points
 };
-// An upper bound of the memory that score_neighbours() uses, with the present number of threads.
+// An upper bound of the memory that score_neighbours() uses with the present number of threads.
 ScoringMemory scoring_memory(const ScoringSize& size);
 
 // The counts of `scene`; `neighbours` is the bound of most_neighbours().
 ScoringSize scoring_size(const Scene& scene, const ViewSelectionOptions& options = {});
 
-// An upper bound of the number of neighbours of all images. `pairs`: the number of ordered pairs of
-// views of a point, summed over all points.
+// An upper bound of the total number of neighbours of all images. `pairs`: the number of ordered
+// pairs of different views of one point, summed over all points.
 std::uint64_t most_neighbours(std::uint64_t images, std::uint64_t pairs,
                               const ViewSelectionOptions& options = {});
 
-// A closer upper bound: the number of neighbours of all images if each camera can have made all its
-// observations. Needs less time and memory than scoring. Throws an Error for views of images that
-// do not exist.
+// A closer upper bound of the total number of neighbours of all images. It is the exact number if
+// each camera can have made all its observations. Needs less time and memory than scoring. Throws
+// an Error if a point has a view of an image that does not exist.
 std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& options = {});
 
-// The working list of an image. Starting with the worst, removes neighbours whose area is too small
-// or whose scale or angle is out of range, as long as more than max(4, 3/4 max_views) neighbours
-// remain. Then keeps the best max_views. `neighbours`: by decreasing score.
+// Returns the working list of an image. `neighbours`: sorted by decreasing score. First removes
+// unsuitable neighbours, the worst score first, while more than max(4, 3/4 max_views) neighbours
+// remain. A neighbour is unsuitable if its area is below `min_area`, or if its scale or angle is
+// out of range. Then keeps the `max_views` best of the remaining neighbours.
 std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbours,
                                          const ViewSelectionOptions& options = {});
 
-// The first `number_views` (0: all) neighbours of a working list whose score is at least
-// max(min_score, min_score_ratio * best score). Empty if there is none.
+// Chooses source views from a working list, which is sorted by decreasing score. Let s be the
+// larger of `min_score` and `min_score_ratio` times the best score. Returns the first
+// `number_views` neighbours with a score of at least s, or all of them if `number_views` is 0.
+// Empty if there is none.
 std::vector<ViewScore> choose_source_views(const std::vector<ViewScore>& filtered,
                                            std::size_t number_views,
                                            const ViewSelectionOptions& options = {});

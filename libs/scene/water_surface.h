@@ -21,10 +21,11 @@ struct WaterSurface {
   double height_of(const Eigen::Vector3d& x) const { return normal.dot(point - x); }
 };
 
-// The surface as the flat port of the camera at `pose`: the normal is R n, the distance is the
-// camera's height, the thickness is 0. Throws an Error that starts with `where` unless the camera
-// is above the surface and its optical axis points towards the surface. Then the rays in water of
-// pixels that look into the water have z > 0.
+// The surface as the flat port of the camera at `pose`. Let R be pose.rotation and n
+// surface.normal. The normal of the port is R n, its distance is the height of the camera above
+// the surface, and its thickness is 0. Throws an Error that starts with `where` unless the camera
+// is above the surface and its optical axis points towards the surface. Under these conditions,
+// the rays in water of all pixels that look into the water have z > 0 in the camera frame.
 refractive::FlatPort<double> port_seen_from(const Pose& pose, const WaterSurface& surface,
                                             const std::string& where);
 

@@ -25,13 +25,14 @@ struct Blob {
 // The mesh of a blob, with about `cell` metres between vertices.
 TriangleMesh blob_mesh(const Blob& blob, double cell);
 
-// Half a ring that stands on the ground: a rough tube around a half circle. The half circle lies in
-// a vertical plane through `centre`; `along` is its unit horizontal direction (cosine, sine).
+// Half a ring that stands on the ground: a rough tube around a half circle. The half circle lies
+// in the vertical plane through `centre` and the unit horizontal direction `along` (cosine,
+// sine).
 struct Arch {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Vector2d along{1, 0};
   double span_radius = 0.5;  // radius of the half circle
-  double rise = 1.0;         // height of the arch / span_radius
+  double rise = 1.0;         // the height of the arch divided by span_radius
   double tube_radius = 0.1;
   double roughness = 0.25;
   std::uint32_t seed = 1;

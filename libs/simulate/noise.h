@@ -13,8 +13,8 @@ namespace axial::simulate {
 // unrelated fields.
 float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed);
 
-// The sum of `octaves` noise fields at p, 2p, 4p ... with weights 1, gain, gain^2 ... Each octave
-// is rotated and shifted, so that the lattice is not visible.
+// The sum of `octaves` fields of gradient noise. Octave k has the frequency 2^k and the weight
+// gain^k, k = 0, 1, ... Each octave is rotated and shifted, so that the lattice is not visible.
 float fractal_noise(const Eigen::Vector3d& p, std::uint32_t seed, int octaves, float gain);
 
 // The rotation and shift from one octave of `fractal_noise` to the next, without the factor 2.

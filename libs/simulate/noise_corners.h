@@ -18,9 +18,10 @@ constexpr std::array<std::uint32_t, 3> kHashSteps{0x8da6b343u, 0xd8163841u, 0xcb
 constexpr std::array<std::uint32_t, 2> kHashFactors{0x7feb352du, 0x846ca68bu};
 constexpr float kGradientStep = 1.0f / 511.5f;
 
-// Computes for each corner the dot product of its gradient and the point's offset from it. The
-// components of gradients are uniform in [-1, 1]. Corner 1 lies along x, corner 2 along y, corner 4
-// along z. All implementations give identical bits.
+// Computes for each corner the dot product of its gradient and the offset of the point from this
+// corner. The components of gradients are uniform in [-1, 1]. Bits 0, 1 and 2 of the index of a
+// corner tell whether it is the upper corner along x, y and z. All implementations give identical
+// bits.
 using CornersFunction = std::array<float, 8> (*)(const NoiseCell&);
 std::array<float, 8> corners_scalar(const NoiseCell& cell);
 std::array<float, 8> corners_avx2(const NoiseCell& cell);

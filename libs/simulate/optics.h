@@ -28,17 +28,20 @@ struct Lens {
   std::optional<Bend> bend = {};
 };
 
-// Project a direction with z > 0 to its pixel, and return the unit direction of a pixel, in the
-// camera frame. Precondition of both: check_lens.
+// pixel_of() projects a direction with z > 0 to its pixel. direction_of() returns the unit
+// direction of a pixel. Directions are in the camera frame. Precondition of both: check_lens()
+// accepts the lens.
 Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction);
 Eigen::Vector3d direction_of(const Lens& lens, double u, double v);
 
-// Error that names the coefficients unless every pixel of the image's border has a direction that
-// pixel_of maps back to it, and the lens does not fold back before that direction.
+// Checks the lens at samples along the border of the image, corners included. Throws an Error
+// that names the coefficients and the pixel unless each sampled pixel has a direction that
+// pixel_of() maps back to the pixel, and the lens does not fold back between the optical axis and
+// this direction. Lenses without distortion pass.
 void check_lens(const Lens& lens);
 
-// A lens with square pixels and the principal point in the image centre. Error unless width and
-// height are 1 to 20000 and horizontal_fov_degrees is 1 to 150.
+// Makes a lens with square pixels and the principal point in the image centre. Throws an Error
+// unless width and height are 1 to 20000 and horizontal_fov_degrees is 1 to 150.
 Lens make_lens(int width, int height, double horizontal_fov_degrees);
 
 // The inner sphere of a dome in the camera frame [m].
@@ -60,12 +63,16 @@ struct Port {
 // The unit normal of a port that is tilted by the given angle towards the lower right of the image.
 Eigen::Vector3d tilted_normal(double tilt_degrees);
 
-// Error that names the value: a distance or thickness outside 0 to 1 m, a radius outside 0 to 1 m,
-// an index outside 1 to 4, a camera outside its dome or not above the water surface, or an image
-// corner whose light does not pass the port.
+// Throws an Error that names the value in these cases:
+// - The port is a water surface and the camera is not above it.
+// - The port is no water surface and its distance is outside 0 to 1 m.
+// - The thickness is outside 0 to 1 m.
+// - The inner radius of a dome is not above 0 or is above 1 m, or the camera is outside the dome.
+// - A refractive index is outside 1 to 4.
+// - The light of an image corner does not pass the port.
 void check_port(const Port& port, const Lens& lens);
 
-// x_in_camera = rotation * (x_in_world - centre).
+// The pose of a camera in the world: x_in_camera = rotation * (x_in_world - centre).
 struct View {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -82,13 +89,14 @@ struct SceneRay {
   Eigen::Vector3d on_axis;    // where its line meets the camera's axis (C_v); dry: the centre
 };
 
-// The refracted unit direction by Snell's law. `direction` and `normal` are of unit length, with
-// direction . normal > 0. Nothing on total reflection.
+// Returns the refracted unit direction by Snell's law, or nothing on total reflection.
+// `direction` and `normal` are of unit length, with direction . normal > 0.
 std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
                                        const Eigen::Vector3d& normal, double n_from, double n_to);
 
-// Returns the ray of pixel (u, v) in the camera frame. `port` is null for a dry camera. Nothing if
-// no light passes: the pixel looks away from the port, or the light is totally reflected.
+// Returns the ray of pixel (u, v) in the camera frame. `port` is null for a dry camera. Returns
+// nothing if no light passes: the pixel looks away from the port, or the light is totally
+// reflected.
 std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u, double v);
 
 SceneRay to_world(const View& view, const SceneRay& in_camera);

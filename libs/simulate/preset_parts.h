@@ -33,8 +33,9 @@ void add_mushroom(Terrain& terrain, double x, double y, double size, RandomSeque
 
 void add_arch(Terrain& terrain, double x, double y, double span_radius, RandomSequence& random);
 
-// Scatters `count` boulders over the rectangle |x| <= half.x, |y| <= half.y. No boulder is nearer
-// to the origin than `from`. Their radii are between radii.x and radii.y.
+// Scatters `count` boulders over the rectangle |x| <= half.x, |y| <= half.y. No boulder is
+// centred nearer than `from` to the origin, measured horizontally. Radii are between radii.x and
+// radii.y, up to random factors of the axes, and most radii are small.
 void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double from,
              const Eigen::Vector2d& radii, RandomSequence& random);
 

@@ -29,8 +29,8 @@ struct PresetOptions {
 struct Preset {
   Lens lens;
   Port port;
-  // Height of a water surface in the world [m]. If it is set, the surface replaces the port, of
-  // which only n_air and n_water are used.
+  // Height of a water surface in the world [m]. If set, the surface replaces the port. Only n_air
+  // and n_water of the port are then used.
   std::optional<double> water_level;
   Terrain terrain;
   TextureOptions texture;
@@ -55,19 +55,20 @@ struct Preset {
 // - "transect": one strip at the height of "reef". Successive views overlap by 55 % under water, so
 //   that most of the ground is seen by exactly two views.
 //
-// "NAME-hazy" is the same scene in haze that leaves a seventh of the contrast. Error for another
-// name, a number of views outside [0, 200], a scale, relief or coarseness outside [0.01, 100], or
-// values that make_lens refuses.
+// "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
+// another name, for a number of views outside [0, 200], for a scale, relief or coarseness outside
+// [0.01, 100], and for values that make_lens refuses.
 Preset make_preset(const PresetOptions& options);
 
 // The port of `view`: the preset's port, or its water surface.
 Port port_of_view(const Preset& preset, const View& view);
 
-// Error if check_port refuses the port of a view. It names the value, and the view if there is a
-// water surface.
+// Throws an Error if check_port refuses the port of a view. The message names the value. If there
+// is a water surface, the message also names the view.
 void check_ports(const Preset& preset);
 
-// Error unless the whole mesh is below the preset's water surface. No effect without one.
+// Throws an Error unless the whole mesh is below the preset's water surface. Without a water
+// surface nothing is checked.
 void check_submerged(const Preset& preset, const TriangleMesh& mesh);
 
 }  // namespace axial::simulate

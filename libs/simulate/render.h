@@ -19,17 +19,17 @@ struct SurfacePoint {
   double footprint = 0;  // width of a pixel at the point, across the ray [m]
 };
 
-// Returns the linear colour (R G B, 0 to 1) of a surface point. It may depend on the camera only
-// through the footprint. Called concurrently.
+// Returns the linear colour (R G B, 0 to 1) of a surface point. The colour may depend on the
+// camera only through the footprint. Shaders are called concurrently.
 using Shader = std::function<Eigen::Vector3f(const SurfacePoint&)>;
 
-// Renders a linear image with the channel order B G R; black where nothing is hit. `port` is null
-// for a dry camera. Each pixel is the mean of `samples` x `samples` rays on a regular grid in the
-// pixel. Rows are computed in parallel. Error unless 1 <= samples <= 16.
+// Renders a linear image with the channel order B G R. Rays that hit nothing are black. `port` is
+// null for a dry camera. Each pixel is the mean of `samples` x `samples` rays on a regular grid
+// in the pixel. Rows are computed in parallel. Throws an Error unless 1 <= samples <= 16.
 cv::Mat3f render_radiance(const RayScene& scene, const Shader& shader, const Lens& lens,
                           const Port* port, const View& view, int samples);
 
-// Adds haze: a share `haze` (0 to 1) of the light from the scene is replaced by grey light (0.5)
+// Adds haze: replaces a share `haze` (0 to 1) of the light from the scene by grey light (0.5)
 // that is scattered into the line of sight. All contrast is multiplied by 1 - haze.
 void add_haze(cv::Mat3f& radiance, double haze);
 
@@ -40,9 +40,10 @@ cv::Mat3b develop(const cv::Mat3f& radiance, double noise, std::uint64_t key);
 // The `key` of develop() for the images of a scene.
 std::uint64_t noise_key(std::uint32_t seed, std::size_t view, bool water);
 
-// Ground truth at the ray of each pixel's centre. `distance`: metres from the point where the ray
-// meets the camera's axis (C_v; dry: the centre) to the surface; 0 where nothing is hit. `normal`:
-// of the mesh face, in the world frame (x, y, z); zero where nothing is hit.
+// Ground truth for the ray of each pixel's centre. `distance`: the distance [m] along the ray to
+// the surface, from the point where the ray's line meets the camera's axis (SceneRay::on_axis).
+// `normal`: the unit normal of the mesh face, in the world frame (x, y, z). Both are 0 where
+// nothing is hit.
 struct Truth {
   cv::Mat1f distance;
   cv::Mat3f normal;

@@ -11,16 +11,16 @@ namespace axial::simulate {
 struct TextureOptions {
   std::uint32_t seed = 1;
   double largest = 1.0;  // size of the largest patches [m]
-  double contrast = 1;   // factor of the difference between a reflectance and the sediment's
+  double contrast = 1;   // factor by which a reflectance differs from the sediment's
 };
 
-// Returns the reflectance (linear R G B) at a point of the world. Detail finer than about
-// `footprint`, the width of a pixel [m], is left out to avoid aliasing.
+// Returns the reflectance (linear R G B) at the world point `p`. `footprint` is the width of a
+// pixel at the point [m]. Detail finer than about `footprint` is left out to avoid aliasing.
 Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
                               const TextureOptions& options);
 
 // Returns a shader: Lambertian shading under a fixed sun with cast shadows and ambient light.
-// `mesh` and `scene`, which is built from it, must outlive the shader.
+// `scene` must be built from `mesh`. Both must outlive the shader.
 Shader seabed_shader(const TriangleMesh& mesh, const RayScene& scene,
                      const TextureOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// True sparse points and their observations in the in-air images.
+// True sparse points and their observations in images taken without a port.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,9 +21,9 @@ struct SparsePoint {
   std::vector<Observation> observations;  // by increasing view, at least two
 };
 
-// Places about `per_view` points on the surface that each view sees, at jittered grid positions
-// that depend on `seed`. A point is observed by every view in whose image it lies without being
-// occluded. Points with fewer than two observations are dropped.
+// Places points on the surface that the views see: about `per_view` for each view, at jittered
+// grid positions of its image that depend on `seed`. A view observes a point if the point lies in
+// its image and is not occluded. Points with fewer than two observations are dropped.
 std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader, const Lens& lens,
                                      std::span<const View> views, int per_view, std::uint64_t seed);
 

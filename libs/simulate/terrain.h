@@ -11,10 +11,13 @@
 
 namespace axial::simulate {
 
-// The height of the floor [m]. It is a sum of noise octaves, which start at `wavelength` and halve
-// in length and height, and of a bowl that rises by `bowl_height` between `bowl_from` and `bowl_to`
-// metres from the world's origin. If `layer` is positive, the floor is bedded rock with a ledge at
-// the end of each layer; the layers rise by `dip` metres per metre along x and y.
+// The height of the floor [m]. It is the sum of noise, a bowl and ripples. The first octave of
+// the noise has the wavelength `wavelength` and the height `height`, and each further octave has
+// half of both. The bowl rises by `bowl_height` between the distances `bowl_from` and `bowl_to`
+// [m] from the world's origin.
+//
+// If `layer` is positive, the floor is bedded rock with a ledge at the end of each layer. The dip
+// changes the height of the layers by `dip` metres per metre along x and y.
 struct Floor {
   std::uint32_t seed = 1;
   double wavelength = 2.0;  // [m]

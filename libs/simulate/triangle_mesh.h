@@ -16,8 +16,8 @@ using Face = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Face> faces;
-  // For each vertex the thickness of the thin structure to which it belongs [m], 0 elsewhere. Empty
-  // if there are no thin structures.
+  // The thickness [m] of the thin structure to which each vertex belongs, 0 for other vertices.
+  // Empty if there are no thin structures.
   std::vector<float> thickness = {};
 };
 

@@ -14,9 +14,10 @@ struct Tube {
   std::vector<double> radii;           // one for each point of the spine, above 0
 };
 
-// Makes the mesh of a tube. Vertices are about `cell` metres apart around the tube, and there are 8
-// to 48 of them in a ring. There is a ring at each point of the spine. The thickness of a vertex is
-// the tube's diameter there.
+// Makes the mesh of a tube: a ring of vertices at each point of the spine, and a nearly
+// point-like ring beyond each end. All rings have the same number of vertices, from 8 to 48.
+// Within these limits, vertices of the widest ring are at most about `cell` metres apart. The
+// thickness of a vertex is the diameter of the tube there.
 TriangleMesh tube_mesh(const Tube& tube, double cell);
 
 }  // namespace axial::simulate
