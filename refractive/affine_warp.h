@@ -1,32 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The warp between two axial cameras that a plane induces: its exact value and its exact first
-// derivative at one pixel (docs/refraction.md, "The warp"). The formula is the same for all
-// cameras.
+// The warp of a plane between two axial cameras: the mapping from pixels of the reference image to
+// pixels of the source image for points of the plane. This file computes the exact value and the
+// exact first derivative of the warp at a pixel p (docs/refraction.md, "The warp"). The formula is
+// the same for all cameras.
 //
 //     warp(q) = project_j(X_j(p)) + A (q - p),    A = Jproj_j(X_j) * R_ij * dX/dp
 //
-// Frames: X, the plane and the ray in the reference camera i; X_j = R_ij (X - C_ij) in the source
-// camera j. Metres and pixels. No function checks its arguments; NaN arguments give NaN results.
+// Frames: the point X, the plane and the ray are in the frame of the reference camera i.
+// X_j = R_ij (X - C_ij) is in the frame of the source camera j. Units: metres and pixels. No
+// function checks its arguments. NaN arguments give NaN results.
 #pragma once
 
 #include "refractive/axial_ray.h"
 
 namespace axial::refractive {
 
-// Distance along `ray` at which it meets the plane through X with normal n (the paper's eq. 8). n
-// may have any length. A ray parallel to the plane gives infinity or NaN.
+// The distance [m] along `ray` at which the ray meets the plane through X with the normal n (the
+// paper's eq. 8). n may have any length. A ray parallel to the plane gives infinity or NaN.
 template <class T>
 T plane_intersection(const AxialRay<T>& ray, const Vector3<T>& X, const Vector3<T>& n) {
   return (X - ray.origin).dot(n) / ray.direction.dot(n);
 }
 
-// dX/dp [m/px]: the derivative by the pixel p of the point X in which the pixel's ray meets the
-// plane with normal n, at X = ray.at(lambda):
+// The derivative dX/dp [m/px]. Let X = ray.at(lambda) be the point at which the ray of the pixel p
+// meets the plane with the normal n. When p changes, X moves on the plane:
 //
 //     dX/dp = (I - d n^T / (n.d)) (do/dp + lambda dd/dp)
 //
-// with o and d the ray's origin and direction. n may have any length and either sign; n.d = 0
-// gives infinities or NaN. `jacobian`: the derivatives of `ray` by the pixel.
+// where o and d are the origin and the direction of the ray. `jacobian`: do/dp and dd/dp. n may
+// have any length and either sign. n.d = 0 gives infinities or NaN.
 template <class T>
 Matrix32<T> plane_point_derivative(const AxialRay<T>& ray, const AxialRayJacobian<T>& jacobian,
                                    const T& lambda, const Vector3<T>& n) {
@@ -59,9 +61,9 @@ struct AffineWarp {
   Vector2<T> operator()(const Vector2<T>& q) const { return to + linear * (q - from); }
 };
 
-// Computes the warp from `reference` to `source` for the pixel p of `reference`. The plane passes
-// through the point at distance `lambda` [m] on the ray of p and has the normal n [frame of
-// `reference`]. `rotation` and `centre`: R_ij and C_ij.
+// Computes the warp from `reference` to `source` around the pixel p of `reference`. Let X be the
+// point at the distance `lambda` [m] on the ray of p. The plane passes through X and has the
+// normal n [frame of `reference`], of any length. `rotation` and `centre`: R_ij and C_ij.
 template <class Reference, class Source, class T = typename Reference::Scalar>
 AffineWarp<T> affine_warp(const Reference& reference, const Source& source,
                           const Matrix3<T>& rotation, const Vector3<T>& centre, const Vector2<T>& p,

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The axial camera, the camera model of the whole project: the rays of all pixels in the scene
-// medium meet one axis through the camera centre. A camera is any type with
+// The axial camera, the camera model of the whole project. The scene medium is the medium of the
+// points to be imaged: water behind a port. In the scene medium, the rays of all pixels meet one
+// axis through the camera centre. A camera is any type with
 //
 //     AxialRay<T>   ray(pixel)                      back-projection
-//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with its derivatives by the pixel
+//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with the derivatives by the pixel
 //     Projection<T> project(X)                      exact forward projection
 //     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
 //     Vector3<T>    exit_point(pixel)               where the pixel's light enters the scene medium
 //
 // The SIMD code also needs
 //
-//     void               each_field(visit)          calls visit(number) for all numbers of the
+//     void               each_field(visit)          calls visit(number) for every number of the
 //                                                   camera in a fixed order
 //     Projector          projector()                has each_field(visit), too
 //     RigidTransform<T>  projector_frame()          from the camera frame to the projector's frame
-//     Image              projector().image(X)       of a point X in the projector's frame: its
-//                                                   projection, the derivative of the pixel by X,
-//                                                   and the origin of the ray through X
+//     Image              projector().image(X)       for a point X in the projector's frame: the
+//                                                   projection of X, the derivative of the pixel
+//                                                   by X, and the origin of the ray through X
 //
-// Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres at
+// Frames: x right, y down, z forward, origin at the camera centre, metres. Pixel centres lie at
 // integers.
 #pragma once
 
@@ -51,7 +52,7 @@ struct AxialRay {
   Vector3<T> at(const T& lambda) const { return origin + lambda * direction; }
 };
 
-// Derivatives of the ray by the pixel (u, v).
+// Derivatives of the ray by the pixel (u, v): column 0 by u, column 1 by v.
 template <class T>
 struct AxialRayJacobian {
   Matrix32<T> origin;
@@ -66,8 +67,9 @@ struct RigidTransform {
 };
 
 // The image of a point. `visible` is true if light from the point reaches the lens within the
-// camera's field. It is not a test against the image rectangle, which may be a little smaller than
-// the field. If `visible` is false, `pixel` is finite but meaningless.
+// camera's field. Each camera type defines its field, which may be larger than the image
+// rectangle. So the pixel of a visible point may lie outside the image rectangle. If `visible` is
+// false, `pixel` is finite but meaningless.
 template <class T>
 struct Projection {
   Vector2<T> pixel;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three meanings of depth, for the ray of any axial camera:
+// Conversions between the three meanings of depth, for a ray X = origin + lambda * direction of
+// any axial camera:
 //
-//     distance  lambda of X = origin + lambda * direction (the paper's eq. 4): in memory
-//     range     |X|, from the camera centre (the paper's eq. 5)
-//     z-depth   X.z in the camera frame: in files
+//     distance  lambda, the distance from the ray's origin (the paper's eq. 4); used in memory
+//     range     |X|, the distance from the camera centre (the paper's eq. 5)
+//     z-depth   the z of X in the camera frame; used in files
 //
-// All are in metres and in the camera frame. For a pinhole, distance and range are equal. If an
-// argument is NaN, the result is NaN.
+// All three are in metres. Rays are in the camera frame. For a pinhole, distance and range are
+// equal. If an argument is NaN, the result is NaN. docs/refraction.md names the paper.
 #pragma once
 
 #include <cmath>
@@ -21,8 +22,9 @@ T range_from_distance(const AxialRay<T>& ray, const T& distance) {
   return sqrt(ray.at(distance).squaredNorm());
 }
 
-// The distance of the ray's farther point at this range. If the range is smaller than the smallest
-// range on the ray's line, the result belongs to the point with the smallest range.
+// The distance [m] of the point with the given range [m] on the line of `ray`. If two points have
+// this range, the result is the larger distance. If every point of the line has a larger range,
+// the result is the distance of the point nearest to the camera centre.
 template <class T>
 T distance_from_range(const AxialRay<T>& ray, const T& range) {
   using std::sqrt;

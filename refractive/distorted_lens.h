@@ -11,7 +11,7 @@ template <class T>
 struct DistortedLens {
   PinholeLens<T> pinhole;  // focal lengths and principal point [px]
   LensDistortion<T> distortion;
-  T field = T(0);         // the lens is defined for |e| up to this (lens_field.h)
+  T field = T(0);         // largest |e| of the lens (lens_field.h)
   WidenedImage<T> image;  // a direction is visible if its pixel lies in this rectangle
 
   DistortedLens() = default;  // invalid until each_field() has filled it
@@ -25,14 +25,15 @@ struct DistortedLens {
     image = {width, height, static_cast<T>(widened)};
   }
 
-  // False if the lens images no direction at the pixel, because the pixel lies beyond its field.
+  // True if the lens images a direction of its field at `pixel` (to 0.01 px). False if the pixel
+  // lies beyond the image of the field.
   bool shows(const Vector2<T>& pixel) const {
     const Vector2<T> found = project(tangents(pixel).point).projection.pixel;
     return (found - pixel).squaredNorm() < T(1e-4);
   }
 
-  // True if shows() holds for the four corners of the image of width x height pixels. No pixel of
-  // the image is farther from the principal point than all corners.
+  // True if shows() holds for the four corners of the image of width x height pixels. The corners
+  // are sufficient, because the pixel farthest from the principal point is always a corner.
   bool shows_all(int width, int height) const {
     bool all = true;
     for (const T& u : {T(0), T(width - 1)})
@@ -49,8 +50,9 @@ struct DistortedLens {
     image.each_field(visit);
   }
 
-  // The image of a direction in air. It is not visible beyond the lens's field or outside the
-  // widened image. `by`: d(pixel)/d(tangents). Finite tangents give finite results.
+  // The image of a direction in air. `projection`: not visible if the direction lies beyond the
+  // lens's field or if the pixel lies outside the widened image. `by`: d(pixel)/d(tangents) [px].
+  // Finite tangents give finite results.
   struct Image {
     Projection<T> projection;
     Matrix2<T> by;
@@ -70,9 +72,9 @@ struct DistortedLens {
     return at;
   }
 
-  // The tangents of the direction that is imaged at the pixel, and d(tangents)/d(pixel). A pixel at
-  // which no direction is imaged gets a direction at the edge of the lens's field; project() maps
-  // this direction to another pixel. A NaN pixel gives NaN.
+  // The tangents of the direction that the lens images at `pixel`, and d(tangents)/d(pixel)
+  // [1/px]. If the lens images no direction at the pixel, the result is a direction at the edge of
+  // the lens's field, and project() maps this direction to another pixel. A NaN pixel gives NaN.
   PlanePoint<T> tangents(const Vector2<T>& pixel) const {
     const T inv_fx = T(1) / pinhole.fx, inv_fy = T(1) / pinhole.fy;
     const Vector2<T> d{(pixel.x() - pinhole.cx) * inv_fx, (pixel.y() - pinhole.cy) * inv_fy};

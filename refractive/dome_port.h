@@ -2,21 +2,22 @@
 // A dome port: a spherical shell of glass, with centre C, between the lens and the water. The
 // camera centre may lie anywhere within the inner sphere. docs/refraction.md explains the formulas.
 //
-// A ray that is refracted at spheres around C stays in its plane through C, and the product of the
+// A ray that is refracted at spheres around C stays in its plane through C. The product of the
 // refractive index and the ray's distance from C is constant (Bouguer's law). Let r be the unit
-// direction in air, k = |r x C| the distance of the ray in air from C, and mu the indices relative
-// to air. On the side of index mu of a sphere of radius R, the sine of the angle of incidence or
-// refraction is k i with i = 1/(mu R). At each sphere the ray turns by the difference of two such
-// angles. Altogether it turns away from the axis through the camera centre and C by
+// direction in air, k = |r x C| the distance of the ray in air from C, and mu_g and mu_w the
+// indices of glass and water relative to air. At a sphere of radius R, let mu be the index on one
+// side of the sphere. The sine of the angle between ray and normal on this side is k i with
+// i = 1/(mu R). At each sphere the ray turns by the difference of the two angles. Altogether the
+// ray turns away from the axis through the camera centre and C by
 //
 //     delta = asin(k i_1) - asin(k i_2) + asin(k i_3) - asin(k i_4)
 //
 //     i_1 = 1/r_in   i_2 = 1/(mu_g r_in)   i_3 = 1/(mu_g r_out)   i_4 = 1/(mu_w r_out).
 //
-// With S = sin(delta)/k and Q = cos(delta) + (r.C) S, the ray in water has the unit direction
-// D = Q r - S C, and its origin on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta) are
-// smooth functions of k^2 and need square roots only. So the formulas have no singularity on the
-// axis, and none for a centred dome.
+// Let S = sin(delta)/k and Q = cos(delta) + (r.C) S. The ray in water has the unit direction
+// D = Q r - S C. The origin of the ray on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta)
+// are smooth functions of k^2, and their computation needs only square roots. So the formulas have
+// no singularity on the axis or for a centred dome.
 #pragma once
 
 #include <cmath>
@@ -25,9 +26,9 @@
 
 namespace axial::refractive {
 
-// The measured parameters of the port, in the camera frame. Preconditions, which are checked when
-// a housing is read and not here: |centre| < inner_radius, thickness >= 0, n_glass and n_water >=
-// n_air > 0.
+// The measured parameters of the port, in the camera frame. Preconditions: |centre| <
+// inner_radius; thickness >= 0; n_glass and n_water >= n_air > 0. This type does not check its
+// preconditions. They are checked when a housing is read.
 template <class T>
 struct DomePort {
   Vector3<T> centre{T(0), T(0), T(0)};  // of the spheres [m]
@@ -44,7 +45,8 @@ struct DomePort {
   }
 };
 
-// The angle delta by which a ray at distance k from the centre turns, as functions of k^2.
+// Functions of the angle delta by which a ray turns. k is the distance [m] of the ray in air from
+// C. All members are functions of k^2.
 template <class T>
 struct DomeTurn {
   T sine;                      // S = sin(delta) / k
@@ -52,7 +54,7 @@ struct DomeTurn {
   T sine_slope, cosine_slope;  // their derivatives by k^2
 };
 
-// The port's geometry and media, in the form that the formulas above use.
+// The port's geometry and media, in the symbols of the formulas above.
 template <class T>
 struct DomePortOptics {
   Vector3<T> centre;
@@ -82,10 +84,10 @@ struct DomePortOptics {
     visit(inv_mu);
   }
 
-  // S on the axis, where k is 0.
+  // The value of S on the axis, where k is 0.
   T axial_sine() const { return in_air - in_glass + out_glass - out_water; }
 
-  // The turn of a ray whose squared distance from C in air is k2 [m^2].
+  // The turn of a ray. `k2`: squared distance of the ray in air from C [m^2].
   DomeTurn<T> turn(const T& k2) const {
     const DomeTurn<T> inner = difference(in_air, in_glass, k2);
     const DomeTurn<T> outer = difference(out_glass, out_water, k2);
@@ -101,7 +103,7 @@ struct DomePortOptics {
   }
 
  private:
-  // The same terms for the angle asin(k a) - asin(k b).
+  // The terms of DomeTurn for the angle asin(k a) - asin(k b) instead of delta.
   static DomeTurn<T> difference(const T& a, const T& b, const T& k2) {
     using std::sqrt;
     const T cos_a = sqrt(T(1) - k2 * a * a);

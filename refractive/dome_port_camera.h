@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pinhole lens behind a dome port: the exact axial camera. Rays are in closed form; projections
-// solve one scalar equation (dome_port_projector.h). The axis runs through the camera centre and
-// the centre of the dome. A centred dome does not refract.
+// A pinhole lens behind a dome port: the exact axial camera. The ray of a pixel has a closed form.
+// The projection of a point is the root of one scalar equation (dome_port_projector.h). The axis
+// runs through the camera centre and the centre of the dome. A dome that is centred on the camera
+// centre does not refract.
 #pragma once
 
 #include <cmath>
@@ -20,8 +21,9 @@ class DomePortCamera {
  public:
   using Scalar = T;
 
-  // width, height: the image in pixels. Points are projected within the image widened by `margin`
-  // pixels on every side (default: an eighth of the longer side).
+  // `width`, `height`: size of the image [px]. `margin` [px]: the image is widened by this margin
+  // on every side. A negative margin stands for an eighth of the longer side, rounded down. Points
+  // whose images lie outside the widened image are not visible (see project()).
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
                  int margin = -1)
       : DomePortCamera(lens, port,
@@ -29,7 +31,8 @@ class DomePortCamera {
                                        WidenedImage<T>::margin_or_default(width, height, margin))) {
   }
 
-  // As above, but for points whose images lie within `image` [px].
+  // The camera with a given image rectangle: a point is visible only if `image` [px] contains its
+  // pixel.
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, const WidenedImage<T>& image)
       : lens_(lens),
         inv_fx_(T(1) / lens.fx),
@@ -49,12 +52,12 @@ class DomePortCamera {
   const PinholeLens<T>& lens() const { return lens_; }
   const DomePortOptics<T>& optics() const { return projector_.optics(); }
 
-  // The orientation of virtual cameras (virtual_camera.h). It is that of the lens, because the axis
-  // of a dome may have any direction.
+  // The orientation of virtual cameras (virtual_camera.h): the orientation of the lens. Virtual
+  // cameras behind a dome do not look along the axis, because the axis may have any direction.
   Matrix3<T> rotation_to_axis() const { return Matrix3<T>::Identity(); }
 
-  // The ray in water of `pixel`, in the camera frame. Its origin is the virtual centre C_v on the
-  // axis. A NaN pixel gives a NaN ray.
+  // The ray of `pixel` in water, in the camera frame. The origin of the ray is the virtual centre
+  // C_v on the axis. A NaN pixel gives a NaN ray.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     AxialRayJacobian<T> unused;
     return ray(pixel, unused);
@@ -86,7 +89,8 @@ class DomePortCamera {
     return {(T(1) - shift) * C, q * r - turn.sine * C};
   }
 
-  // The point of the outer sphere on the pixel's ray, between glass and water, in the camera frame.
+  // The point at which the ray of `pixel` crosses the outer sphere, between glass and water
+  // [camera frame, m].
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     using std::sqrt;
     const AxialRay<T> ray = this->ray(pixel);
@@ -96,15 +100,21 @@ class DomePortCamera {
     return ray.at(sqrt(back * back + outer2 - from_centre.squaredNorm()) - back);
   }
 
-  // The projector, and the frame in which it takes points: the camera frame.
+  // The projector takes points in the camera frame. So projector_frame() is the identity.
   using Projector = DomePortProjector<T>;
   const Projector& projector() const { return projector_; }
   RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // Exact forward projection of X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of
-  // the ray through X, which is its virtual centre C_v. X is not visible if it is inside the dome,
-  // outside the widened image, behind the lens, a million kilometres away or farther, or NaN.
-  // Pixel and Jacobian of a point that is not visible are finite but meaningless.
+  // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
+  // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
+  //
+  // X is not visible in each of these cases:
+  //   - X lies inside the outer sphere of the dome.
+  //   - The image of X lies outside the widened image, or behind the lens.
+  //   - X is a million kilometres or more away from the centre of the dome.
+  //   - X is NaN.
+  // The pixel, the Jacobian and the origin of a point that is not visible are finite but
+  // meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     const DomePortImage<T> image = projector_.image(X);

@@ -2,7 +2,8 @@
 // The exact forward projection through a dome port. Camera frame, metres. The symbols are those of
 // dome_port.h.
 //
-// The direction in air r of the image of X lies in the plane through X and the axis:
+// Let r be the direction in air of the image of X. r lies in the plane through X and the axis. So
+// r is a function of one unknown, zeta:
 //
 //     r = (d - zeta C) / N         with d = X/|X| and N = |d - zeta C|
 //
@@ -10,7 +11,8 @@
 //
 //     h(zeta) = zeta - (1 - 1/(mu_w Q)) / |X| + S N / Q = 0.
 //
-// zeta is small, and nearly the same for all points at the same range, so that h is nearly linear.
+// zeta is small, and nearly the same for all points at the same range |X|. Therefore h is nearly
+// linear.
 #pragma once
 
 #include <cmath>
@@ -21,15 +23,15 @@
 
 namespace axial::refractive {
 
-// The image of a point, and its derivative by the point's position. Camera frame.
+// The image of a point, and the derivative of the pixel by the point. Camera frame.
 template <class T>
 struct DomePortImage {
   Projection<T> projection;
 
-  // The origin of the ray through the point: C_v.
+  // The origin of the ray through the point: the virtual centre C_v [camera frame, m].
   Vector3<T> origin() const { return origin_share * centre; }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [m].
+  // First-order motion of the pixel [px] when the point moves by `step` [camera frame, m].
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T along = towards.dot(step);
     const Vector3<T> turn = inv_range * (step - along * towards);
@@ -50,7 +52,8 @@ class DomePortProjector {
  public:
   DomePortProjector() = default;  // invalid until each_field() has filled it
 
-  // Points are projected if their images lie within `image` [px].
+  // A point is visible only if `image` [px] contains its pixel. image() returns finite but
+  // meaningless numbers for a point that is not visible.
   DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port,
                     const WidenedImage<T>& image)
       : optics_(port), in_air_(lens), image_(image), steps_(steps_for(optics_)) {}
@@ -66,8 +69,8 @@ class DomePortProjector {
 
   const DomePortOptics<T>& optics() const { return optics_; }
 
-  // The image of X [camera frame]. DomePortCamera::project states when it is visible. Everything in
-  // the result is finite, for every X.
+  // The image of X [camera frame, m]. DomePortCamera::project states when X is visible. Every
+  // number of the result is finite, for every X.
   DomePortImage<T> image(const Vector3<T>& X) const {
     using std::sqrt;
     const Vector3<T>& C = optics_.centre;
@@ -76,7 +79,7 @@ class DomePortProjector {
     const Mask<T> in_water = from_centre2 > optics_.outer_radius * optics_.outer_radius &&
                              from_centre2 < T(kFarthest * kFarthest);
     DomePortImage<T> image;
-    // A point outside the water is replaced, so that all results are finite.
+    // A point outside the water is replaced by (0, 0, 1), so that all results are finite.
     const Vector3<T> safe{select(in_water, X.x(), T(0)), select(in_water, X.y(), T(0)),
                           select(in_water, X.z(), T(1))};
     image.inv_range = T(1) / sqrt(safe.squaredNorm());
@@ -101,7 +104,7 @@ class DomePortProjector {
     T zeta, zeta_by_cosine, zeta_by_inv_range, origin_share;
   };
 
-  // h and its derivatives by zeta and by c = d.C.
+  // The value h, the derivatives of h by zeta and by c = d.C, and 1/Q.
   struct Slopes {
     T h, by_zeta, by_cosine, inv_q;
 
@@ -119,8 +122,8 @@ class DomePortProjector {
       const T ratio = turn.sine * norm * inv_q;
       h = zeta - (T(1) - optics.inv_mu * inv_q) * inv_range + ratio;
 
-      // Derivative of S N / Q - (1 - 1/(mu_w Q)) / |X|, from the derivatives of N, k^2 and p by the
-      // same variable.
+      // Derivative of S N / Q - (1 - 1/(mu_w Q)) / |X| by a variable. The arguments are the
+      // derivatives of N, k^2 and p = r.C by the same variable.
       const auto slope = [&](const T& dnorm, const T& dk2, const T& dp) {
         const T dsine = turn.sine_slope * dk2;
         const T dq = turn.cosine_slope * dk2 + p * dsine + turn.sine * dp;
@@ -165,8 +168,8 @@ class DomePortProjector {
     return (T(1) - optics_.inv_mu * inv_q) * inv_range - sine * inv_q;
   }
 
-  // The number of steps in single precision that keeps errors below 1e-4 px of a 1024 px wide
-  // image. It grows with the decentring |C| / inner_radius.
+  // The number of steps in single precision. This number keeps the errors below 1e-4 px in an
+  // image of 1024 px width. The number grows with the decentring |C| / inner_radius.
   static int steps_for(const DomePortOptics<T>& optics) {
     const T decentring2 = optics.centre2 * optics.in_air * optics.in_air;
     return decentring2 < T(0.01) ? 1 : (decentring2 < T(0.16) ? 2 : 4);

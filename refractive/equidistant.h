@@ -22,8 +22,9 @@ T power_series(const std::array<A, N>& a, const T& x) {
   return sum;
 }
 
-// Halves the angle twice by atan(r) = 2 atan(r / (1 + sqrt(1 + r^2))). The tangent of the quarter
-// angle is below 0.42, where nine terms of the series have an error of 1e-8.
+// theta / tan(theta) for tan^2(theta) = r2. The angle is halved twice by atan(r) = 2 atan(r / (1 +
+// sqrt(1 + r^2))). The tangent of the quarter angle is below 0.42, where nine terms of the series
+// of the arc tangent have an error of 1e-8.
 template <class T>
 T arc_over_tangent_in_fixed_steps(const T& r2) {
   using std::sqrt;
@@ -35,7 +36,8 @@ T arc_over_tangent_in_fixed_steps(const T& r2) {
   return T(4) * half * quarter * power_series(kSeries, half2 * quarter * quarter);
 }
 
-// The quotient of the series of sine and cosine. Their errors are below 1e-9 up to 90 degrees.
+// tan(theta) / theta as the quotient of two series: sin(theta) / theta and cos(theta). The errors
+// of the series are below 1e-9 up to 90 degrees.
 template <class T>
 T tangent_over_arc_in_fixed_steps(const T& theta2) {
   constexpr std::array<float, 7> kSine{
@@ -49,7 +51,7 @@ T tangent_over_arc_in_fixed_steps(const T& theta2) {
 
 }  // namespace detail
 
-// theta / tan(theta) as a function of r2 = tan^2(theta).
+// theta / tan(theta) as a function of r2 = tan^2(theta), for theta from 0 to below 90 degrees.
 template <class T>
 T arc_over_tangent(const T& r2) {
   if constexpr (kFixedSteps<T>) {

@@ -3,8 +3,9 @@
 // formulas.
 //
 // Axis frame: origin at the camera centre, z along the port's normal, metres. In this frame a
-// direction in air is (x, y, 1), and s = x^2 + y^2 is the squared tangent of its angle to the
-// normal. With refractive indices mu relative to air and
+// direction in air is (x, y, 1). Let s = x^2 + y^2, the squared tangent of the angle between the
+// direction and the normal. Let mu_g and mu_w be the refractive indices of glass and water
+// relative to air. With
 //
 //     q_g = sqrt(mu_g^2 + (mu_g^2 - 1) s)        q_w = sqrt(mu_w^2 + (mu_w^2 - 1) s)
 //
@@ -17,9 +18,9 @@
 
 namespace axial::refractive {
 
-// The measured parameters of the port, in the camera frame. Preconditions, which are checked when
-// a housing is read and not here: unit normal with normal.z > 0, distance and thickness >= 0,
-// n_glass and n_water >= n_air > 0.
+// The measured parameters of the port, in the camera frame. Preconditions: unit normal with
+// normal.z > 0; distance and thickness >= 0; n_glass and n_water >= n_air > 0. This type does not
+// check its preconditions. They are checked when a housing is read.
 template <class T>
 struct FlatPort {
   Vector3<T> normal{T(0), T(0), T(1)};  // from the camera to the water
@@ -36,7 +37,7 @@ struct FlatPort {
   }
 };
 
-// Computes q(s) = sqrt(b + c s) of one medium, with b = mu^2 and c = mu^2 - 1.
+// q(s) = sqrt(b + c s) of a medium with the index mu relative to air: b = mu^2, c = mu^2 - 1.
 template <class T>
 struct Medium {
   T b, c, inv_mu;
@@ -75,19 +76,20 @@ struct FlatPortOptics {
   // Height of the outer (glass/water) plane on the axis [m].
   T outer() const { return distance + thickness; }
 
-  // The limit of radius(t, z_water) / t for t -> 0.
+  // The limit [m] of radius(t, z_water) / t for t -> 0.
   T paraxial_secant(const T& z_water) const {
     return distance + thickness * glass.inv_mu + z_water * water.inv_mu;
   }
 
-  // Distance [m] from the axis at which the ray with the in-air tangent t reaches the height
-  // `z_water` [m] above the outer plane. Strictly increasing in t.
+  // The distance [m] from the axis at which a ray reaches the height `z_water` [m] above the outer
+  // plane. `t`: tangent of the ray in air. The result is strictly increasing in t.
   T radius(const T& t, const T& z_water) const {
     const T s = t * t;
     return t * (distance + thickness / glass.q(s) + z_water / water.q(s));
   }
 
-  // Height [m] on the axis of the virtual camera centre C_v of the rays with s = tan^2(theta_air).
+  // The height [m] of the virtual camera centre C_v on the axis, for the rays with s =
+  // tan^2(theta_air).
   T virtual_centre(const T& s) const {
     const T q_w = water.q(s);
     return outer() - (distance + thickness / glass.q(s)) * q_w;

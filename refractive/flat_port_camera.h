@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pinhole lens behind a flat port: the exact axial camera. Rays are in closed form; projections
-// solve one scalar equation (flat_port_solver.h). The derivatives of both are in closed form.
+// A pinhole lens behind a flat port: the exact axial camera. The ray of a pixel has a closed form.
+// The projection of a point is the root of one scalar equation (flat_port_solver.h). The
+// derivatives of rays and projections have closed forms.
 //
-// Rays are computed in the camera frame, without a rotation into the axis frame: with n the port's
-// normal, the component v - (n.v) n of a vector v replaces its x and y in the axis frame.
-// Projections are computed in the port's frame (flat_port_projector.h).
+// Let n be the unit normal of the port. Rays are computed in the camera frame. Where a formula in
+// the axis frame (flat_port.h) uses the x and y of a vector v, the code uses the component v -
+// (n.v) n. Projections are computed in the port's frame (flat_port_projector.h).
 #pragma once
 
 #include <cmath>
@@ -23,8 +24,9 @@ class FlatPortCamera {
  public:
   using Scalar = T;
 
-  // width, height: the image in pixels. Points are projected within the image widened by `margin`
-  // pixels on every side (default: an eighth of the longer side).
+  // `width`, `height`: size of the image [px]. `margin` [px]: the image is widened by this margin
+  // on every side. A negative margin stands for an eighth of the longer side, rounded down. Points
+  // whose images lie outside the widened image are not visible (see project()).
   FlatPortCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                  int margin = -1)
       : lens_(lens),
@@ -36,8 +38,9 @@ class FlatPortCamera {
         projector_(lens, port, width, height,
                    WidenedImage<T>::margin_or_default(width, height, margin)) {}
 
-  // As above, but for points within `field`, which must be computed for this port, and with an
-  // image within `image` [px].
+  // The camera with a given field and a given image rectangle. A point is visible only if `field`
+  // contains the point and `image` [px] contains the pixel of the point. Precondition: `field` was
+  // computed for `port`.
   FlatPortCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, const FlatPortField<T>& field,
                  const WidenedImage<T>& image)
       : lens_(lens),
@@ -50,9 +53,10 @@ class FlatPortCamera {
 
   FlatPortCamera() = default;  // invalid until each_field() has filled it
 
-  // Calls visit(number) for every number that the camera consists of, in a fixed order. The SIMD
-  // code copies several cameras into the lanes of one camera in this way. One number is an int,
-  // the number of projection steps. Lanes that work together take the largest step count.
+  // Calls visit(number) for every number of the camera, in a fixed order. The SIMD code uses this
+  // function to copy several cameras into the lanes of one camera. All numbers have the type T,
+  // except the number of projection steps, which is an int. All lanes together take the largest of
+  // their step counts.
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -70,10 +74,10 @@ class FlatPortCamera {
   const FlatPortOptics<T>& optics() const { return optics_; }
   const Matrix3<T>& rotation_to_axis() const { return rotation_to_axis_; }
 
-  // The ray in water of `pixel`, in the camera frame. Its origin is the virtual centre C_v on the
-  // axis. A pixel that looks parallel to the port or away from it has no ray in water: the result
-  // is then a finite grazing ray with a finite but meaningless Jacobian. A NaN pixel gives a NaN
-  // ray.
+  // The ray of `pixel` in water, in the camera frame. The origin of the ray is the virtual centre
+  // C_v on the axis. A pixel has no ray in water if its direction in air is parallel to the port
+  // or points away from the port. The result is then a finite grazing ray, and its Jacobian is
+  // finite but meaningless. A NaN pixel gives a NaN ray.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     using std::sqrt;
     const Vector3<T> across = air_direction(pixel).across;
@@ -87,25 +91,34 @@ class FlatPortCamera {
 
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const;
 
-  // The point of the outer plane on the pixel's ray, between glass and water, in the camera frame.
+  // The point at which the ray of `pixel` crosses the outer plane, between glass and water [camera
+  // frame, m].
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     const Vector3<T> across = air_direction(pixel).across;
     const T k = optics_.distance + optics_.thickness / optics_.glass.q(across.squaredNorm());
     return k * across + optics_.outer() * port_.normal;
   }
 
-  // The projector, and the frame in which it takes points: transform points with this frame first.
+  // The projector takes points in the port's frame. projector_frame() is the transformation from
+  // the camera frame to the port's frame.
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
   RigidTransform<T> projector_frame() const {
     return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 
-  // Exact forward projection of X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of
-  // the ray through X, which is its virtual centre C_v. X is not visible if it is on the lens's
-  // side of the outer plane, outside the widened image, beyond total reflection, or NaN. In single
-  // precision X is not visible either if its distance to the outer plane is below 0.1 mm or above
-  // 100 km. Pixel and Jacobian of a point that is not visible are finite but meaningless.
+  // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
+  // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
+  //
+  // X is not visible in each of these cases:
+  //   - X lies on the lens's side of the outer plane.
+  //   - The image of X lies outside the widened image, or behind the lens.
+  //   - No ray of the camera's field reaches X, for example because of total reflection.
+  //   - X is NaN.
+  //   - The distance of X to the outer plane is 0.1 mm or less, or 100 km or more, in single
+  //     precision. For all other scalars the limits are 1 nm and a million kilometres.
+  // The pixel, the Jacobian and the origin of a point that is not visible are finite but
+  // meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const;
 
@@ -146,7 +159,7 @@ AxialRay<T> FlatPortCamera<T>::ray(const Vector2<T>& pixel, AxialRayJacobian<T>&
   const T inv_norm = T(1) / sqrt(s * inv_qw * inv_qw + T(1));
   const Vector3<T> direction = (inv_qw * inv_norm) * a + inv_norm * n;
 
-  // Derivatives by s of q_w, of the height of C_v, and of 1/q_w.
+  // Derivatives by s: of q_w, of the height of C_v, and of 1/q_w.
   const T dqw = T(0.5) * optics_.water.c * inv_qw;
   const T dz = T(0.5) * glass_term * inv_qg * inv_qg * optics_.glass.c * q_w -
                (optics_.distance + glass_term) * dqw;

@@ -12,8 +12,8 @@
 
 namespace axial::refractive {
 
-// Rotation from the camera frame to the axis frame of a port with the given unit normal: the
-// smallest rotation that takes the normal to +z. Precondition normal.z > -1.
+// Rotation from the camera frame to the axis frame (flat_port.h) of a port with the unit normal n.
+// Of all rotations that take n to +z, the result has the smallest angle. Precondition: n.z > -1.
 template <class T>
 Matrix3<T> axis_from_camera(const Vector3<T>& n) {
   const T k = T(1) / (T(1) + n.z());
@@ -24,10 +24,11 @@ Matrix3<T> axis_from_camera(const Vector3<T>& n) {
   return rotation;
 }
 
-// Tangent of the largest in-air incidence on the port over the image rectangle, widened by `margin`
-// pixels on every side. The four corners are enough, because the pixels below a given incidence
-// form a convex set. The result is at most kGrazing, which is also the result if a corner looks
-// away from the port (tilt and field of view beyond 90 degrees).
+// The largest incidence on the port in air: the result is the tangent of this angle. The incidence
+// is taken over the image rectangle of width x height pixels, widened by `margin` pixels on every
+// side. The four corners are sufficient, because the pixels below a given incidence form a convex
+// set. A larger tangent than kGrazing is reduced to kGrazing. The result is also kGrazing if a
+// corner looks parallel to the port or away from the port.
 template <class T>
 T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port, int width,
                             int height, const T& margin) {
@@ -47,19 +48,20 @@ T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port,
   return largest < kGrazing ? largest : kGrazing;
 }
 
-// The image of a point, and its derivative by the point's position. Port's frame.
+// The image of a point, and the derivative of the pixel by the point. Port's frame.
 template <class T>
 struct FlatPortImage {
   Projection<T> projection;
   T origin_height;  // z of the virtual centre C_v [m]
 
-  // The origin of the ray through the point: C_v.
+  // The origin of the ray through the point: the virtual centre C_v [port's frame, m].
   Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [m]. The in-air direction
-  // is (x t/rho, y t/rho, 1). A motion of the point across the radius changes the direction by
-  // t/rho times the motion, a motion along the radius by dt/d(rho) times the motion, and a motion
-  // upwards turns it towards the axis.
+  // First-order motion of the pixel [px] when the point moves by `step` [port's frame, m]. The
+  // in-air direction is (x t/rho, y t/rho, 1). A motion of the point perpendicular to the radius
+  // changes the direction by t/rho times the motion. A motion along the radius changes the
+  // direction by dt/d(rho) times the motion. A motion upwards turns the direction towards the
+  // axis.
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();
     const T outwards = stretch * radial - sink * step.z();
@@ -68,10 +70,10 @@ struct FlatPortImage {
   }
 
   Vector2<T> across;  // the point's x and y
-  // m = t/rho, stretch = (dt/d(rho) - t/rho) / rho^2, sink = -(dt/dz) / rho. All three are divided
-  // by the z of the in-air direction in the camera frame.
+  // Let depth be the z of the in-air direction in the camera frame. m = t / (rho depth),
+  // stretch = (dt/d(rho) - t/rho) / (rho^2 depth), sink = -(dt/dz) / (rho depth).
   T m, stretch, sink;
-  Matrix2<T> lens;  // d(pixel)/d(x and y of the in-air direction), times the same z
+  Matrix2<T> lens;  // d(pixel)/d(x and y of the in-air direction), times depth
 };
 
 template <class T>
@@ -79,8 +81,11 @@ class FlatPortProjector {
  public:
   FlatPortProjector() = default;  // invalid until each_field() has filled it
 
-  // Points are projected within the image of width x height pixels, widened by `margin` pixels on
-  // every side.
+  // `lens`: the lens in air. `width`, `height`: size of the image [px]. `margin` [px], >= 0: the
+  // projector serves the image widened by this margin on every side: u from -margin to width - 1 +
+  // margin, v from -margin to height - 1 + margin. For a point whose image lies outside the
+  // widened image, image() returns a projection with `visible` false and finite but meaningless
+  // numbers. image() takes points in the port's frame [m].
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
       : FlatPortProjector(
@@ -90,8 +95,9 @@ class FlatPortProjector {
                              largest_incidence_tangent(lens, port, width, height, T(0))),
             WidenedImage<T>(width, height, margin)) {}
 
-  // Points are projected if they lie within `field`, which must be computed for this port, and
-  // their images within `image` [px].
+  // The projector with a given field and a given image rectangle. A point is visible only if
+  // `field` contains the point and `image` [px] contains the pixel of the point. Precondition:
+  // `field` was computed for `port`.
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port,
                     const FlatPortField<T>& field, const WidenedImage<T>& image)
       : optics_(port), field_(field), cx_(lens.cx), cy_(lens.cy), image_(image) {
@@ -112,13 +118,14 @@ class FlatPortProjector {
     image_.each_field(visit);
   }
 
-  // The image of X [port's frame]. FlatPortCamera::project states when it is visible. Everything
-  // in the result is finite, for every X.
+  // The image of X [port's frame, m]. FlatPortCamera::project states when X is visible. Every
+  // number of the result is finite, for every X.
   FlatPortImage<T> image(const Vector3<T>& X) const {
     FlatPortImage<T> image;
     const T radius2 = X.x() * X.x() + X.y() * X.y();
     const Mask<T> in_field = field_.contains(radius2, X.z());
-    // A point outside the field is replaced by a point of its edge, so that all results are finite.
+    // A point outside the field is replaced by a point of the field's edge, so that all results
+    // are finite.
     const T z_water = field_.nearest_height(X.z());
     const T rho2 = field_.nearest_rho2(radius2, z_water);
     image.across = {select(in_field, X.x(), T(0)), select(in_field, X.y(), T(0))};
@@ -150,7 +157,7 @@ class FlatPortProjector {
  private:
   FlatPortOptics<T> optics_;
   FlatPortField<T> field_;
-  // The axes of the camera in the port's frame. The first two are multiplied by fx and fy.
+  // The axes of the camera frame in the axis frame. The first two are multiplied by fx and fy.
   Vector3<T> row_u_, row_v_, row_z_;
   T cx_, cy_;
   WidenedImage<T> image_;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equation of the exact forward projection through a flat port. Its root is the in-air tangent
-// t of the ray that passes through the point with distance rho from the axis and height z_water
-// above the outer plane:
+// The equation of the exact forward projection through a flat port (axis frame, metres). Consider
+// a point at the distance rho from the axis and at the height z_water above the outer plane. The
+// in-air tangent t of the ray through this point is the root of
 //
-//     t (d_a + d_g/q_g(t^2) + z_water/q_w(t^2)) - rho = 0               (axis frame, metres)
+//     t (d_a + d_g/q_g(t^2) + z_water/q_w(t^2)) - rho = 0
 //
-// It is solved for m = t / rho, because m is finite on the axis and depends on rho^2 only:
+// where d_a is the port's distance and d_g is its thickness. The equation is solved for
+// m = t / rho, because m is finite on the axis and depends on rho only through rho^2:
 //
 //     F(m) = m (d_a + d_g/q_g(s) + z_water/q_w(s)) - 1 = 0              with s = m^2 rho^2
 //
@@ -20,22 +21,25 @@
 namespace axial::refractive {
 
 // The points that a camera can see: points in water whose in-air tangent is at most the largest
-// tangent of the image. At height z_water above the outer plane they fill a disc of radius
-// offset + slope * z_water. The disc is exact, because radius(t, z_water) increases with t. Points
-// outside the field must not reach the fixed-step solver: it could return a pixel inside the image.
+// tangent of the image. At the height z_water above the outer plane, these points fill a disc
+// around the axis. The radius of the disc is offset + slope * z_water. This radius is exact,
+// because radius(t, z_water) of FlatPortOptics increases with t. Points outside the field must not
+// reach the fixed-step solver, because the solver could return a pixel inside the image for them.
 template <class T>
 struct FlatPortField {
-  T offset, slope;  // radius of the disc at z_water: offset + slope * z_water [m]
-  // radius / t as a linear function of z_water, at the tangent `promised` ("known", because there
-  // the first guess of the solver is exact) and on the axis. inv_known2 is 1 / promised^2.
+  T offset, slope;  // offset [m]; slope [m/m]
+  // The secant radius / t is a linear function of z_water at a fixed tangent t. `known_...`: its
+  // coefficients at the tangent `promised` of the constructor, where the first guess of the solver
+  // is exact. `paraxial_...`: its coefficients on the axis. inv_known2 is 1 / promised^2.
   T known_offset, known_slope, inv_known2;
   T paraxial_offset, paraxial_slope;
   int steps;  // of the solver in single precision; all other scalars ignore it
 
   FlatPortField() = default;
-  // `tangent`: the largest in-air tangent of the field. `promised`, at most `tangent`: in single
-  // precision the number of steps keeps the errors below 1e-4 px of a 1024 px wide image up to
-  // this tangent. Up to 1.3 times this tangent the errors stay below 0.01 px.
+  // `tangent`: the largest in-air tangent of the field. `promised`: the largest in-air tangent
+  // with full accuracy in single precision. Precondition: 0 < promised <= tangent. The number of
+  // steps in single precision is chosen for `promised`. In an image of 1024 px width, the errors
+  // stay below 1e-4 px up to `promised`, and below 0.01 px up to 1.3 times `promised`.
   FlatPortField(const FlatPortOptics<T>& optics, const T& tangent, const T& promised)
       : inv_known2(T(1) / (promised * promised)),
         paraxial_offset(optics.paraxial_secant(T(0))),
@@ -61,14 +65,17 @@ struct FlatPortField {
 
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
-  // rho2: squared distance to the axis [m^2]. False for NaN.
+  // True if the field contains the point. rho2: squared distance of the point to the axis [m^2].
+  // z_water: its height above the outer plane [m]. False for NaN.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
   }
 
-  // Height and squared radius of the point itself if the field contains it, and of a point on the
-  // field's edge if not.
+  // The height [m] and the squared radius [m^2] at which the solver evaluates a point. A point in
+  // the field keeps its values. The values of all other points are limited to the edge of the
+  // field. A NaN height becomes the lowest height, and a NaN rho2 becomes the edge. Precondition
+  // of nearest_rho2(): z_water is a result of nearest_height().
   T nearest_height(const T& z_water) const {
     return lesser(greater(z_water, T(kLowest)), T(kHighest));
   }
@@ -78,13 +85,14 @@ struct FlatPortField {
   }
 
  private:
-  // Heights [m]. The solver forms sixth powers of lengths, which must stay within the range of
-  // single precision.
+  // Limits of z_water [m]. The solver forms sixth powers of lengths, which must stay within the
+  // range of single precision.
   static constexpr float kLowest = kFixedSteps<T> ? 1e-4f : 1e-9f;
   static constexpr float kHighest = kFixedSteps<T> ? 1e5f : 1e9f;
 };
 
-// m = 1 / secant as a fraction, so that terms in m^2 do not wait for the division.
+// m = 1 / secant, stored as numerator and denominator. Terms in m^2 are computed from both, so
+// that they do not wait for the division.
 template <class T>
 struct InverseSecant {
   T numerator, denominator;
@@ -93,14 +101,15 @@ struct InverseSecant {
 };
 
 // F and its derivatives at m. The code minimises the length of the chain of dependent operations,
-// not their number: terms without a square root are computed while the square roots are under way.
+// not the number of operations. Terms without a square root are computed while the square roots
+// are under way.
 template <class T>
 struct FlatPortSlopes {
   T inv_qw;
   T inv_qw_slope;       // its derivative by m
   T secant;             // (F + 1) / m, which is radius / t
   T tangent;            // dF/dm, which is d(radius)/dt
-  T half_curvature;     // of F by m: half the second derivative
+  T half_curvature;     // half of the second derivative d^2F/dm^2
   T spread;             // (secant - tangent) / s
   T half_spread_slope;  // half of d(spread)/dm
 
@@ -135,11 +144,11 @@ struct FlatPortSlopes {
       : FlatPortSlopes(optics, {m, T(1)}, rho2, z_water) {}
 };
 
-// The first guess of m, as the inverse of an interpolated secant radius / t. The interpolation is
-// linear in the squared radius, between the axis and the known tangent of the field, and exact at
-// both. Against the paraxial guess it saves more than one step. Far beyond the known tangent the
-// interpolated secant would become zero or negative, and no step could correct that: it is
-// therefore limited to at least half the secant of the known tangent.
+// The first guess of m: m = 1 / secant with an interpolated secant radius / t. The interpolation
+// is linear in the squared radius. It is exact on the axis and at the known tangent of the field.
+// It saves more than one step compared with the paraxial guess. Far beyond the known tangent the
+// interpolated secant would become zero or negative, and no step could correct such a guess.
+// Therefore a secant below half the secant at the known tangent is raised to this half.
 template <class T>
 struct FirstGuess {
   InverseSecant<T> m;
@@ -174,9 +183,11 @@ struct FlatPortRoot {
 
 namespace detail {
 
-// The last step is Chebyshev's: it has third order, like Halley's, and its only division is one
-// that the derivative needs too. The derivatives at the root are extrapolated to first order from
-// the start of the last step, because only the Jacobian uses them.
+// Solves F(m) = 0 in field.steps steps. The last step is a step of Chebyshev's method, which has
+// third order, like Halley's method. Chebyshev's step needs only the division by dF/dm, which the
+// derivative of the projection needs as well. The terms for the derivative are extrapolated to
+// first order from the start of the last step to the root. This is sufficient, because only the
+// Jacobian uses them.
 template <class T>
 FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                      const T& rho2, const T& z_water) {
@@ -227,8 +238,9 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
 
 }  // namespace detail
 
-// Solves F(m) = 0. rho2: squared distance of the point to the axis [m^2]. z_water: its height above
-// the outer plane [m]. Precondition: `field` contains the point.
+// Solves F(m) = 0. `rho2`: squared distance of the point to the axis [m^2]. `z_water`: height of
+// the point above the outer plane [m]. Precondition: `field` contains the point, or the point lies
+// on the edge of `field`.
 template <class T>
 FlatPortRoot<T> solve_projection(const FlatPortOptics<T>& optics, const FlatPortField<T>& field,
                                  const T& rho2, const T& z_water) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera whose lens has distortion, without a port or behind a flat port or a dome. It combines a
-// DistortedLens, which maps tangents in air to pixels, with an inner camera of this folder whose
-// lens has no distortion. The "pixels" of the inner camera are tangents in air. Rays and
-// projections are those of the inner camera; derivatives follow by the chain rule.
+// A camera whose lens has distortion. The camera is without a port, or behind a flat port or a
+// dome. It combines two parts. A DistortedLens maps tangents in air to pixels. An inner camera of
+// this folder, whose lens has no distortion, maps points to tangents: the "pixels" of the inner
+// camera are tangents in air. The chain rule gives the derivatives.
 #pragma once
 
 #include <utility>
@@ -13,7 +13,8 @@
 
 namespace axial::refractive {
 
-// The image of a point, and its derivative by the point's position.
+// The image of a point, and the derivative of the pixel by the point. Frame of the inner
+// projector.
 template <class T, class InnerImage>
 struct LensImage {
   Projection<T> projection;
@@ -66,8 +67,8 @@ PinholeLens<T> tangent_lens() {
   return {T(1), T(1), T(0), T(0)};
 }
 
-// The image rectangle of the inner camera, larger than any image in tangents. The lens
-// with distortion tests against the real image rectangle.
+// The image rectangle of the inner camera, in tangents. It is so large that it excludes no image.
+// The DistortedLens tests against the real image rectangle.
 template <class T>
 WidenedImage<T> all_tangents() {
   return {1, 1, T(1e6)};
@@ -75,8 +76,9 @@ WidenedImage<T> all_tangents() {
 
 namespace detail {
 
-// Tangent of the largest in-air incidence on the port over `image` [px], at most kGrazing. Only the
-// border is sampled, because the incidence grows towards the border.
+// The largest incidence on the port in air over `image` [px]: the result is the tangent of this
+// angle. A larger tangent than kGrazing is reduced to kGrazing. Only the border of `image` is
+// sampled, because the incidence grows towards the border.
 template <class T>
 T largest_incidence_tangent(const DistortedLens<T>& lens, const FlatPort<T>& port,
                             const WidenedImage<T>& image) {
@@ -128,7 +130,7 @@ DomePortCamera<T> inner_camera(const DistortedLens<T>&, const DomePort<T>& port)
 
 }  // namespace detail
 
-// `Inner`: PinholeCamera, FlatPortCamera or DomePortCamera.
+// A camera with a distorted lens. `Inner`: PinholeCamera, FlatPortCamera or DomePortCamera.
 template <class Inner>
 class LensCamera {
  public:
@@ -137,8 +139,8 @@ class LensCamera {
 
   LensCamera() = default;  // invalid until each_field() has filled it
 
-  // The camera without a port (Inner is PinholeCamera), and the camera behind a port of the kind
-  // that Inner has.
+  // Without a port if Inner is PinholeCamera. Otherwise behind `port`: a FlatPort for
+  // FlatPortCamera, a DomePort for DomePortCamera.
   explicit LensCamera(const DistortedLens<T>& lens)
       : lens_(lens), inner_(detail::inner_camera(lens)) {}
   template <class Port>
@@ -155,8 +157,8 @@ class LensCamera {
   const DistortedLens<T>& distorted_lens() const { return lens_; }
   const Inner& inner() const { return inner_; }
 
-  // The inner camera's ray for the pixel's tangents. A pixel at which the lens images no direction
-  // gets the ray of a direction at the edge of the lens's field.
+  // The ray of the inner camera for the tangents of `pixel`. If the lens images no direction at
+  // the pixel, the result is the ray of a direction at the edge of the lens's field.
   AxialRay<T> ray(const Vector2<T>& pixel) const { return inner_.ray(lens_.tangents(pixel).point); }
 
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
@@ -176,8 +178,9 @@ class LensCamera {
   Projector projector() const { return {lens_, inner_.projector()}; }
   RigidTransform<T> projector_frame() const { return inner_.projector_frame(); }
 
-  // As project() of the inner camera. In addition, a point beyond the lens's field or outside the
-  // widened image of the lens is not visible.
+  // As project() of the inner camera, with the pixel and the Jacobian of the distorted lens. A
+  // point is also not visible if its direction lies beyond the lens's field, or if its pixel lies
+  // outside the widened image of the lens.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     Matrix23<T> by_point;

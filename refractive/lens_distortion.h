@@ -22,8 +22,7 @@
 
 namespace axial::refractive {
 
-// The result of a mapping from plane to plane: the point, and `by`, its derivative by the point
-// that was mapped.
+// The result of a mapping f from plane to plane at a point p: `point` is f(p), and `by` is df/dp.
 template <class T>
 struct PlanePoint {
   Vector2<T> point;
@@ -54,17 +53,18 @@ struct LensDistortion {
     visit(p1), visit(p2), visit(prism.x()), visit(prism.y());
   }
 
-  // Maps the tangents (u, v) to e, and its inverse, which maps e to the tangents. Precondition of
-  // the inverse for a fisheye: |e| below 90 degrees [rad].
+  // spread_out() maps the tangents (u, v) to e. drawn_in() is the inverse and maps e to the
+  // tangents. Precondition of drawn_in() for a fisheye: |e| < pi/2.
   PlanePoint<T> spread_out(const Vector2<T>& tangents) const;
   PlanePoint<T> drawn_in(const Vector2<T>& e) const;
 
   // Maps e to d.
   PlanePoint<T> bent(const Vector2<T>& e) const;
 
-  // The inverse of bent() by Newton's method, for |e| <= radius. If e would lie beyond, the result
-  // is a point of the circle |e| = radius, roughly in the direction of d. `by` is d(e)/d(d). A NaN
-  // argument gives NaN.
+  // The inverse of bent() by Newton's method: maps d to e. `by` is d(e)/d(d). The result is
+  // limited to |e| <= radius. If d is not the image of a point of this circular disc, the result
+  // is a point of the circle |e| = radius, roughly in the direction of d. A NaN argument gives
+  // NaN.
   PlanePoint<T> straightened(const Vector2<T>& d, const T& radius) const;
 };
 
@@ -83,11 +83,11 @@ Matrix2<T> inverse_of(const Matrix2<T>& m) {
 
 namespace detail {
 
-// The matrix across I + (along - across) p p^T / p^2, which scales by `along` in the direction of p
-// and by `across` perpendicular to p.
+// The matrix across I + (along - across) p p^T / |p|^2, which scales by `along` in the direction
+// of p and by `across` perpendicular to p. p2: |p|^2.
 template <class T>
 Matrix2<T> stretch(const Vector2<T>& p, const T& p2, const T& along, const T& across) {
-  // In the centre `along` and `across` differ by rounding only.
+  // At the centre `along` and `across` differ by rounding only.
   const T turn = (along - across) / greater(p2, T(1e-12));
   Matrix2<T> matrix;
   matrix << across + turn * p.x() * p.x(), turn * p.x() * p.y(),  //
@@ -95,7 +95,7 @@ Matrix2<T> stretch(const Vector2<T>& p, const T& p2, const T& along, const T& ac
   return matrix;
 }
 
-// p, shortened to at most `radius`.
+// Returns p if |p| <= radius. Otherwise returns p shortened to the length `radius`.
 template <class T>
 Vector2<T> within(const Vector2<T>& p, const T& radius) {
   using std::sqrt;

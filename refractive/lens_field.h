@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field of a lens: how far from the optical axis its distortion model is valid. Beyond the
-// field to which they were fitted, polynomials may turn back, and directions from there would be
-// projected into the image a second time.
+// The field of a lens: how far from the optical axis its distortion model is valid. A polynomial
+// may turn back beyond the field to which it was fitted. Directions beyond the field would then
+// have images inside the image, where other directions are already imaged.
 #pragma once
 
 #include <cmath>
@@ -13,26 +13,27 @@
 
 namespace axial::refractive {
 
-// The widest field of a lens [rad]. No lens behind a port images directions that are farther from
-// the optical axis, and at 90 degrees a direction has no finite tangents.
+// The widest field of a lens [rad]. A lens behind a port images no directions farther from the
+// optical axis. At 90 degrees a direction has no finite tangents.
 inline constexpr double kWidestAngle = 85 * std::numbers::pi / 180;
 
 namespace detail {
 
-// |e| (lens_distortion.h) of the directions at `angle` [rad] from the optical axis.
+// The length |e| (lens_distortion.h) for directions at `angle` [rad] from the optical axis.
 inline double field_at(const LensDistortion<double>& distortion, double angle) {
   const double r = distortion.spread * std::tan(angle);
   return distortion.fisheye > 0 ? std::atan(r) : r;
 }
 
-// Properties of the image of a circle |e| = radius.
+// Properties of the curve to which the distortion maps the circle |e| = radius.
 struct FieldCircle {
-  // A growing angle moves every point of the image outwards, and the image is not mirrored.
+  // True if each sampled point of the curve moves outwards when the angle from the optical axis
+  // grows, and if the distortion does not mirror the image.
   bool grows = true;
   double reaches = 1e9;  // smallest distance of the image from the centre [focal lengths]
 };
 
-// Samples the circle |e| = radius. `by_angle`: d|e|/d(angle) at this radius.
+// Samples the circle |e| = radius at 16 points. `by_angle`: d|e|/d(angle) at this radius.
 inline FieldCircle field_circle(const LensDistortion<double>& distortion, double radius,
                                 double by_angle) {
   // Least growth of the distance from the image's centre [focal lengths per radian]. Below it, the
@@ -54,10 +55,11 @@ inline FieldCircle field_circle(const LensDistortion<double>& distortion, double
 
 }  // namespace detail
 
-// The largest |e| (lens_distortion.h) up to which a direction that moves away from the optical axis
-// also moves outwards in the image. The search ends once all directions of one |e| lie beyond the
-// corners of `image` [px], and at kWidestAngle. The result is 0 if the condition fails already next
-// to the axis, for example because the lens mirrors the image.
+// Returns the field of the lens: the largest |e| (lens_distortion.h) up to which directions that
+// move away from the optical axis also move outwards in the image. The search runs in steps from
+// the axis outwards. It ends at the first step at which all sampled directions lie beyond the
+// corners of `image` [px], and at kWidestAngle at the latest. The result is 0 if directions next
+// to the axis already do not move outwards, for example because the lens mirrors the image.
 inline double lens_field(const PinholeLens<double>& lens, const LensDistortion<double>& distortion,
                          const WidenedImage<double>& image) {
   double corner = 0;  // distance of the farthest corner from the principal point [focal lengths]

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's forward projection (Algorithm 1): bisection on the intersection line of the plane of
-// refraction and the image, using only a table of the pixels' rays. Its error is about a quarter of
-// a pixel. It serves comparisons, and cameras of which only a table is known. The exact projection
-// is faster.
+// The paper's forward projection (Algorithm 1; docs/refraction.md names the paper). It bisects the
+// line in which the plane of refraction meets the image. It uses only a table of the pixels' rays.
+// Its error is about a quarter of a pixel. It serves comparisons, and cameras of which only a
+// table is known. The exact projection (FlatPortCamera::project) is faster.
 //
 // The printed algorithm leaves some cases open and treats others wrongly. This implementation
-//   - makes the table one pixel larger than the image on every side and clips the line half a pixel
-//     outside the image's area. So rounding never leaves the table, and a point is outside the
-//     image if and only if the search ends outside the image's area. (The printed algorithm drops
-//     points whose search ends within half a pixel of the line's end, though many are inside.)
-//   - tests at least once, also on a line that is too short to bisect, where the printed variable
-//     `forward` has no value,
-//   - returns x_p for a point on the axis, where the line has no direction,
-//   - computes the line's direction from X and n without x_n, because x_n does not exist if the
-//     port's normal is perpendicular to the optical axis,
-//   - rejects points on the lens's side of the outer plane, and NaN,
-//   - takes alpha and beta as cosines: a larger angle has a smaller cosine.
-// The search rounds positions to pixels, so that the comparison is not monotone within 0.7 px. Most
+// differs as follows:
+//   - The table is one pixel larger than the image on every side, and the line is clipped half a
+//     pixel outside the image's area. So rounding never leaves the table. A point is outside the
+//     image if and only if the search ends outside the image's area. The printed algorithm also
+//     drops points whose search ends within half a pixel of the line's end, although many of these
+//     points are inside.
+//   - The search tests at least once, also on a line that is too short to bisect. There the
+//     printed variable `forward` has no value.
+//   - The result is x_p for a point on the axis, where the line has no direction.
+//   - The direction of the line is computed from X and n without x_n, because x_n does not exist
+//     if the port's normal is perpendicular to the optical axis.
+//   - Points on the lens's side of the outer plane, and NaN, are rejected.
+//   - alpha and beta are cosines: a larger angle has a smaller cosine.
+// The search rounds positions to pixels. Therefore the comparison is not monotone within 0.7 px,
+// and this rounding causes most of the error.
 // of the error comes from there.
 #pragma once
 
@@ -35,9 +38,9 @@ struct Segment {
   Vector2<T> start, end;
 };
 
-// The part of the ray start + t * step, t >= 0, inside the rectangle [low, high] (Liang and
-// Barsky's algorithm). Empty if they do not meet, if the step is zero, or if `start` or `step` is
-// not finite.
+// The part of the ray start + t * step, t >= 0, that lies inside the rectangle from `low` to
+// `high` (algorithm: Liang and Barsky). Empty if the ray does not meet the rectangle, if `step` is
+// zero, or if `start` or `step` is not finite.
 template <class T>
 std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& step,
                                    const Vector2<T>& low, const Vector2<T>& high) {
@@ -58,10 +61,11 @@ std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& st
   return Segment<T>{start + enter * step, start + *leave * step};
 }
 
-// Direction of the line in which the plane of refraction of X meets the image, at the pinhole image
-// x_p of X and pointing away from the axis. It is J e, with J the lens's Jacobian at X and e the
-// component of X across the axis; it is parallel to x_p - x_n. The length is about |x_p - x_n|
-// pixels. `n`: the port's normal. X and n in the camera frame. Precondition: X.z > 0.
+// The direction [px] of the line in which the plane of refraction of X meets the image, pointing
+// away from the axis. Let J be the lens's Jacobian d(pixel)/dX at X, and e the component of X
+// perpendicular to the axis. The result is J e. It is parallel to x_p - x_n and about |x_p - x_n|
+// pixels long, where x_p is the pinhole image of X. `n`: the port's normal. X and n are in the
+// camera frame. Precondition: X.z > 0.
 template <class T>
 Vector2<T> refraction_line(const PinholeLens<T>& lens, const Vector3<T>& n, const Vector3<T>& X) {
   const T inv_z = T(1) / X.z();
@@ -69,8 +73,9 @@ Vector2<T> refraction_line(const PinholeLens<T>& lens, const Vector3<T>& n, cons
           lens.fy * (X.y() * n.z() - n.y() * X.z()) * inv_z};
 }
 
-// The bisection of Algorithm 1 on the clipped line `line`. Precondition: X [camera frame] lies
-// beyond the port.
+// The bisection of Algorithm 1. `line`: the clipped line [px], which starts at the end nearer to
+// x_p. Returns the pixel at which the search ends. Precondition: X [camera frame, m] lies beyond
+// the port.
 template <class T>
 Vector2<T> bisect_line(const PixelLookup<T>& lookup, Segment<T> line, const Vector3<T>& X) {
   using std::sqrt;
@@ -91,16 +96,16 @@ Vector2<T> bisect_line(const PixelLookup<T>& lookup, Segment<T> line, const Vect
   return x;
 }
 
-// A flat port camera that projects by Algorithm 1. Its interface is that of FlatPortCamera, so that
-// the camera's type selects the paper's method. Rays and Jacobians are those of the exact camera.
-// `T` is float or double.
+// A flat port camera that projects by Algorithm 1. It has the functions of FlatPortCamera that the
+// paper's method needs, so that the camera's type selects the method. Rays and Jacobians are those
+// of the exact camera. `T` is float or double.
 template <class T>
 class LineSearchCamera {
  public:
   using Scalar = T;
 
-  // width, height: the image in pixels. Copies of the camera share one table of 4 numbers per
-  // pixel.
+  // `width`, `height`: size of the image [px]. Copies of the camera share one table of 4 numbers
+  // per pixel.
   LineSearchCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height)
       : exact_(lens, port, width, height),
         low_(T(-1), T(-1)),
@@ -118,9 +123,10 @@ class LineSearchCamera {
     return exact_.ray(pixel, jacobian);
   }
 
-  // X [camera frame] is visible if the search ends inside the image, without a margin:
-  // u in [-1/2, width - 1/2], v in [-1/2, height - 1/2]. If not, the pixel is (0, 0). `jacobian`:
-  // d(pixel)/dX of the exact projection.
+  // The projection of X [camera frame, m]. X is visible if the search ends inside the image
+  // without a margin: u in [-1/2, width - 1/2], v in [-1/2, height - 1/2]. X is not visible if it
+  // lies on the lens's side of the outer plane, or behind the lens, or is NaN. The pixel of a
+  // point that is not visible is (0, 0). `jacobian`: d(pixel)/dX of the exact projection.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
     if (jacobian) exact_.project(X, jacobian);
     const Projection<T> none{Vector2<T>(T(0), T(0)), false};

@@ -8,16 +8,16 @@
 
 namespace axial::refractive {
 
-// The normal equations, normal * point = right, of the point whose sum of squared distances to the
-// lines of the rays is smallest. `normal` is singular if all rays are parallel or if there are no
-// rays.
+// The normal equations of the point nearest to several rays: normal * point = right. The solution
+// is the point with the smallest sum of squared distances to the lines of the rays. `normal` is
+// singular if all rays are parallel or if there are no rays.
 template <class T>
 struct NearestPointEquations {
   Matrix3<T> normal = Matrix3<T>::Zero();
   Vector3<T> right = Vector3<T>::Zero();
 };
 
-// Sums the equations over `rays`. Precondition: directions of unit length.
+// Sets up the equations for `rays`, all in one frame. Precondition: directions of unit length.
 template <class T>
 NearestPointEquations<T> nearest_point_equations(std::span<const AxialRay<T>> rays) {
   NearestPointEquations<T> equations;

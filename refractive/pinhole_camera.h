@@ -31,7 +31,7 @@ struct PinholeLens {
   }
 };
 
-// The image of a point, and its derivative by the point's position.
+// The image of a point, and the derivative of the pixel by the point.
 template <class T>
 struct PinholeImage {
   Projection<T> projection;
@@ -48,8 +48,8 @@ struct PinholeImage {
   T scale_u, scale_v;  // focal lengths divided by z
 };
 
-// A camera without a port: all rays start at the centre. A point is visible if 1e-20 < z < 1e20 and
-// |x| and |y| are at most 1e6 z. There is no test against an image rectangle.
+// A camera without a port: all rays start at the camera centre. A point (x, y, z) is visible if
+// 1e-20 < z < 1e20, |x| <= 1e6 z and |y| <= 1e6 z. There is no test against an image rectangle.
 template <class T>
 class PinholeCamera {
  public:
@@ -89,12 +89,13 @@ class PinholeCamera {
   // The point at which the pixel's light leaves the scene medium: the camera centre.
   Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
 
-  // The projector and its frame: the camera itself and the camera frame.
+  // The projector is the camera itself. It takes points in the camera frame.
   using Projector = PinholeCamera;
   const Projector& projector() const { return *this; }
   RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // The image of X [camera frame]. If X is not visible, the result is finite but meaningless.
+  // The image of X [camera frame]. If X is not visible, the numbers of the result are finite but
+  // meaningless.
   PinholeImage<T> image(const Vector3<T>& X) const {
     using std::abs;
     PinholeImage<T> image;

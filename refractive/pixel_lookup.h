@@ -15,8 +15,8 @@ struct IntegerPixel {
   int u, v;
 };
 
-// Stores four numbers per pixel: the height of C_v on the axis and the direction X_v. c_v is
-// computed from them.
+// A table of four numbers per pixel: the height of C_v on the axis and the direction X_v. c_v is
+// computed from these numbers when it is needed.
 template <class T>
 class PixelLookup {
  public:
@@ -31,8 +31,8 @@ class PixelLookup {
     Vector3<T> direction;
   };
 
-  // Fills the table with the rays of `camera`, which is any camera with a flat port, for the image
-  // of width x height pixels widened by `border` pixels on every side.
+  // Fills the table with the rays of `camera`. The table covers the image of width x height
+  // pixels, widened by `border` pixels on every side. `camera` is any camera with a flat port.
   template <class Camera>
   PixelLookup(const Camera& camera, int width, int height, int border = 0)
       : lens_(camera.lens()),
@@ -53,13 +53,15 @@ class PixelLookup {
 
   const Vector3<T>& axis() const { return axis_; }
 
-  // The pixel of the table nearest to `pixel`. Halves are rounded upwards. A pixel outside the
-  // table is moved to the table's edge. A NaN coordinate gives the smallest one of the table.
+  // The pixel of the table nearest to `pixel`. Halves are rounded upwards. A coordinate outside
+  // the table becomes the coordinate of the table's edge. A NaN coordinate becomes the smallest
+  // coordinate of the table.
   IntegerPixel round(const Vector2<T>& pixel) const {
     return {round_clamped(pixel.x(), high_u_), round_clamped(pixel.y(), high_v_)};
   }
 
-  // Precondition: p lies inside the table, as the results of round() do.
+  // The stored numbers of the pixel p. Precondition: p lies inside the table, as the results of
+  // round() do.
   const Cell& cell(const IntegerPixel& p) const {
     const auto stride = static_cast<std::size_t>(high_u_ - low_ + 1);
     return cells_[static_cast<std::size_t>(p.v - low_) * stride +
@@ -71,13 +73,13 @@ class PixelLookup {
     return {c.along * axis_, c.direction};
   }
 
-  // L of the pixel of the table nearest to `pixel`.
+  // The entry L(pixel) for the table's pixel nearest to `pixel`.
   Entry entry(const Vector2<T>& pixel) const {
     const VirtualCamera<T> camera = virtual_camera(pixel);
     return {camera.centre, cell(round(pixel)).direction, {camera.lens.cx, camera.lens.cy}};
   }
 
-  // The virtual camera of the pixel of the table nearest to `pixel`.
+  // The virtual camera (virtual_camera.h) for the table's pixel nearest to `pixel`.
   VirtualCamera<T> virtual_camera(const Vector2<T>& pixel) const {
     const IntegerPixel p = round(pixel);
     return refractive::virtual_camera(lens_, rotation_, ray(p),

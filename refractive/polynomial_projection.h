@@ -2,21 +2,22 @@
 // The forward projection through a flat port as a root of a polynomial of degree 12. It is a
 // reference for tests, slower and less accurate than FlatPortCamera::project().
 //
-// The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho. Let t0 be its paraxial root and
-// t = t0/u. In units of length of rho/t0, with a = d_a, g = d_g/mu_g and w = z/mu_w,
+// The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho. Let t0 be the paraxial root of the
+// equation and t = t0/u. With rho/t0 as the unit of length, let a = d_a, g = d_g/mu_g and w =
+// z/mu_w. Let e = t0^2 (mu^2 - 1)/mu^2 for glass (e_g) and for water (e_w). Then
 //
 //     a + g + w = 1,    p = q_g^2/mu_g^2 = 1 + e_g/u^2,    q = q_w^2/mu_w^2 = 1 + e_w/u^2
 //     u - a = g/sqrt(p) + w/sqrt(q)
 //
-// Squaring twice removes the square roots. Multiplied by powers of u, with P = u^2 + e_g and
-// Q = u^2 + e_w, the equation becomes
+// Squaring twice removes the square roots. Let P = u^2 + e_g and Q = u^2 + e_w. Multiplied by
+// powers of u, the equation becomes
 //
 //     [(u - a)^2 P Q - u^2 (g^2 Q + w^2 P)]^2 - 4 g^2 w^2 u^4 P Q = 0
 //
-// For every port this polynomial is monic of degree 12, and its roots are of the order of 1 or
+// For every port this polynomial is monic and has degree 12. Its roots are of the order of 1 or
 // less, so that its companion matrix needs no balancing. The wanted root lies in (a, 1]. Without
-// glass, squaring once is enough: (u - a)^2 Q - w^2 u^2 = 0. Squaring twice would then make the
-// root a double root.
+// glass, squaring once is sufficient: (u - a)^2 Q - w^2 u^2 = 0. Squaring twice would then make
+// the wanted root a double root.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -52,9 +53,9 @@ Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>
   return a;
 }
 
-// The complex roots of a monic polynomial of degree 12 at most, as the eigenvalues of its companion
-// matrix. All degrees share one matrix type: matrices of fixed size are no faster, and double the
-// compile time.
+// The complex roots of a monic polynomial, computed as the eigenvalues of its companion matrix.
+// `monic`: the coefficients, the constant term first. Precondition: degree at most 12. All degrees
+// share one matrix type, because matrices of fixed size are no faster and double the compile time.
 template <class T>
 auto roots(std::span<const T> monic) {
   constexpr int kMostRoots = 12;
@@ -72,8 +73,8 @@ auto roots(std::span<const T> monic) {
 }  // namespace polynomial
 
 // The in-air tangent t of the ray that reaches the distance `rho` [m] from the axis at the height
-// `z_water` [m] above the outer plane (axis frame). It comes directly from the eigenvalues, without
-// further iterations. Empty if there is no such t: total reflection, z_water <= 0, rho < 0, or an
+// `z_water` [m] above the outer plane (axis frame). t is computed from the eigenvalues without
+// further iterations. Empty if no such t exists: total reflection, z_water <= 0, rho < 0, or an
 // argument that is not finite. `T` is float or double.
 template <class T>  // NOLINTNEXTLINE(readability-function-size): one derivation, half of it names
 std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T& rho,

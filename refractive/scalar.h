@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operations that the cameras need from a scalar type besides arithmetic. With them, one
-// implementation serves float, double, automatic-differentiation scalars and SIMD packs. A SIMD
-// pack has to define a mask type (the result of a comparison) with &&, || and !, and overloads of
-// `select`, `lesser`, `greater` and `sqrt` in its own namespace.
+// The operations that the cameras need from a scalar type besides arithmetic. With these
+// operations, one implementation serves float, double, automatic-differentiation scalars and SIMD
+// packs. A SIMD pack has to define the mask type that its comparisons return, with the operators
+// &&, || and !. It also has to overload `select`, `lesser`, `greater` and `sqrt` in its own
+// namespace.
 #pragma once
 
 #include <type_traits>
@@ -29,8 +30,9 @@ T greater(const T& a, const T& b) {
   return a > b ? a : b;
 }
 
-// True for single precision, also in SIMD packs: the projections then take a fixed number of steps
-// and do not branch. All other scalars iterate to convergence.
+// True for float: projections then take a fixed number of steps and do not branch. A SIMD pack of
+// floats specialises this constant to true. With all other scalars, projections iterate to
+// convergence.
 template <class T>
 inline constexpr bool kFixedSteps = std::is_same_v<T, float>;
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's virtual cameras. The virtual camera of one pixel of an axial camera is a pinhole with
-// its centre at the pixel's C_v. It looks along the axis, has the focal lengths of the real lens
-// (f_v = f) and images the pixel's ray at the same pixel (eq. 3; its second component is corrected
-// to y, see docs/refraction.md).
+// The paper's virtual cameras. The virtual camera of a pixel of an axial camera is a pinhole. Its
+// centre is the C_v of the pixel. It looks along the axis and has the focal lengths of the real
+// lens (f_v = f). Its principal point is chosen so that it images the pixel's ray at the same
+// pixel (eq. 3, with the correction of the second component in docs/refraction.md).
 //
-// Poses: x_virtual = rotation * (x_camera - centre), and for two views x_source = R (x_reference -
-// C). Metres and pixels.
+// Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference -
+// C), in the frames of the real cameras. Units: metres and pixels. Equation numbers are those of
+// the paper that docs/refraction.md names.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -19,12 +20,14 @@ struct VirtualCamera {
   Matrix3<T> rotation;  // virtual_from_camera
   PinholeLens<T> lens;  // f_v = f, principal point c_v
 
-  // Image [px] of X [frame of the real camera]. Precondition: X in front of the virtual camera.
+  // The pixel of X [frame of the real camera, m]. Precondition: X lies in front of the virtual
+  // camera.
   Vector2<T> pixel(const Vector3<T>& X) const { return lens.pixel(rotation * (X - centre)); }
 };
 
-// The principal point c_v with which the virtual camera images the ray in water `direction` [frame
-// of the real camera] at `pixel` (eq. 3, corrected). `rotation`: virtual_from_camera.
+// The principal point c_v [px] of a virtual camera (eq. 3, corrected). With this principal point,
+// the virtual camera images the ray in water with the direction `direction` [frame of the real
+// camera] at `pixel`. `rotation`: virtual_from_camera.
 template <class T>
 Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>& rotation,
                                    const Vector3<T>& direction, const Vector2<T>& pixel) {
@@ -32,8 +35,9 @@ Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>&
   return {pixel.x() - lens.fx * d.x() / d.z(), pixel.y() - lens.fy * d.y() / d.z()};
 }
 
-// The virtual camera of `pixel`, whose ray in water is `ray`. Without refraction and with the
-// identity as `rotation` it is the pinhole camera of the lens.
+// The virtual camera of `pixel`. `ray`: the pixel's ray in water [frame of the real camera].
+// `rotation`: virtual_from_camera. Without refraction and with the identity as `rotation`, the
+// result is the pinhole camera of the lens.
 template <class T>
 VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& rotation,
                                 const AxialRay<T>& ray, const Vector2<T>& pixel) {
@@ -41,8 +45,8 @@ VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& ro
   return {ray.origin, rotation, {lens.fx, lens.fy, c.x(), c.y()}};
 }
 
-// The virtual camera of `pixel` of any camera; the pixel is not rounded. A camera without
-// rotation_to_axis(), like PinholeCamera, is its own virtual camera.
+// The virtual camera of `pixel` of any camera. The pixel is not rounded. A camera without
+// rotation_to_axis(), such as PinholeCamera, is its own virtual camera.
 template <class Camera, class T = typename Camera::Scalar>
 VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   if constexpr (requires { camera.rotation_to_axis(); }) {
@@ -53,7 +57,8 @@ VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   }
 }
 
-// Pose of the source's virtual camera in the frame of the reference's virtual camera (eq. 1).
+// The pose of the virtual source camera relative to the virtual reference camera (eq. 1): x_source
+// = rotation * (x_reference - centre), in the frames of the virtual cameras.
 template <class T>
 struct RelativePose {
   Matrix3<T> rotation;
@@ -67,9 +72,11 @@ RelativePose<T> relative_pose(const VirtualCamera<T>& reference, const VirtualCa
           reference.rotation * (C + R.transpose() * source.centre - reference.centre)};
 }
 
-// Homography [px to px] from the reference image to the source image (eq. 2), induced by the plane
-// through X with normal n. X and n are in the frame of the real reference camera. R, C: pose of the
-// real source camera, as above. A plane through the reference's C_v gives infinities or NaN.
+// The homography [px to px] from the image of the virtual camera `reference` to the image of the
+// virtual camera `source` (eq. 2). The plane through X with the normal n induces the homography. X
+// [m] and n are in the frame of the real reference camera. n may have any length. R, C: x_source =
+// R (x_reference - C), in the frames of the real cameras. A plane through the centre C_v of
+// `reference` gives infinities or NaN.
 template <class T>
 Matrix3<T> virtual_homography(const VirtualCamera<T>& reference, const VirtualCamera<T>& source,
                               const Matrix3<T>& R, const Vector3<T>& C, const Vector3<T>& X,
@@ -95,10 +102,10 @@ Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   return {image.x() / image.z(), image.y() / image.z()};
 }
 
-// The pixel at which the reference's virtual camera images the point at distance `distance` [m] on
-// `source_ray` [frame of the source camera]. This is the reprojection of the consistency check (eq.
-// 7, with the refracted ray of the source camera and its C_v in place of K_j^-1), which compares
-// the result with the reference pixel.
+// The reprojection of the consistency check, which compares the result with the reference pixel
+// (eq. 7, corrected: docs/refraction.md). Let X be the point at `distance` [m] on `source_ray`
+// [frame of the real source camera]. The result is the pixel at which the virtual camera
+// `reference` images X. R, C: x_source = R (x_reference - C), in the frames of the real cameras.
 template <class T>
 Vector2<T> virtual_reprojection(const VirtualCamera<T>& reference, const AxialRay<T>& source_ray,
                                 const T& distance, const Matrix3<T>& R, const Vector3<T>& C) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The image rectangle widened by a margin on every side. A camera behind a port projects the points
-// whose images lie in it.
+// The image rectangle, widened by a margin on every side. A point is visible to a camera behind a
+// port, or through a lens with distortion, only if its pixel lies in this rectangle.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -9,14 +9,15 @@ namespace axial::refractive {
 
 template <class T>
 struct WidenedImage {
-  // The smallest u and v, and the largest u and v [px].
+  // Limits [px]: `lowest` of u and of v, `highest_u` of u, `highest_v` of v.
   T lowest, highest_u, highest_v;
 
   WidenedImage() = default;
   WidenedImage(int width, int height, const T& margin)
       : lowest(-margin), highest_u(T(width - 1) + margin), highest_v(T(height - 1) + margin) {}
 
-  // `margin` if it is not negative, otherwise the default: an eighth of the longer side.
+  // Returns `margin` if it is not negative, otherwise the default: an eighth of the longer side,
+  // rounded down.
   static T margin_or_default(int width, int height, int margin) {
     return T(margin >= 0 ? margin : (width > height ? width : height) / 8);
   }
@@ -26,7 +27,7 @@ struct WidenedImage {
     visit(lowest), visit(highest_u), visit(highest_v);
   }
 
-  // False for NaN.
+  // True if `pixel` lies inside the rectangle or on its edge. False for NaN.
   Mask<T> contains(const Vector2<T>& pixel) const {
     return pixel.x() >= lowest && pixel.x() <= highest_u && pixel.y() >= lowest &&
            pixel.y() <= highest_v;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lens in air: projection of a direction and its inverse, the matcher's form of the lens, and the
-// pinhole that replaces it. Pixel centres are at integers.
+// A lens in air: the projection of a direction, the inverse of the projection, the matcher's form
+// of the lens, and the pinhole that replaces the lens. Pixel centres are at integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,63 +21,72 @@ struct Lens {
   int width = 0, height = 0;                  // of the image [px]
 };
 
-// Projects the in-air direction (u, v, 1) to a pixel. NaN where the model is not defined.
+// Projects the in-air direction (u, v, 1) to a pixel. The result is NaN where the model is not
+// defined. Precondition for this and all functions below, except field_of(): the lens has a model.
 Eigen::Vector2d image_direction(const Lens& lens, double u, double v);
 
-// The same for `direction` (u, v), with the derivative by (u, v).
+// As image_direction() for `direction` (u, v). `by` is d(pixel)/d(u, v) [px].
 refractive::PlanePoint<double> image_with_derivative(const Lens& lens,
                                                      const Eigen::Vector2d& direction);
 
-// The inverse of image_direction, with the derivative of image_direction at the result.
+// The result of the inverse of image_direction().
 struct ImagedDirection {
   Eigen::Vector2d direction;   // (u, v)
   Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) there
 };
 
-// Returns the in-air direction that the lens projects to `pixel`. Newton's method starts from the
-// direction of the undistorted lens. Nothing if no direction projects to the pixel, if the method
-// does not converge, or if the lens folds back between the axis and the direction.
+// The inverse of image_direction(): returns the in-air direction that the lens projects to
+// `pixel`. Newton's method starts from the direction of the undistorted lens. Empty if no
+// direction projects to the pixel, if the method does not converge, or if the lens folds back
+// between the axis and the direction. A lens folds back where directions farther from the axis do
+// not move outwards in the image.
 std::optional<ImagedDirection> direction_at(const Lens& lens, const Eigen::Vector2d& pixel);
 
-// How far from its axis a lens images directions.
+// How far from its axis a lens images directions. Lengths |(u, v)| are tangents of angles from the
+// axis.
 struct Field {
   // The largest |(u, v)| at which the lens has not folded back on at least one of 16 sides of the
-  // axis: directions that move away from the axis also move outwards in the image. It does not
-  // depend on the focal lengths. Where another side folds back earlier, callers test the
-  // determinant of the derivative. This test is sufficient if the sides fold back at similar
-  // angles.
+  // axis. Up to this length, directions on that side that move away from the axis also move
+  // outwards in the image. `reach` does not depend on the focal lengths. Another side may fold
+  // back earlier. There callers test the determinant of the derivative. This test is sufficient if
+  // the sides fold back at similar angles.
   double reach = 0;
-  // The largest |(u, v)| of the image corners, at most `reach` and at most the tangent of 85
-  // degrees. A corner that no direction projects to counts as a corner at the smaller of these two
-  // limits.
+  // The largest |(u, v)| of the image corners. Let the limit be the smaller of `reach` and the
+  // tangent of 85 degrees. A larger value is reduced to the limit. A corner to which no direction
+  // projects counts as a corner at the limit.
   double corner = 0;
 };
-// Zeros for a lens without a model.
+// Returns zeros for a lens without a model.
 Field field_of(const Lens& lens);
 
-// The same as direction_at() above, with the field of the lens. It is faster, because it does not
-// search for a fold between the axis and the direction.
+// As direction_at() above, but faster: the function does not search for a fold between the axis
+// and the direction. Instead, the result is empty if the direction is longer than field.reach.
+// Precondition: `field` is field_of(lens).
 std::optional<ImagedDirection> direction_at(const Lens& lens, const Field& field,
                                             const Eigen::Vector2d& pixel);
 
-// Returns the lens if it is a pinhole: PINHOLE, SIMPLE_PINHOLE, or a perspective lens model whose
-// distortion parameters are all exactly zero.
+// Returns the pinhole if the lens is a pinhole. The lens is a pinhole if its model is PINHOLE or
+// SIMPLE_PINHOLE, or if Model::flat is true and all distortion parameters are exactly zero.
+// Otherwise empty.
 std::optional<refractive::PinholeLens<double>> pinhole_lens(const Lens& lens);
 
-// Returns the distortion of the lens relative to its `pinhole`, in the form that the matcher uses.
-// The perspective and fisheye polynomials and FOV are exact. The division models and EUCM are
-// fitted, with an error of at most 1e-4 px up to the image corners. Nothing for pinholes, for
-// RAD_TAN_THIN_PRISM_FISHEYE, and for lenses that cannot be fitted so well.
+// Returns the distortion of the lens relative to its `pinhole`, in the matcher's form. The
+// perspective and fisheye polynomials and FOV are converted exactly. The division models and EUCM
+// are fitted, with an error of at most 1e-4 px up to the image corners. Empty for lenses that
+// pinhole_lens() accepts, for RAD_TAN_THIN_PRISM_FISHEYE, and for lenses whose fit has a larger
+// error.
 std::optional<refractive::LensDistortion<double>> lens_distortion(const Lens& lens);
 
-// Returns a pinhole that replaces the lens without a black border in the undistorted image. It has
-// the lens's image size, principal point and ratio of focal lengths. Its focal length is the
-// shortest, between half and four times that of the lens, for which every pixel lies inside the
-// image of the lens. Nothing if there is none.
+// Returns a pinhole that replaces the lens without a black border in the undistorted image. The
+// pinhole has the lens's image size, principal point and ratio of focal lengths. Its focal length
+// is between half and four times the focal length of the lens. The result is the shortest focal
+// length in this range for which every sampled border pixel of the pinhole lies inside the image of
+// the lens. Empty if four times the focal length is too short.
 std::optional<refractive::PinholeLens<double>> pinhole_inside(const Lens& lens);
 
-// Returns, for every pixel of the pinhole, its position in the image of the lens: the map for
-// cv::remap.
+// Returns the map for cv::remap: for every pixel of `pinhole`, the position [px] in the image of
+// the lens. The map has the size of the lens's image. A position is NaN where the model is not
+// defined.
 cv::Mat2f undistortion_map(const Lens& lens, const refractive::PinholeLens<double>& pinhole);
 
 }  // namespace axial::lens

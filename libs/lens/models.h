@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formulas of COLMAP's lens models, and the same lenses in the matcher's form.
+// The formulas of COLMAP's lens models, and conversions between these models and the matcher's
+// form of a lens (refractive/lens_distortion.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,36 +13,42 @@
 
 namespace axial::lens {
 
-// The distortion parameters of a camera in the order of COLMAP's documentation: without focal
-// lengths and principal point.
+// The distortion parameters of a camera, in COLMAP's order. Focal lengths and principal point are
+// not among them.
 using Parameters = std::span<const double>;
 
 struct Model {
   std::string_view name;  // "PINHOLE", "OPENCV", ...
-  // The point that the in-air direction (u, v, 1) has in the image, before focal lengths and
-  // principal point are applied, and its derivative by (u, v). NaN where the model is not defined.
+  // Projects the in-air direction (u, v, 1) to the image plane. The result is the point before
+  // focal lengths and principal point are applied, and the derivative of the point by (u, v). Both
+  // are NaN where the model is not defined.
   refractive::PlanePoint<double> (*distort)(Parameters, const Eigen::Vector2d& direction);
-  bool flat;  // a pinhole if all distortion parameters are zero
-  // The lens in the matcher's form. Null: the matcher does not have this model.
+  // True: a lens of this model is a pinhole if all distortion parameters are zero.
+  bool flat;
+  // Converts the distortion to the matcher's form without error. Null if the matcher's form does
+  // not contain this model.
   refractive::LensDistortion<double> (*bent)(Parameters){};
-  bool radial = false;  // the matcher's fisheye can be fitted to the model
+  // True: the matcher's fisheye can be fitted to lenses of this model (lens_fit.h).
+  bool radial = false;
 };
 
-// The models of COLMAP's documentation, up to EUCM. Null for other names and for EQUIRECTANGULAR,
-// which is no perspective camera.
+// Returns the model that COLMAP calls `name`. The models are those of the table in models.cpp,
+// from SIMPLE_PINHOLE to EUCM. Null for every other name, including EQUIRECTANGULAR, which is no
+// perspective camera.
 const Model* find_model(std::string_view name);
 
-// A model of COLMAP's documentation with its distortion parameters, for a pinhole whose focal
-// lengths are `focal_factor` times those of the lens in the matcher's form.
+// A model of COLMAP with its distortion parameters. The focal lengths of this model are
+// `focal_factor` times the focal lengths of the lens in the matcher's form.
 struct ModelOf {
   std::string_view name;
   std::vector<double> parameters;
   double focal_factor = 1;
 };
 
-// The model that images every direction as `bent` does, up to rounding: the inverse of Model::bent.
-// The result is OPENCV, FULL_OPENCV, OPENCV_FISHEYE, THIN_PRISM_FISHEYE or FOV, the first one that
-// fits. Nothing if none of them fits, as for lenses that were fitted (lens_distortion in lens.h).
+// The inverse of Model::bent: returns the model that images every direction as `bent` does, up to
+// rounding. The result is the first model that fits, of OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
+// THIN_PRISM_FISHEYE and FOV. Empty if none of these models fits. Lenses that lens_distortion()
+// (lens.h) has fitted are an example.
 std::optional<ModelOf> model_of(const refractive::LensDistortion<double>& bent);
 
 }  // namespace axial::lens
