@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much the first position of a vertex counts.
+// The anchor term of the system: weights that hold vertices near their first positions. The first
+// position of a vertex is its position before the first step.
 #pragma once
 
 #include <span>
@@ -15,22 +16,31 @@ struct Anchor {
 };
 
 struct AnchorOptions {
-  double weight = 0.25;
-  double factor = 1;  // of the image size
+  double weight = 0.25;  // information of the first position / that of the photographs
+  double factor = 1;     // image size of the step / full image size
 };
 
-// The distance of the vertices from their first positions, along their normals.
+// The signed distance of every vertex from its first position, along the vertex's normal in `shape`
+// [mesh units]. All arguments have one entry per vertex.
 std::vector<float> offsets(std::span<const Eigen::Vector3f> vertices,
                            std::span<const Eigen::Vector3f> first, const Shape& shape);
 
-// The weights of first positions that were matched in the same photographs. The information of the
-// photographs on a vertex is I, the sum of w g^2. The first position has the same information up to
-// the factor `weight`, because it is as uncertain as texture and geometry make it; a tenth of the
-// median I is added, because some of the first position comes from the surface around it. At the
-// full image size, I is larger than at a smaller size by about factor^-4: twice for the number of
-// pixels, and twice for the gradients. Where the photographs alone would move the vertex (by
-// `displacement`, after the offset) by many standard deviations of both measurements, the first
-// position is wrong, and its weight decreases as by Cauchy's loss.
+// The weight of every first position:
+//
+//     a = weight / factor^4 * (I + m / 10) / (1 + (d / (2 sigma))^2)
+//
+// I: `information` of the vertex, the sum of w g^2 (refine.h). m: the median of the positive I.
+// d: `offset` + `displacement`, the distance [mesh units] from the first position to the position
+// that the photographs alone would give the vertex. sigma: 3 / sqrt(I), the standard deviation of
+// the position that the photographs give. All spans have one entry per vertex.
+//
+// Reasons:
+//   - The first position was matched in the same photographs. Its uncertainty depends on the same
+//     texture and geometry, so that its information is proportional to I.
+//   - A part of the first position comes from the surface around it. This part is m / 10.
+//   - I is proportional to factor^4: factor^2 for the number of pixels, and factor^2 for the
+//     squared gradients. The division gives the information at the full image size.
+//   - If d is many sigma, the first position is wrong. Its weight decreases as in Cauchy's loss.
 std::vector<double> anchor_weights(std::span<const double> information,
                                    std::span<const float> offset,
                                    std::span<const float> displacement,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses the pairs of views that are compared, from the vertices that both see.
+// Chooses the pairs of views that are compared, by the vertices that both views of a pair see.
 #pragma once
 
 #include <utility>
@@ -9,10 +9,13 @@
 
 namespace axial::refine {
 
-// Every view chooses up to `max_views` partners by the score of scene/view_selection.h, where a
-// sample of the vertices takes the place of the sparse points. A partner shares at least a tenth of
-// the image and has an angle between 2.5 and 45 degrees, unless there are too few such views. The
-// result has the smaller index first, and is sorted.
+// Every view chooses the `max_views` partners with the highest scores, or fewer if fewer candidates
+// have the least score of choose_source_views(). The score is that of scene/view_selection.h, with
+// a sample of the vertices in place of the sparse points. The filter of that header removes
+// candidates that cover less than a tenth of the image, and candidates whose angle is not
+// between 2.5 and 45 degrees. The filter stops when only max(4, 3/4 max_views) candidates remain,
+// so that unsuitable candidates can stay. Returns pairs of indices of views, each pair once. The
+// smaller index is the first of a pair, and the pairs are sorted.
 std::vector<std::pair<std::size_t, std::size_t>> choose_pairs(const Mesh& mesh,
                                                               const ScaledViews& views,
                                                               const Visibility& visibility,

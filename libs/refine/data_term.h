@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The photometric part of the system: how well the views agree, and how the agreement changes when
-// vertices move along their normals.
+// The photometric part of the system: the residuals between views, and the change of the residuals
+// when vertices move along their normals.
 #pragma once
 
 #include <array>
@@ -14,25 +14,31 @@
 
 namespace axial::refine {
 
-// The normal equations of one face. `matrix`: the entries 00, 01, 02, 11, 12, 22 of the symmetric
-// matrix of its three corners. The displacements t of a Gauss-Newton step solve matrix * t = right.
+// The contribution of one face to the normal equations of a Gauss-Newton step. The unknowns are the
+// displacements t of the face's three corners, and the equations are matrix * t = right. `matrix`
+// holds the entries 00, 01, 02, 11, 12 and 22 of the symmetric 3 x 3 matrix.
 struct FaceEquations {
   std::array<float, 6> matrix{};
   std::array<float, 3> right{};
 };
 
-// The sum of the weighted squared residuals, and the number of residuals.
+// The sum of the squared residuals w e^2, and the number of residuals.
 struct Residuals {
   double squared = 0;
   std::uint64_t count = 0;
 };
 
-// One reference view. The arguments of the constructor must outlive it.
+// Compares one reference view with its source views.
 class ReferenceView {
  public:
+  // `images`: the images of the mesh's vertices in the reference view. `raster`: the mesh drawn
+  // into the reference view. `picture` and `mask`: the pixels of the reference view, in the size of
+  // `raster`. `mesh` and `shape` must outlive the object.
   ReferenceView(const Mesh& mesh, const Shape& shape, std::span<const VertexImage> images,
                 Raster raster, cv::Mat1f picture, cv::Mat1b mask);
 
+  // A source view: the images of the mesh's vertices in the source view, its pixels (as
+  // ScaledViews::Pixels), and its index.
   struct Source {
     std::span<const VertexImage> images;
     const cv::Mat1f& picture;
@@ -40,15 +46,19 @@ class ReferenceView {
     std::size_t view;
   };
 
-  // Adds the pair with `source`. `reference`: the index of this view.
+  // Compares the reference view with `source`, and adds the result to the sums over the pairs.
+  // `reference`: the index of the reference view. Returns the residuals of this pair.
   Residuals add(const Source& source, std::size_t reference, const Visibility& visibility);
 
-  // Adds the equations of all pairs so far to those of the faces. Call it once.
+  // Adds the sums over all pairs to `equations`, which has one entry per face of the mesh. Faces
+  // that this view sees at a grazing angle (kLeastCosine) get nothing. Call it once, after the last
+  // add().
   void finish(std::span<FaceEquations> equations) const;
 
  private:
-  // The image of a vertex in the source view, and its motion there [px] when the vertex recedes by
-  // one mesh unit along the ray of the reference view. x is NaN if not both views see the vertex.
+  // x, y: the image of a vertex in the source view [px]. motion: the motion of this image [px] when
+  // the vertex recedes by one mesh unit along the ray of the reference view. x is NaN unless both
+  // views see the vertex.
   struct PairVertex {
     float x, y, motion_x, motion_y;
   };
@@ -67,10 +77,12 @@ class ReferenceView {
   cv::Mat1f picture_;
   cv::Mat1b mask_;
   std::vector<PairVertex> pair_;
-  // Of every pixel in the present pair: the source's grey level (NaN: none), and its derivative by
-  // the distance of the pixel's point.
+  // Of every pixel in the present pair: the grey level of the source view at the pixel's point on
+  // the mesh (NaN: none), and the derivative of this grey level by the distance of the point along
+  // the ray of the reference view.
   cv::Mat1f warped_, slope_;
-  // Sums over the pairs: w g^2 and -w g e for g = slope.
+  // Sums over the pairs at every pixel: w g^2 and -w g e. Here g is slope_ times the gain of the
+  // window.
   cv::Mat1f weight_, pull_;
 };
 

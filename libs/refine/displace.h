@@ -7,15 +7,25 @@
 
 namespace axial::refine {
 
-// Moves every vertex along its normal. A step is at most a third of the vertex's edge. Where a face
-// would turn by more than 60 degrees from its former plane, the steps of its corners are shortened.
+// Moves every vertex along its normal in `shape`, by its entry of `displacement` [mesh units].
+// Exceptions, in this order:
+//   - A displacement that is not finite counts as zero.
+//   - A longer step than a third of Shape::edge is reduced to this length.
+//   - If a face turns by more than 60 degrees from its former normal, the steps of its three
+//     corners are halved. All faces are then checked again. There are at most six checks, and after
+//     the sixth check the steps of the corners are set to zero.
+// There is no check after the last shortening, so that a face beside the shortened ones may still
+// turn by more than 60 degrees.
 void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
               std::span<const float> displacement);
 
-// Flattens folds: moves the vertices of faces that turn away from the surface around them by more
-// than 90 degrees to the mean of their neighbours, in some rounds. Vertices on borders stay. A fold
-// is narrower than the noise of the cloud; its hidden side has no measurement, and a step would
-// push its visible side through it.
+// Flattens folds, in three rounds. A face is part of a fold if its normal is more than 90 degrees
+// from the sum of the normals (Shape::normals) of its three corners. Each round moves the corners
+// of such faces to the mean of their neighbours' positions before the round. Vertices on borders
+// stay.
+//
+// Reason: folds are narrower than the noise of the cloud. The hidden side of a fold has no
+// measurement, and a step of displace() would push the visible side through the hidden side.
 void flatten_folds(Mesh& mesh, const Topology& topology);
 
 }  // namespace axial::refine

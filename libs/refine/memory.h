@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much memory refinement needs, and how many images of the vertices are kept with what is left.
+// The memory that refinement needs, and the number of views whose VertexImages fit into the memory.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,18 @@ struct Sizes {
   std::uint64_t pixels = 0;  // of the largest view
 };
 
-// The number of views whose VertexImages are kept: as many as Options::max_bytes allows, at least
-// two. Error that names max_memory, its value and the need if this does not suffice.
+// The number of views whose VertexImages are kept in memory: the largest number for which
+// bytes_needed() does not exceed Options::max_bytes, reduced to max(sizes.views, 2) if it is
+// larger. With max_bytes 0, the result is max(sizes.views, 2). Error if two views need more than
+// max_bytes. The message contains Options::name_of("max_memory"), the number of vertices and the
+// missing megabytes.
 std::size_t views_to_keep(const Sizes& sizes, const Options& options);
 
-// An upper bound of the memory [bytes] with `kept` views.
+// An estimate of the memory [bytes] of the steps if the VertexImages of `kept` views are kept.
+// Counted: the arrays over vertices and faces, the images of one reference view and the pixels of
+// one source view. Not counted: the mesh, what Pictures holds, the lists of edges while faces are
+// split, and the cleaning of the mesh before and after refine(). The estimate assumes six faces and
+// six neighbours per vertex.
 std::uint64_t bytes_needed(const Sizes& sizes, std::uint64_t kept);
 
 }  // namespace axial::refine

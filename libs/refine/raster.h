@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws a mesh into a view: the face and the place on the face that every pixel shows.
+// Draws a mesh into a view, and finds the face and the point on this face that every pixel shows.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,23 +15,27 @@ inline constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;
 
 // Depth and face of the nearest surface at every pixel centre, in the size of the view's image.
 struct Raster {
-  cv::Mat1f depth;  // along the ray; infinite where there is no face
+  cv::Mat1f depth;  // along the ray [mesh units]; infinite where there is no face
   cv::Mat_<std::int32_t> face_bits;
 
   std::uint32_t face(int x, int y) const { return static_cast<std::uint32_t>(face_bits(y, x)); }
 };
 
-// Draws all faces whose corners are visible. Of faces at the same depth, the first one wins.
+// Draws the faces whose three corners are visible. `images`: of the mesh's vertices in the view.
+// `size`: of the view's image [px]. Inside a face, positions and depths are interpolated linearly
+// in the image. Of several faces at the same depth, the face with the smallest index is drawn.
 Raster draw(const Mesh& mesh, std::span<const VertexImage> images, cv::Size size);
 
-// The weights of the corners 1 and 2 of the face at the pixel (x, y); that of corner 0 is the rest.
+// Barycentric weights of the corners b and c of the face (a, b, c) at the position (x, y) [px]. The
+// weight of corner a is 1 - b1 - b2. The face must have an area in the image.
 struct Barycentric {
   float b1, b2;
 };
 Barycentric barycentric(const VertexImage& a, const VertexImage& b, const VertexImage& c, float x,
                         float y);
 
-// The pixels (y * width + x) that show each face, in ascending order.
+// For each face, the list of the pixels that show the face. A pixel (x, y) has the number
+// y * width + x, and each list is in ascending order. `faces`: the number of faces of the mesh.
 Lists pixels_of_faces(const Raster& raster, std::size_t faces);
 
 }  // namespace axial::refine

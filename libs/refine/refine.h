@@ -2,24 +2,29 @@
 // Photometric refinement of a triangle mesh: moves the vertices along their normals so that the
 // photographs, projected onto the mesh by the exact cameras, agree with each other.
 //
-// The two views of a pair are compared at every pixel of one of them, the reference view. The
-// pixel's point on the mesh is projected into the other one, the source view. The grey level there,
-// after a local correction of brightness and contrast (in windows of 7 x 7 pixels, as by zero-mean
-// normalised cross-correlation), differs from that of the reference view by a residual e. If corner
-// k of the pixel's face moves by t_k along its normal, the residual changes by sum_k g_k t_k, where
-// g follows from the image gradient, from the source camera's d(pixel)/dX and from the face. A
-// Gauss-Newton step minimises over the displacements t of all vertices at once
+// A pair consists of a reference view and a source view. The two views are compared at every pixel
+// of the reference view. The pixel's point on the mesh is projected into the source view. The grey
+// level of the source view at the projected point is corrected in brightness and contrast, so that
+// mean and variance in windows of 7 x 7 pixels agree with those of the reference view (as in
+// zero-mean normalised cross-correlation). The residual e is the corrected grey level minus the
+// grey level of the reference view. If corner k of the pixel's face moves by t_k along its normal,
+// e changes by sum_k g_k t_k. The factors g_k follow from the image gradient, from the source
+// camera's d(pixel)/dX and from the face. A Gauss-Newton step minimises, over the displacements t
+// of all vertices at once,
 //
 //       sum over pairs and pixels of w (e + sum_k g_k t_k)^2
 //     + sum over vertices of a_v (t_v + o_v)^2
 //     + smoothness * integral of s (curvature of the displaced surface)^2
 //     + the squares of the slopes between displacements of neighbours (system.h).
 //
-// w: the inverse of the variance of the residuals in the window, so that occluded and otherwise
-// different windows count little. o_v: the distance that the vertex has come from its first
-// position, which is a measurement, too; its weight a_v is proportional to the information of the
-// photographs on the vertex, and small where they contradict the first position (anchor.h). s: less
-// than one at edges of the surface.
+// w: the inverse of the variance of the residuals in the window. Windows that differ between the
+// views, for example by occlusion, count little.
+// o_v: the signed distance along the normal from the vertex's first position to its position before
+// the step. The first position is a measurement, too.
+// a_v: the weight of the first position. The weight grows with the information of the photographs
+// on the vertex, and is small where the photographs contradict the first position (anchor.h).
+// s: a factor that is less than one at edges of the surface (system.h).
+// curvature: half of the mean curvature.
 #pragma once
 
 #include <cstdint>
@@ -61,18 +66,19 @@ enum class References {
 
 struct Options {
   unsigned scales = 2;      // resolutions, from coarse to fine; at least 1
-  double scale_step = 0.5;  // size of the image relative to the next finer resolution
+  double scale_step = 0.5;  // image size of a resolution / that of the next finer resolution
   unsigned max_views = 8;   // partners of a view that the view chooses; others may choose it, too
   References references = References::both;
   double smoothness = 1000;  // 0: none
   double anchor = 0.25;      // factor of a_v; 0: the first position does not count
-  // Before the first step, faces are split until no face is larger than this area [px^2] in the
-  // second best of the views that see it. 0: no face is split.
+  // Before the first step, a face is split if its area is larger than this value [px^2] in at least
+  // two views that see all three corners. The parts are tested again, in at most six rounds of
+  // splitting. 0: no face is split.
   double max_face_area = 32;
-  // The memory [bytes] that refine() may use besides the mesh it is given and `pictures`. It
-  // affects the time, but not the result. 0: no limit.
+  // The memory [bytes] that refine() may use besides the mesh and the images of `pictures`. The
+  // need is estimated (memory.h). This limit affects the time, but not the result. 0: no limit.
   std::uint64_t max_bytes = 0;
-  // How errors name the field max_bytes ("max_memory").
+  // Errors name the field max_bytes by name_of("max_memory").
   SettingNames name_of = own_name;
 };
 
@@ -81,18 +87,24 @@ struct Report {
   std::size_t split_faces = 0;  // number of faces that splitting has added
   std::size_t pairs = 0;        // of views
   std::size_t measured = 0;     // number of vertices that the last step measured
-  unsigned steps = 0;
-  // Of the measured vertices: median distance to their first positions [mesh units].
+  unsigned steps = 0;           // number of Gauss-Newton steps at all resolutions
+  // The median distance of the measured vertices from their positions before the first step [mesh
+  // units].
   double moved = 0;
 };
 
-// Refines `mesh`. Folds narrower than the noise are flattened first (displace.h). Then, vertices
-// that no pair measures stay, except near measured ones, where the surface stays smooth. Faces may
-// intersect each other afterwards. A vertex that splitting adds has the mean colour of its edge.
+// Refines `mesh` in place. First, large faces are split (Options::max_face_area). A vertex that
+// splitting adds has the mean colour of the two ends of its edge. Second, folds are flattened
+// (flatten_folds() of displace.h). Third, Gauss-Newton steps move the vertices. The steps do not
+// move vertices that no pair measures, unless measured vertices are near: there, the smoothness
+// term moves them with the surface. Faces of the result may intersect each other. The result does
+// not depend on the number of threads.
+//
+// `views`: all views. `pictures` is called with indices into `views`.
 //
 // Error if the mesh has no faces, a face has an index out of range, a coordinate is not finite, no
-// two views see the same surface, or max_bytes is not enough. The result does not depend on the
-// number of threads.
+// two views see the same surface, or max_bytes is not enough. After the last two errors, faces of
+// `mesh` may have been split.
 Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
               const Options& options = {}, const ProgressSink& progress = {});
 

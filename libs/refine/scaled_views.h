@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The views at one of the resolutions of a refinement, and the images of a mesh in them.
+// The views at one resolution of the refinement, and the images of a mesh's vertices in these
+// views.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,8 @@ namespace axial::refine {
 
 class ScaledViews {
  public:
-  // `factor`: of the size of the images, at most 1.
+  // `factor`: the image size relative to that of `views`, at most 1. `pictures` must outlive the
+  // object.
   ScaledViews(std::span<const View> views, const Pictures& pictures, double factor);
 
   std::size_t count() const { return views_.size(); }
@@ -28,6 +30,8 @@ class ScaledViews {
     cv::Mat1f grey;  // 0 to 255
     cv::Mat1b mask;  // empty, or 0 where pixels are not used
   };
+  // The pixels of a view, resized to size(view). A resized pixel is used only if all pixels that it
+  // covers are used.
   Pixels pixels(std::size_t view) const;
 
  private:
@@ -35,10 +39,12 @@ class ScaledViews {
   const Pictures& pictures_;
 };
 
-// The images of a mesh's vertices in all views. Keeps those of the last `capacity` views.
+// The images of a mesh's vertices in each view. They are computed on request, and kept for the
+// `capacity` most recently requested views.
 class MeshImages {
  public:
-  // The arguments must outlive the object.
+  // `mesh` and `views` must outlive the object. If vertices move, images that are kept do not
+  // change.
   MeshImages(const Mesh& mesh, const ScaledViews& views, std::size_t capacity)
       : cache_([&](std::size_t view) { return vertex_images(mesh.vertices, views.view(view)); },
                capacity) {}
@@ -49,7 +55,7 @@ class MeshImages {
   SharedCache<std::vector<VertexImage>> cache_;
 };
 
-// Which of the views see which vertices.
+// Finds the vertices that each view sees (mark_seen() of visibility.h). Unused views see none.
 Visibility find_visibility(const Mesh& mesh, const Shape& shape, const ScaledViews& views,
                            MeshImages& images);
 

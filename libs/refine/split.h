@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits faces, for a mesh that is coarser than the pixels.
+// Splits the faces of a mesh that is coarser than the pixels.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,11 @@
 
 namespace axial::refine {
 
-// Splits the edges of the faces that are marked, in the middle. A marked face becomes four, and its
-// neighbours up to four, so that no vertex lies on an edge of another face. The order of the faces
-// is kept; colours of new vertices are the mean of their edge's. Returns the number of new faces.
+// Splits all edges of the marked faces in the middle. `marked` has one entry per face. A marked
+// face becomes four faces. An unmarked face that shares edges with marked faces is split at these
+// edges, too, and becomes two to four faces, so that no vertex lies inside an edge. The parts of a
+// face take the place of the face in the order of the faces. The colour of a new vertex is the mean
+// of the colours of its edge's two ends. Returns by how many the number of faces has grown.
 std::size_t split_faces(Mesh& mesh, const std::vector<bool>& marked);
 
 }  // namespace axial::refine

@@ -11,27 +11,36 @@
 
 namespace axial::refine {
 
-// The bending of the surface at vertex v is b = n_v . (mean of the neighbours - vertex), which is
-// the mean curvature times half of the squared distance e^2 of the neighbours. b^2 is counted with
-// the weight smoothness * area / e^4, so that the sum approximates an integral of the squared
-// curvature. At edges of the surface, where |b| / e is large, the weight is smaller, as by Cauchy's
-// loss. Vertices on borders have no bending, and neither have vertices without any equation in
-// their neighbourhood.
+// The system of normal equations of the sum in refine.h. A vertex is measured if its sum of w g^2
+// is positive.
+//
+// Smoothness: let n_v be the normal of vertex v, e its Shape::edge and H the mean curvature of the
+// surface at v. The bending at v is b = n_v . (mean of the neighbours - vertex), about H e^2 / 2.
+// The system contains the square of b after the step, with the weight smoothness * area / e^4. The
+// sum over the vertices then approximates smoothness / 4 times the integral of H^2. At edges of the
+// surface, where |b| / e is large, the weight is smaller, as in Cauchy's loss. The weight is zero
+// on borders, and where neither the vertex nor a neighbour is measured.
+//
+// Slopes: let the slope of an edge be the difference between the displacements of its two ends,
+// divided by the length of the edge. The system contains the square of the slope of each edge with
+// a measured end, with the weight 9 / 0.2^2 (system.cpp).
 class System {
  public:
-  // The arguments except `equations` must outlive the system.
+  // `equations`: one per face of the mesh. `mesh`, `topology` and `shape` must outlive the system.
   System(const Mesh& mesh, const Topology& topology, const Shape& shape,
          std::span<const FaceEquations> equations, double smoothness);
 
-  // The sum of w g^2 of every vertex; zero for a vertex that is not measured.
+  // The sum of w g^2 for every vertex. Zero for a vertex that is not measured.
   std::vector<double> information() const { return diagonal_; }
 
-  // Adds weight * (displacement + offset)^2 to the sum that is minimised, and counts the slopes of
-  // displacement + offset. Call it at most once.
+  // Adds weight * (displacement + offset)^2 for every vertex to the sum that is minimised. The
+  // slopes are then those of displacement + offset, not those of the displacement alone. Both spans
+  // have one entry per vertex. Call it at most once.
   void add_anchor(std::span<const double> weight, std::span<const float> offset);
 
-  // The displacement of every vertex [mesh units], by conjugate gradients with the diagonal as
-  // preconditioner. Sums are added in an order that does not depend on the number of threads.
+  // The displacement of every vertex along its normal [mesh units]. The method is conjugate
+  // gradients with the diagonal as preconditioner, for at most 100 iterations. The result does not
+  // depend on the number of threads.
   std::vector<float> solve() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The neighbourhoods of a mesh, and quantities of its vertices that depend on the positions.
+// The neighbourhoods of a mesh's vertices, and the normals, edge lengths and areas of the vertices.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace axial::refine {
 
-// Lists of numbers, one list after the other.
+// Lists of numbers in one array, one list after the other.
 struct Lists {
-  std::vector<std::uint32_t> begin;  // one more than there are lists
+  std::vector<std::uint32_t> begin;  // list k is at [begin[k], begin[k + 1]) of `item`
   std::vector<std::uint32_t> item;
 
   std::span<const std::uint32_t> of(std::size_t list) const {
@@ -29,8 +29,10 @@ struct Topology {
 Topology topology_of(const Mesh& mesh);
 
 struct Shape {
-  // Mean normals of every vertex and its neighbours, of unit length; zero without a face of area.
-  // Neighbours have similar normals, so that vertices that move along them do not cross each other.
+  // For every vertex, a unit normal: the normalised sum of the area-weighted normals of the vertex
+  // and of its neighbours. Zero if the sum is zero, for example because all faces have no area.
+  // Because of the averaging, neighbours have similar normals, and vertices that move along their
+  // normals do not cross each other.
   std::vector<Eigen::Vector3f> normals;
   std::vector<float> edge;  // root of the mean squared length of the vertex's edges
   std::vector<float> area;  // a third of the area of the vertex's faces

@@ -9,6 +9,7 @@
 
 namespace axial::refine {
 
+// For every vertex and every view, whether the view sees the vertex. At first, no view sees any.
 class Visibility {
  public:
   Visibility(std::size_t vertices, std::size_t views)
@@ -26,15 +27,17 @@ class Visibility {
   std::vector<std::uint64_t> bits_;
 };
 
-// A vertex is hidden if it lies farther behind the drawn surface, at all four pixels around it,
-// than this part of its depth.
+// Let d be the depth of a vertex, and s the largest depth of the drawn surface at the four pixels
+// around the vertex. The vertex is hidden if d > (1 + kBehind) s.
 inline constexpr float kBehind = 0.003f;
 
-// The surface at a vertex must face the camera: least cosine between its normal and the direction
-// to the camera.
+// The surface at a vertex faces the camera if the cosine of the angle between the vertex's normal
+// and the direction to the camera is larger than this value.
 inline constexpr float kLeastCosine = 0.1f;
 
-// Marks the vertices that the view sees: inside the image, facing the camera, not hidden.
+// Marks in `visibility` the vertices that `view` sees. The image of such a vertex is inside the
+// view, the surface at the vertex faces the camera (kLeastCosine), and the vertex is not hidden
+// (kBehind). `images`: of all vertices in the view. `raster`: the mesh drawn into the view.
 void mark_seen(std::span<const VertexImage> images, const Shape& shape, const Raster& raster,
                std::size_t view, Visibility& visibility);
 

@@ -7,8 +7,8 @@
 
 namespace axial::refine {
 
-// The faces whose area [px^2] is larger than `limit` in at least two views that see all three
-// corners.
+// Returns for each face whether its area [px^2] is larger than `limit` in at least two views that
+// see all three corners of the face.
 std::vector<bool> larger_than(double limit, const Mesh& mesh, const ScaledViews& views,
                               const Visibility& visibility, MeshImages& images);
 

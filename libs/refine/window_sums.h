@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Statistics of windows of 7 x 7 pixels of two images, over the pixels that both have.
+// Statistics of two images in windows of 7 x 7 pixels. The images are the picture of the reference
+// view and the warped picture, which contains the source view's grey levels at the pixels of the
+// reference view. Pixels without a warped grey level (NaN) do not count.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +16,12 @@ namespace axial::refine {
 inline constexpr int kWindowRadius = 3;
 inline constexpr int kBandHeight = 16;  // rows that one thread processes
 
-// The sums over a window. To keep them small, kMiddle is subtracted from all grey levels.
+// The sums over one window, of `count` pixels: r and w are the sums of the reference view's and the
+// warped grey levels, rr, ww and rw the sums of their products. kMiddle is subtracted from all grey
+// levels before they are added, to keep the sums small.
 struct Windows {
   static constexpr float kMiddle = 128;
-  // The grey levels have this variance from noise and rounding [grey levels^2].
+  // The variance of grey levels that comes from noise and rounding [grey levels^2].
   static constexpr float kNoise = 1.0f;
   static constexpr float kLeastPixels = 20;
   static constexpr float kLeastCorrelation = 0.3f;
@@ -32,30 +36,33 @@ struct Windows {
   float correlation() const {
     return covariance() / std::sqrt(reference_variance() * warped_variance());
   }
-  // Contrast of the reference relative to that of the source.
+  // Standard deviation of the reference view's grey levels / that of the warped grey levels.
   float gain() const { return std::sqrt(reference_variance() / warped_variance()); }
   bool comparable() const {
     return count >= kLeastPixels && reference_variance() > kNoise / 4 &&
            warped_variance() > kNoise / 4 && correlation() > kLeastCorrelation;
   }
-  // The inverse of the variance of the residuals in the window.
+  // The inverse of the variance of the residuals in the window. The residual is the difference
+  // between the reference view's grey levels and gain() times the warped grey levels.
   float precision() const {
     return 1 / (2 * reference_variance() * std::max(0.0f, 1 - correlation()) + kNoise);
   }
 };
 
+// The number of bands of an image with `rows` rows.
 inline std::size_t window_bands(int rows) {
   return static_cast<std::size_t>((rows + kBandHeight - 1) / kBandHeight);
 }
 
-// Sums of each column over the rows of a window, for six channels.
+// The six sums of Windows for each column, over the rows that have been added.
 class ColumnSums {
  public:
   explicit ColumnSums(int width) : width_(width) {
     for (auto& channel : sum_) channel.resize(static_cast<std::size_t>(width + 2 * kWindowRadius));
   }
 
-  // Adds a row, or with `sign` -1 takes it away; pixels whose `warped` is NaN count nothing.
+  // Adds a row of both images if `sign` is 1, and removes the row if `sign` is -1. Pixels whose
+  // `warped` is NaN do not count.
   void add(const float* reference, const float* warped, float sign) {
     float *n = at(0), *r = at(1), *w = at(2), *rr = at(3), *ww = at(4), *rw = at(5);
     for (int x = 0; x < width_; ++x) {
@@ -68,6 +75,7 @@ class ColumnSums {
     }
   }
 
+  // The sums over the seven columns around x.
   Windows window(int x) const {
     std::array<float, 6> total{};
     for (std::size_t c = 0; c < 6; ++c) {
@@ -85,7 +93,9 @@ class ColumnSums {
   std::array<std::vector<float>, 6> sum_;
 };
 
-// Calls visit(x, y, windows) for every pixel of a band whose `warped` is not NaN.
+// Calls visit(x, y, windows) for every pixel of a band whose warped grey level is not NaN.
+// `windows` are the sums over the window around (x, y), without pixels beyond the image. Band k
+// consists of the kBandHeight rows from row k * kBandHeight.
 template <class Visit>
 void for_each_window(const cv::Mat1f& reference, const cv::Mat1f& warped, std::size_t band,
                      Visit&& visit) {

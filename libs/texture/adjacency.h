@@ -14,9 +14,9 @@ struct FacePair {
   std::uint32_t from = 0, to = 0;  // the vertices of the edge, from < to
 };
 
-// All pairs of faces with a common edge, in the order of the edges' vertices. If more than two
-// faces share an edge, each is paired with the next, in the order of their indices. Faces with a
-// repeated corner have no pair at the edge between equal vertices.
+// Returns the pairs of faces with a common edge, sorted by (from, to). If more than two faces share
+// an edge, the faces are sorted by index, and each face is paired only with the next one. A side
+// between two equal corners of a face is no edge and gives no pair.
 std::vector<FacePair> face_pairs(std::span<const std::array<std::uint32_t, 3>> faces);
 
 }  // namespace axial::texture

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures: the charts' parts of the photographs, packed.
+// The atlas: the textures, into which the parts of the photographs that belong to charts are
+// packed.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,13 +23,17 @@ struct Atlas {
   std::size_t scaled_down = 0;            // charts that were larger than a texture
 };
 
-// Finds places for all charts. The textures have the colour `empty`; a piece of 5 x 5 pixels in the
-// corner of the first one keeps it. Errors as for pack().
+// Finds a place for each chart, and fills all textures with the colour `empty`. No chart is placed
+// in the 5 x 5 pixels of the upper left corner of texture 0, so that these pixels keep this colour
+// (Atlas::empty_uv). Errors as for pack().
 Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty);
 
-// Copies the charts' parts of the photographs into the textures. `sharpness` is the amount of an
-// unsharp mask, (1 + sharpness) * T - sharpness * G * T, with a Gaussian G of standard deviation
-// 1.5 px. Pixels beyond the image repeat its edge.
+// Copies the part Chart::rect of the photograph of each chart into the chart's place in the
+// textures. Where the place is smaller, the part is scaled down. `views`: the number of views,
+// whose photographs `images` returns. `sharpness`: the amount of an unsharp mask, 0 for none. The
+// mask replaces a photograph T by (1 + sharpness) T - sharpness (G * T), where * is convolution and
+// G a Gaussian with a standard deviation of 1.5 px. Where a part extends beyond the photograph, it
+// repeats the photograph's border pixels.
 void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSource& images,
            double sharpness);
 

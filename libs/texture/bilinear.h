@@ -7,7 +7,9 @@
 
 namespace axial::texture {
 
-// The colour (B G R) between pixels. A position outside the image is moved to its edge.
+// The colour (B G R) at the position `at` (x, y) [px], interpolated bilinearly between pixel
+// centres at integers. A position beyond the outermost pixel centres is moved to the nearest
+// position between them. Precondition: `image` is not empty.
 inline Eigen::Vector3f bilinear(const cv::Mat3b& image, const Eigen::Vector2f& at) {
   const float x = std::clamp(at.x(), 0.0f, static_cast<float>(image.cols - 1));
   const float y = std::clamp(at.y(), 0.0f, static_cast<float>(image.rows - 1));

@@ -6,10 +6,12 @@
 
 namespace axial::texture {
 
-// Returns 0 at the pixels of black borders and 255 elsewhere; nothing (an empty image) if there are
-// none. A black border consists of pixels whose channels are all at most `darkest`, connected to
-// the image's edge through such pixels, and of all pixels nearer to them than `margin`, because
-// resampling and compression mix colours there.
+// Returns an image of the same size that is 0 at the pixels of black borders and 255 elsewhere.
+// Returns an empty image if there is no black border. A pixel is dark if all its channels are at
+// most `darkest`. A black border consists of
+//   - the dark pixels that are connected to the image's edge through dark pixels,
+//   - all pixels at most `margin` pixels from these dark pixels, in x and in y, because resampling
+//     and compression mix colours there.
 cv::Mat1b outside_black_border(const cv::Mat3b& image, int darkest = 4, int margin = 3);
 
 }  // namespace axial::texture

@@ -10,20 +10,26 @@
 
 namespace axial::texture {
 
+// A field of corrections [grey levels, B G R]. The field has a value at each pixel that it covers.
+// Positions are (x, y) [px] relative to the field's upper left pixel, with pixel centres at
+// integers.
 class ChartField {
  public:
-  // Zero, without pixels.
+  // The field covers no pixel at first.
   explicit ChartField(cv::Size size) : covered_(size, 0), value_(size, cv::Vec3f(0, 0, 0)) {}
 
-  // Covers the pixels whose centres lie in a triangle, with values that are linear between its
-  // corners. Positions are relative to the field. A pixel that is covered already stays.
+  // Covers the pixels whose centres lie in a triangle or on its edges. `values` are the values at
+  // `corners`, and the values between the corners are linear. A pixel that is already covered keeps
+  // its value. A triangle without area covers nothing.
   void add_triangle(const std::array<Eigen::Vector2f, 3>& corners,
                     const std::array<Eigen::Vector3f, 3>& values);
 
-  // Covers the four pixels around a position, except those that are covered already.
+  // Covers the four pixels around a position with `value`. A pixel that is already covered keeps
+  // its value.
   void add_point(const Eigen::Vector2f& at, const Eigen::Vector3f& value);
 
-  // Covers the pixels beside covered ones, with the mean of the covered ones beside them.
+  // Covers each uncovered pixel that has covered pixels among its eight neighbours. Its value is
+  // the mean of these covered pixels' values.
   void widen();
 
   // A value to add at a position.
@@ -32,12 +38,17 @@ class ChartField {
     Eigen::Vector3f value;
   };
 
-  // Adds the solution of Laplace's equation in a strip of `width` pixels around the samples: near a
-  // sample the mean of the samples nearest to the same pixel, zero beyond the strip, no flow
-  // through the border of the covered pixels.
+  // Adds the solution of Laplace's equation to the values in a strip: the covered pixels that fewer
+  // than `width` steps between covered pixels (up, down, left, right) separate from a sample's
+  // pixel. A sample belongs to its nearest pixel. The solution has these boundary conditions:
+  //   - At a pixel with samples, the solution is the mean of the samples.
+  //   - At covered pixels beyond the strip, the solution is zero.
+  //   - There is no flow through the border of the covered pixels.
+  // The solution is approximate, by a fixed number of iterations.
   void add_strip(std::span<const Sample> samples, int width);
 
-  // Adds the field to `texture`, rounded, at the covered pixels.
+  // Adds the field to `texture` at the covered pixels. The sums are rounded, and limited to 0 to
+  // 255. `texture` is the part of a texture that the field corrects, and has the field's size.
   void add_to(cv::Mat3b texture) const;
 
  private:

@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kNoChart = 0xFFFFFFFFu;
 
 struct Chart {
   std::uint32_t view = 0;
-  // The part of the image that holds the chart's faces and a border of kBorder pixels. It may
-  // extend beyond the image.
+  // The part of the view's image that contains the chart's faces and a border of kBorder pixels.
+  // This part may extend beyond the image.
   cv::Rect rect;
 };
 
@@ -46,17 +46,21 @@ struct Charts {
   }
 };
 
-// Makes the charts of a labelling: `labels` holds a view for each face, or kNoView. Nodes are
-// projected by the exact cameras.
+// Makes the charts of a labelling. `labels` contains for each face the index of its view, or
+// kNoView (labels.h). `pairs`: of face_pairs(). A chart is a maximal set of faces with the same
+// view that are connected through `pairs`. Charts are in the order of their first faces. The pixels
+// of the nodes are projected by the exact cameras of `views`.
 Charts make_charts(const Mesh& mesh, std::span<const FacePair> pairs,
                    std::span<const std::uint32_t> labels, std::span<const View> views);
 
-// A common edge of two faces of different charts.
+// A common edge of two faces of different charts, chart a and chart b. The order of an edge's two
+// vertices is that of FacePair: `from`, then `to`.
 struct Seam {
-  std::array<std::uint32_t, 2> a{}, b{};  // nodes of its two vertices in the one and other chart
+  std::array<std::uint32_t, 2> a{}, b{};  // the nodes of the edge's two vertices in either chart
 };
 
-// All seams, in the order of `pairs`.
+// All seams, in the order of `pairs`. Chart a is that of FacePair::a, and chart b that of
+// FacePair::b. An edge of a face without chart is no seam.
 std::vector<Seam> find_seams(const Charts& charts, const Mesh& mesh,
                              std::span<const FacePair> pairs);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The views that see each face of a mesh, and how well.
+// The views that see each face of a mesh, with a measure of quality.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace axial::texture {
 
-// A view that sees a face.
+// A view that sees a face, or a part of the face. Without `whole`, `color` has no meaning.
 struct Sight {
   std::uint32_t view = 0;
   float quality = 0;                    // higher is better
@@ -34,22 +34,31 @@ struct FaceViews {
 };
 
 struct VisibilityOptions {
-  // A face that is in front of another by less than this share of the distance to the camera does
-  // not hide it. About the width of a pixel.
+  // Let a path of light have the length L from a point on the mesh to the point where the light
+  // leaves the water. A face that crosses the path less than tolerance * L from the point on the
+  // mesh does not hide that point. The default is the ratio of a pixel's width on the surface to
+  // the distance for a focal length of 1000 px.
   double tolerance = 1e-3;
 };
 
-// Finds for each face the views that see all of it:
-//   - The face is turned towards the camera, and its corners are inside the image. Corners are
-//     projected by the exact camera.
-//   - No pixel on it is unusable (ViewImage::usable).
-//   - No other face lies on the path of light from its corners, and from points on a grid inside
-//     larger faces, to the point where the light leaves the water (exit_point of the camera).
-// A face that no view sees in this way gets the views that see its middle, if there are any: other
-// faces may hide its corners, and it may be turned away if its neighbours are not.
-// The quality is its area in the image [px] times max(0.001, cos)^2, with the angle between the
-// path of light and the normal, which is smoothed over the neighbouring faces.
-// Error for a mesh that Occluders refuses, and an Error of `images`.
+// Finds for each face the views that see all of the face (Sight::whole). The conditions are:
+//   1. The face is turned towards the camera.
+//   2. The corners are inside the image. Corners are projected by the exact camera.
+//   3. All pixels in the face and up to 1.42 px around it are usable (ViewImage::usable).
+//   4. No face hides the corners, or the points of a grid inside a face of 16 px^2 or more. A point
+//      is hidden if a face lies on the path of light from the point to the point where the light
+//      leaves the water (exit_point of the camera).
+//
+// If no view sees all of a face, the face gets the views that see its middle. These views satisfy
+// conditions 2 and 3, and the middle of the face is not hidden. The face may be turned away if its
+// smoothed normal is not.
+//
+// The smoothed normal of a face is the mean of the normals at its three corners. Let c be the
+// cosine of the angle between the smoothed normal and the path of light from the middle of the
+// face. The quality is the area of the face in the image [px^2] times max(0.001, c)^2.
+//
+// Calls progress(done, total) with numbers of views. Errors of Occluders and of
+// `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options = {}, const ProgressSink& progress = {});
 

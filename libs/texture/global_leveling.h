@@ -13,17 +13,25 @@
 namespace axial::texture {
 
 struct GlobalLevelingOptions {
-  // Weight of the squared difference between the corrections of two neighbouring nodes of a chart,
-  // where the squared difference at the end of a seam has weight 1.
+  // Weight of the squared difference between the corrections of two neighbouring nodes of a chart.
+  // An edge at the border of a chart has half of this weight. For comparison, the squared
+  // difference at an end of a seam has the weight 1.
   double smoothness = 0.01;
   // Weight of the squared correction itself. It keeps the corrections from drifting along chains of
   // charts.
   double smallness = 1e-4;
 };
 
-// Returns for each node the colour to add [grey levels, B G R]: the least-squares solution, by
-// conjugate gradients. At each end of a seam, the colours of the two sides are means along the
-// seam, whose weights fall linearly to zero at the other end.
+// Returns for each node the correction g, a colour to add [grey levels, B G R]. The corrections are
+// the least-squares solution, by conjugate gradients, of
+//
+//       sum over the two ends of all seams of (g_a - g_b - d)^2
+//     + smoothness * sum over the edges inside charts of (g_i - g_j)^2
+//     + smallness * sum over the nodes of g^2.
+//
+// a, b: the nodes at the end of the seam. d: the difference of the colours at this end, chart b
+// minus chart a. It is the weighted mean of the samples along the seam (SeamColors). The weight of
+// a sample falls linearly from this end of the seam to zero at the other end.
 std::vector<Eigen::Vector3f> level_globally(const Mesh& mesh, const Charts& charts,
                                             std::span<const Seam> seams, const SeamColors& colors,
                                             const GlobalLevelingOptions& options = {});

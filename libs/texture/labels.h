@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses for each face the view that gives it its colours.
+// Chooses for each face the view from which the face gets its colours.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,23 @@ namespace axial::texture {
 inline constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
 
 struct LabelOptions {
-  // How much a face's quality counts against a seam at one of its edges. Near 0: as few seams as
-  // possible; 1: the best view for each face.
+  // The weight of a face's quality relative to that of a seam at one of the face's edges (see the
+  // cost in choose_views()). Near 0: as few seams as possible. The larger the ratio,
+  // the more faces get their best view.
   double cost_smoothness_ratio = 0.1;
-  int max_cycles = 3;  // expansions of each view, at most
+  int max_cycles = 3;  // greatest number of expansions of each view
 };
 
-// Minimises the sum over the faces of 2 * ratio * (1 - q / best), plus 1 for each pair of faces of
-// different views, where q is the quality of the chosen view and `best` that of the best view of
-// the face. The method is alpha expansion (Boykov, Veksler and Zabih, 2001) with integer costs and
-// minimum cuts by Boykov and Kolmogorov's library. A face that no view sees gets kNoView and no
-// seams.
+// Returns for each face the index of its view, or kNoView for a face that no view sees. For a face,
+// let q be the quality of the chosen view and `best` the highest quality of its views. The labels
+// minimise, approximately, the cost
+//
+//       sum over the faces of 2 * ratio * (1 - q / best)
+//     + the number of pairs of faces with different views,
+//
+// where ratio is cost_smoothness_ratio. Faces with kNoView do not count. The method is alpha
+// expansion (Boykov, Veksler and Zabih, 2001) with costs rounded to thousandths. Minimum cuts are
+// computed by Boykov and Kolmogorov's library.
 std::vector<std::uint32_t> choose_views(const FaceViews& views, std::span<const FacePair> pairs,
                                         const LabelOptions& options);
 

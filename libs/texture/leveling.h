@@ -15,12 +15,20 @@ struct LevelingOptions {
   int strip = 20;  // width of the strip [px]
 };
 
-// Adds the corrections to the textures. The local correction of a chart is the solution of
-// Laplace's equation in the strip: at the seam half of the difference that global levelling leaves,
-// so that both sides become their mean; zero at the strip's inner side; no flow through other
-// borders of the chart. Colours are then the solution of Poisson's equation with the gradients of
-// the photograph (Perez, Gangnet and Blake, 2003). Pixels up to two outside a chart's faces get the
-// correction of their neighbours, because bilinear interpolation uses them.
+// Adds the global and the local corrections to the textures of `atlas`, which must be painted and
+// not yet levelled. The global correction is linear inside each face (global_leveling.h).
+//
+// The local correction of a chart is the solution of Laplace's equation in a strip along the seams,
+// with these boundary conditions:
+//   - At the seam, it is half of the difference that the global correction leaves, so that both
+//     sides get the mean of their colours.
+//   - At the inner side of the strip, it is zero.
+//   - There is no flow through the other borders of the chart.
+// The corrected colours are then the solution of Poisson's equation with the gradients of the
+// photograph (Perez, Gangnet and Blake, 2003).
+//
+// Pixels outside a chart's faces, up to two pixels from them, get the correction of their
+// neighbours, because bilinear interpolation uses these pixels.
 void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
                  const LevelingOptions& options);
 

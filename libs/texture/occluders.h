@@ -11,16 +11,17 @@ namespace axial::texture {
 
 class Occluders {
  public:
-  // `mesh` must outlive the object. Error for a mesh without faces, a face index out of range, and
-  // coordinates that are not finite.
+  // `mesh` must outlive the object. Error for a mesh without faces, a vertex index out of range,
+  // coordinates that are not finite, and a failure of Embree.
   explicit Occluders(const Mesh& mesh);
   ~Occluders();
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
 
-  // True if a face crosses the segment between `from` and `to`. The last part of the segment, a
-  // share `tolerance` of its length, does not count, so that a point on the surface does not hide
-  // itself. May be called concurrently.
+  // True if a face crosses the segment from `from` to `to`, in the frame of the mesh. The end of
+  // the segment at `to` does not count: a part with `tolerance` (0 to 1) times the length of the
+  // segment. A face therefore does not hide a point `to` that lies on the face. May be called
+  // concurrently.
   bool between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removes views that show something else than the other views of a face: a fish, a hand, a
-// reflection.
+// Removes views in which a face has another colour than in the other views, because they show a
+// fish, a hand or a reflection.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,17 @@
 
 namespace axial::texture {
 
-// For each face that at least five views see, removes the sights whose colour is far from the
-// median of all: exp(-d^2 / 2) < threshold, where d^2 is the sum over the channels of the squared
-// difference, in units of the channel's robust standard deviation (1.4826 times the median absolute
-// deviation, at least 6 grey levels: noise, and points on the surface that are not exactly the
-// same). If all sights of a face are far from the median, all of them stay. Returns the
-// number of removed sights. threshold 0: nothing is removed.
+// Removes the sights of a face whose colour is far from the median colour of the face's sights.
+//
+// For each channel, let s be the robust standard deviation of the sights' colours: 1.4826 times the
+// median absolute deviation. A value below 6 grey levels is raised to 6, because of noise and
+// because views do not show exactly the same points of the surface. Let d^2 be the sum over the
+// channels of ((colour - median) / s)^2. A sight is far from the median if
+// exp(-d^2 / 2) < threshold.
+//
+// All sights stay in these cases: fewer than five views see the face, no view sees all of the face
+// (Sight::whole), all sights are far from the median, or threshold is 0 or less. Returns the number
+// of removed sights.
 std::size_t remove_outliers(FaceViews& views, double threshold);
 
 }  // namespace axial::texture

@@ -26,15 +26,22 @@ struct Packing {
   std::size_t scaled_down = 0;  // rectangles with a scale below 1
 };
 
-// The size of a rectangle at the scale of its place.
+// The size of a rectangle of the given size at the scale of its place, rounded up to whole pixels.
 cv::Size size_at(const Place& place, cv::Size size);
 
-// Places rectangles of the given sizes, all sides at least 1. The first rectangle lies in the
-// corner of the first texture. The sides of the textures begin at a size for which the rectangles
-// fill 90 % of the area, and grow step by step until all rectangles fit or max_size is reached;
-// then there are more textures. A texture is cut below its last rectangle. The sides are at most
-// max_size, even if that is not a power of two or a multiple. Error for a max_size below 16 and not
-// 0, and for a negative `multiple`.
+// Places rectangles of the given sizes [px], with sides of at least 1. The first rectangle lies in
+// the upper left corner of the first texture.
+//
+// A texture is a square at first. Its side is at least as long as the longest side of a rectangle,
+// and so long that the remaining rectangles fill at most 90 % of its area. The side grows step by
+// step until all remaining rectangles fit or until max_size is reached. The rectangles that do not
+// fit are placed in a further texture. At the end, the height is reduced to the smallest allowed
+// side that contains the lowest rectangle. Sides are powers of two or multiples of `multiple`,
+// except that a side longer than max_size is reduced to max_size. A rectangle longer than max_size
+// is scaled down (Place::scale).
+//
+// Error for a max_size that is neither 0 nor from 16 to 32768, and for a `multiple` that is
+// negative or larger than max_size.
 Packing pack(std::span<const cv::Size> sizes, const PackingOptions& options);
 
 }  // namespace axial::texture

@@ -12,8 +12,10 @@
 
 namespace axial::texture {
 
-// Samples along the seams: those of seam s are at [begin[s], begin[s + 1]). Sample k of n lies at
-// the share (k + 1/2) / n of the edge from its first vertex. There are two per pixel.
+// Samples along the seams. The samples of seam s are at [begin[s], begin[s + 1]) of `differences`.
+// A seam with n samples has its sample k at (1 - t) * first vertex + t * second vertex, where t =
+// (k + 1/2) / n. There are two samples per pixel of the seam's length in the texture where the seam
+// is longer, and at least two per seam.
 struct SeamColors {
   std::vector<std::uint32_t> begin;
   std::vector<Eigen::Vector3f> differences;  // colour in chart b minus colour in chart a, B G R
@@ -23,7 +25,8 @@ struct SeamColors {
   }
 };
 
-// `atlas` must be painted and not yet levelled.
+// Samples the textures of `atlas` on both sides of each seam. `atlas` must be painted and not yet
+// levelled.
 SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams);
 
 }  // namespace axial::texture

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits faces that are too large for texture coordinates, which are linear inside a face: the
-// image of a face is not, because of perspective, refraction and lens distortion.
+// Splits faces that are too large for linear texture coordinates. Texture coordinates are linear
+// inside a face. The exact image of a face is not linear, because of perspective, refraction and
+// lens distortion.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +14,22 @@ namespace axial::texture {
 
 struct SplitOptions {
   double tolerance = 0.25;             // largest error of a linear image inside a face [px]
-  std::size_t max_faces = 20'000'000;  // no more splits beyond this number
+  std::size_t max_faces = 20'000'000;  // splitting ends before this number can be exceeded
 };
 
-// Splits edges in their middle, and the faces at them, until the exact image of the middle of each
-// edge is near the middle of the images of its ends, in each view that looks at a front of the
-// edge and has it in its image. An error that is quadratic along the edges is inside a face at most
-// 4/3 of the largest error at its edges; so 3/4 of the tolerance is allowed there. Faces stay
-// joined along their edges. Returns the number of new faces. Views are not asked what hides the
-// face.
+// Splits edges in the middle, together with the faces at the edges, until the error of each edge is
+// at most 3/4 of the tolerance. The error of an edge in a view is the distance [px] from the exact
+// image of the edge's middle to the middle of the images of its two ends. A view counts for an edge
+// if a face at the edge is turned towards the view and the image contains both ends and the middle
+// of the edge. Views that other faces hide from the edge count, too.
+//
+// The factor 3/4: an error that is quadratic along the edges is, inside a face, at most 4/3 of the
+// largest error at the face's edges.
+//
+// Splitting ends early after 16 rounds, and with a warning in the log before a round after which
+// there could be more than max_faces faces. Faces stay joined along their edges. The parts of a
+// face take the place of the face in the order of the faces. Vertices keep their indices, and new
+// vertices follow. Returns by how many the number of faces has grown.
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {});
 
 }  // namespace axial::texture

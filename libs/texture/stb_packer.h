@@ -13,7 +13,9 @@ struct StbRect {
   std::optional<cv::Point> corner;  // nothing: does not fit
 };
 
-// Places as many of the rectangles as fit into a texture. The first one lies in its corner.
+// Places rectangles in a texture of the size `texture` [px], as far as the packer finds a place.
+// Sets StbRect::corner, the upper left pixel, of the placed rectangles and leaves the others
+// unchanged. The first rectangle is placed in the upper left corner of the texture if it fits.
 void pack_with_stb(cv::Size texture, std::span<StbRect> rects);
 
 }  // namespace axial::texture

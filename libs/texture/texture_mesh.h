@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gives a mesh textures from photographs, whose cameras may be behind ports.
+// Gives a mesh textures from photographs. The cameras of the photographs may be behind ports.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +33,17 @@ struct Report {
   std::size_t scaled_down = 0;  // charts that were larger than a texture
 };
 
-// The names of the stages for progress, which is called for stages that take long.
+// Returns the ProgressSink for a stage with the given name. Called at the start of a stage that
+// takes long.
 using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 
-// Textures `mesh`. Its faces get the colours of the view that labels.h chooses among those that see
-// them, and are in the result in the same order, with the parts of a split face in its place.
-// Vertices keep their indices. Error for a mesh without faces, with a face index out of range or a
-// coordinate that is not finite, for a mesh of which no view sees a face, and an Error of `images`.
+// Returns `mesh` with textures. Each face gets the colours of one of the views that see the face,
+// as chosen by choose_views() (labels.h). A face that no view sees gets Options::empty_color. Faces
+// stay in the same order, and the parts of a split face take its place. Vertices keep their
+// indices, and the vertices that splitting adds follow. `report`, if given, is filled.
+//
+// Error for a mesh without faces, with a vertex index out of range or with a coordinate that is not
+// finite. Error if no view sees any face. Errors of `images` and of pack() are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const StageProgress& progress = {});

@@ -22,8 +22,9 @@ struct ViewImage {
   cv::Mat1b usable;  // of the same size; 0: the pixel must not be used. Empty: all may be used
 };
 
-// Returns the photograph of view `index`. It is called concurrently, more than once for each view,
-// and must return the same image each time. No more images are held than there are threads.
+// Returns the photograph of view `index`. The function is called concurrently, may be called more
+// than once for each view, and must return the same image each time. The callers hold at most as
+// many images at a time as there are threads.
 using ImageSource = std::function<ViewImage(std::size_t index)>;
 
 }  // namespace axial::texture
