@@ -17,9 +17,11 @@ namespace axial::evaluate {
 
 using axial::Similarity;
 
-// Returns best_similarity() from `source` to `target`, with scale 1 unless `with_scale`. Error for
-// fewer than three pairs, coordinates that are not finite, or points on one line (their spread
-// across it is below a thousandth of the spread along it), which do not fix the rotation.
+// Returns the least-squares similarity (best_similarity) that maps source[i] to target[i]. The
+// scale is 1 unless `with_scale`. Error if `source` and `target` have different lengths or fewer
+// than three points, if a coordinate is not finite, or if the points of one side lie on one line.
+// Points on one line do not determine the rotation about this line. Points count as on one line if
+// relative_width() of them is at most kLineWidth.
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target, bool with_scale = true);
 
@@ -27,22 +29,23 @@ struct CentreAlignment {
   Similarity similarity;
   std::vector<std::string> names;  // images that are in both models
   std::vector<double> residuals;   // of centres [unit of the reference], ordered as `names`
-  std::vector<double> turns;       // angles between the rotations [rad], ordered as `names`
+  std::vector<double> turns;       // from aligned to reference rotations [rad], ordered as `names`
   double rms = 0;                  // of `residuals`
 };
 
-// Returns the similarity that takes the camera centres of `model` to those of `reference`. Images
-// are matched by name. Errors as for fit_similarity.
+// Returns the similarity that maps the camera centres of `model` to the camera centres of
+// `reference`. Images are matched by name. Images without a partner are ignored. Errors as for
+// fit_similarity, for the matched images.
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
 
-// Reports the images of `reference` for which `model` has no image of the same name: one line with
-// their number and the first name, or nothing if there are none. `alignment` is the result of
-// align_centres.
+// Reports the images of `reference` that have no partner in the model. Returns one line with the
+// number of these images and the name of the first one. Returns nothing if all have a partner.
+// `alignment`: the result of align_centres for this reference.
 std::vector<std::string> not_matched(const CentreAlignment& alignment,
                                      const io::ColmapModel& reference);
 
-// Converts a similarity between local frames to world coordinates. `similarity` takes coordinates
-// in `from` to coordinates in `to`.
+// Converts a similarity between local frames to a similarity between world coordinates.
+// `similarity` maps coordinates in the frame `from` to coordinates in the frame `to`.
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
                           const LocalFrame& to);
 

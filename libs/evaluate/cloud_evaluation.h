@@ -18,9 +18,9 @@ namespace axial::evaluate {
 
 struct CloudOptions {
   std::vector<double> tolerances{0.005};  // [m]; the first scales histograms and colours
-  std::size_t samples = 200000;           // samples of the true mesh for completeness, see below
+  std::size_t samples = 200000;           // wanted number of samples of the true mesh that count
   std::uint64_t seed = 1;
-  std::uint32_t least_views = 2;  // number of views that must see a sample for it to count
+  std::uint32_t least_views = 2;  // a sample counts if at least this number of views see it
   std::size_t histogram_bins = 80;
   double gross = 0;  // distance beyond which an error is gross [m]; 0: 4 * first tolerance
 };
@@ -39,27 +39,28 @@ struct CloudEvaluation {
 };
 
 // Evaluates a cloud. Accuracy is the exact distance from every point to `truth`. Completeness is
-// the distance from samples of `truth`, uniform by area, to the nearest point. A sample counts if
-// at least `least_views` of `views` see it, or always if there are no views. If few of
-// `options.samples` samples are seen, up to 20 times as many are drawn, so that about
-// `options.samples` count. `surface` must be made from `truth`. Error for no points, a point that
-// is not finite, no tolerance or a tolerance that is not positive, no samples, or no sample that is
-// seen.
+// the distance from every counted sample of `truth` to the nearest point. Samples are uniform by
+// area. A sample counts if at least `options.least_views` of `views` see it. Without views, all
+// samples count. draw_places() draws the samples, and repeats the draw with more samples if few
+// count. Precondition: `surface` is made from `truth`. Error if there are no points, a point is not
+// finite, there is no tolerance, a tolerance is not positive and finite, `options.samples` is 0, or
+// no sample counts.
 CloudEvaluation evaluate_cloud(std::span<const Eigen::Vector3f> points, const Mesh& truth,
                                const Surface& surface, std::span<const View> views,
                                const CloudOptions& options);
 
-// Evaluates a mesh. Accuracy is that of `options.samples` samples of the mesh, uniform by area,
-// which are returned in `sampled`; `faces`, unless null, receives their faces. Completeness is the
-// exact distance from the samples of the truth to the triangles of the mesh. Errors as for
-// evaluate_cloud.
+// Evaluates a mesh. Accuracy is the exact distance from `options.samples` samples of `mesh` to
+// `truth`. The samples are uniform by area. `sampled` receives the samples. `faces`, unless null,
+// receives the face of `mesh` on which each sample lies. Completeness is the exact distance from
+// every counted sample of `truth` to the triangles of `mesh`. Errors of `options` and of the
+// counted samples as for evaluate_cloud. Errors of `mesh` as for sample_surface and Surface.
 CloudEvaluation evaluate_mesh(const Mesh& mesh, const Mesh& truth, const Surface& surface,
                               std::span<const View> views, const CloudOptions& options,
                               std::vector<Eigen::Vector3f>& sampled,
                               std::vector<std::uint32_t>* faces = nullptr);
 
-// Returns the distance of every query to the nearest of `points`, of which there must be at least
-// one.
+// Returns the distance from every query to the nearest of `points`, in the order of the queries.
+// Precondition: there is at least one point.
 std::vector<float> nearest_point_distances(std::span<const Eigen::Vector3f> queries,
                                            std::span<const Eigen::Vector3f> points);
 

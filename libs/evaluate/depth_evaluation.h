@@ -34,34 +34,40 @@ struct DepthEvaluation {
   std::size_t estimated_pixels = 0;  // pixels that have an estimate
   std::size_t compared_pixels = 0;   // pixels that have both
   double completeness = 0;           // compared / truth
-  // Precision: share of the compared pixels within the tolerance. Recall: share of the pixels with
-  // a truth that are within the tolerance.
+  // One score for each tolerance. A pixel is within the tolerance if |error| is at most the
+  // tolerance. Precision is the share of these pixels in the compared pixels. Recall is their share
+  // in the pixels that have a truth.
   std::vector<Score> scores;
   std::vector<Ring> rings;
 };
 
-// Both maps hold lambda, the distance along the pixel's ray from the ray's origin on the axis (in
-// air: from the camera centre) [m]. Pixels that are 0 or not finite have no value. Error for an
-// empty map, maps of different aspect (more than one row off), no tolerance or a tolerance that is
-// not positive, or no pixel in common.
+// Compares `estimate` with `truth` at the resolution of `estimate`. Both maps hold lambda [m], the
+// distance along the pixel's ray from the ray's origin on the axis. In air the origin is the camera
+// centre. Pixels that are not positive or not finite have no value. Error if a map is empty, if
+// there is no tolerance, if a tolerance is not positive and finite, if the maps have different
+// aspect ratios, or if no pixel has both an estimate and a truth. Aspect ratios are different if
+// the truth, scaled to the width of the estimate, has a height that differs by more than one row.
 DepthEvaluation evaluate_depth(const cv::Mat1f& estimate, const cv::Mat1f& truth,
                                const DepthOptions& options);
 
-// A ring as above, for relative errors in several maps of one camera.
+// Relative errors in a ring (as Ring) of several maps of one camera.
 struct RelativeRing {
   double inner = 0, outer = 0;
   std::size_t count = 0;
   double signed_median = 0;  // (estimate - truth) / truth
 };
 
-// Returns `count` rings over all pixels of all maps that have an error. A wrong lens model gives
-// relative errors that grow with the distance from the image centre.
+// Returns `count` rings of equal width from the image centre to the corners. Each ring summarises
+// its pixels of all maps, without pixels whose error is missing. A wrong lens model gives relative
+// errors that grow with the distance from the image centre.
 std::vector<RelativeRing> relative_rings(std::span<const DepthEvaluation> maps, std::size_t count);
 
-// Returns the truth at the pixels of a map of another size. Maps of equal size have the same
-// pixels. Otherwise pixel u is at (u + 1/2) * scale - 1/2 in the truth, where 1/distance is
-// interpolated bilinearly, because it is nearly linear on a plane. If one of the four pixels around
-// is missing, or they differ by more than 5 % (an edge), the nearest pixel is taken.
+// Returns the true distances at the pixels of a map of size `size`. If the sizes are equal, the
+// result is a copy. Otherwise pixel u of the result lies at (u + 1/2) * scale - 1/2 in the truth,
+// with scale = width of the truth / width of the result. The same holds for rows. The result is
+// interpolated bilinearly in 1/distance, which is nearly linear on a plane. Exception: if one of
+// the four surrounding pixels has no value, or the largest of them exceeds the smallest by more
+// than 5 % (an edge), the result is the nearest pixel of the truth (0 if it has no value).
 cv::Mat1f resample_distance(const cv::Mat1f& truth, cv::Size size);
 
 }  // namespace axial::evaluate

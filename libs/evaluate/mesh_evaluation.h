@@ -21,16 +21,18 @@ namespace axial::evaluate {
 
 inline constexpr std::array<double, 3> kNormalLimits{10, 20, 30};  // [degrees]
 
-// Angles between the normal of the mesh and the normal of the truth, from 0 to 180 degrees: a face
-// that shows its back has more than 90.
+// Angles between the normal of the mesh at a sample and the normal of the truth at the nearest
+// point, from 0 to 180 degrees. A face whose orientation is opposite to the truth has an angle of
+// more than 90 degrees.
 struct NormalErrors {
-  std::size_t count = 0;
+  std::size_t count = 0;                              // angles; faces without area have none
   double median = 0;                                  // [degrees]
   std::array<double, kNormalLimits.size()> within{};  // shares of angles up to kNormalLimits
 };
 
-// The part of the mesh over surface that the cameras saw: samples whose place is seen by enough
-// views. The place of a sample is the nearest point of the truth.
+// Statistics of the samples of the mesh that lie near seen surface. The place of a sample is the
+// nearest point of the truth. A sample belongs to this part if at least CloudOptions::least_views
+// views see its place.
 struct SeenPart {
   double share = 0;             // of the area of the mesh
   DistanceStatistics accuracy;  // as CloudEvaluation::accuracy
@@ -38,18 +40,20 @@ struct SeenPart {
   NormalErrors normals;
 };
 
-// Shares of the area of the mesh over unseen space. No share counts an area twice.
+// Shares of the area of the mesh that the views do not support. The three classes are disjoint. The
+// place of a sample is the nearest point of the truth.
 struct UnseenArea {
   double no_view = 0;    // no view sees the place
-  double few_views = 0;  // some views see it, but fewer than CloudOptions::least_views
-  double far = 0;        // enough views see it, but it is farther away than CloudEvaluation::gross
+  double few_views = 0;  // some views see the place, but fewer than CloudOptions::least_views
+  // Enough views see the place, but the sample is farther from it than CloudEvaluation::gross.
+  double far = 0;
   double total() const { return no_view + few_views + far; }
 };
 
 struct MeshEvaluation {
   NormalErrors normals;              // of all samples
-  std::optional<SeenPart> seen;      // with cameras
-  std::optional<UnseenArea> unseen;  // with cameras
+  std::optional<SeenPart> seen;      // nothing without views
+  std::optional<UnseenArea> unseen;  // nothing without views
   Topology topology;
 };
 
@@ -59,9 +63,10 @@ struct MeshSamples {
   std::span<const std::uint32_t> faces;
 };
 
-// Evaluates `mesh` by the samples that evaluate_mesh has drawn. `whole`: its result. Other
-// arguments are those of evaluate_mesh. A view that sees a place is one of count_views with the
-// truth as the surface: no surface of the mesh hides it. Errors as for topology_of.
+// Evaluates `mesh` by the samples that evaluate_mesh has drawn. `samples`: the outputs `sampled`
+// and `faces` of evaluate_mesh. `whole`: the result of evaluate_mesh. `truth`: its argument
+// `surface`. The other arguments are the same as for evaluate_mesh. count_views() with `truth`
+// decides which views see a place, so the mesh itself hides no place. Errors as for topology_of.
 MeshEvaluation evaluate_mesh_parts(const Mesh& mesh, const MeshSamples& samples,
                                    const Surface& truth, std::span<const View> views,
                                    const CloudOptions& options, const CloudEvaluation& whole);

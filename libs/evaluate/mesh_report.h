@@ -10,8 +10,9 @@
 
 namespace axial::evaluate {
 
-// The fields normals, seen, unseen and topology. Without cameras there is no seen and no unseen.
-// Lengths are metres in the JSON and millimetres in the table.
+// Returns an object with the fields "normals", "seen", "unseen" and "topology". Without cameras the
+// fields "seen" and "unseen" are absent. Lengths are metres in the JSON and millimetres in the
+// table.
 nlohmann::ordered_json to_json(const MeshEvaluation& evaluation);
 
 std::string table(const MeshEvaluation& evaluation);

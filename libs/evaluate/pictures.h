@@ -28,26 +28,29 @@ struct Viewpoint {
   bool orthographic = false;
 };
 
-// The viewpoint of the camera of `view` in air with a lens without distortion, `width` pixels wide.
+// Returns the viewpoint at the pose of `view`. The picture is `width` pixels wide and has the
+// aspect ratio of the camera. The port and the lens distortion of the camera are left out.
 Viewpoint viewpoint_of(const View& view, int width);
 
-// An orthographic viewpoint along the direction in which the points extend least, against their
-// normals if there are any. The points fill 95 % of the picture's width or height, without the
-// outermost hundredth of the points at each end.
+// Returns an orthographic viewpoint. The viewing direction is the principal axis along which the
+// points extend least. If there are normals, the viewing direction is opposite to their mean. The
+// points fill 95 % of the picture's width or height, whichever limits the scale. The outermost
+// hundredth of the points at each end of an image axis may lie outside.
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height);
 
-// Draws the points as small squares on white; the nearest point covers the others. The size of the
-// squares follows from the number of points, so that dense clouds look closed.
+// Draws the points as small squares on white. The nearest point covers the others. The squares are
+// smaller if the picture contains more points, so that the picture of a dense cloud has no gaps.
 cv::Mat3b draw_cloud(std::span<const Eigen::Vector3f> positions, std::span<const Rgb> colors,
                      const Viewpoint& viewpoint);
 
-// Returns `picture` with the error ramp and its ticks [mm] below.
+// Returns `picture` with a colour bar of errors below. The ticks are in mm. `upper`: error of the
+// last colour [m].
 cv::Mat3b with_error_scale(const cv::Mat3b& picture, double upper);
 
-// Draws depth, truth and absolute error side by side, each with a caption and at most `panel_width`
-// pixels wide. Depth and truth share one scale (2nd to 98th percentile of the truth). Missing
-// pixels are dark grey.
+// Draws depth, truth and absolute error side by side, each with a caption. Maps wider than
+// `panel_width` pixels are reduced to this width. Depth and truth share one scale (2nd to 98th
+// percentile of the truth). `upper`: error of the last colour [m]. Missing pixels are dark grey.
 cv::Mat3b draw_depth_comparison(const cv::Mat1f& estimate, const DepthEvaluation& evaluation,
                                 double upper, int panel_width = 640);
 

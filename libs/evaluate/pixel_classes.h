@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds where in depth maps the errors are, and whether depths are biased towards whole pixels of a
-// source view.
+// Locates errors in depth maps by classes of pixels, and shows whether depths are biased towards
+// whole pixels of a source view.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace axial::evaluate {
 
-// The class of a pixel; the first that applies.
+// The class of a pixel. If several classes apply, the first of this list is taken.
 enum class PixelClass : std::uint8_t {
   nothing,  // no truth
   edge,     // the window around the pixel contains two surfaces, or pixels without truth
@@ -34,15 +34,15 @@ struct PixelClassMap {
 };
 
 struct PixelClassOptions {
-  int reach = 4;               // half of the matching window [px], at least 1
-  double jump = 1.02;          // ratio of neighbouring true distances at an edge
-  double least_deviation = 5;  // standard deviation of grey values in a window with texture
-  double steep_degrees = 60;   // angle between the ray and the surface normal
+  int reach = 4;               // windows are 2 * reach + 1 pixels wide and high; at least 1
+  double jump = 1.02;          // neighbours with at least this ratio of true distances are an edge
+  double least_deviation = 5;  // windows with a smaller standard deviation of grey have no texture
+  double steep_degrees = 60;   // steep: a larger angle between the ray and the surface normal
 };
 
-// Classifies the pixels. `truth`: distances along the rays of `camera` [m]; 0: no truth. `grey`:
-// the photograph. Error unless both have the size of the camera's image and the reach is at least
-// 1.
+// Classifies the pixels. `truth`: distances along the rays of `camera` [m], 0 where there is no
+// truth. `grey`: the photograph. Error if `truth` or `grey` does not have the size of the camera's
+// image, or if the reach is less than 1.
 PixelClassMap classes_of(const cv::Mat1f& truth, const CameraModel& camera, const cv::Mat1b& grey,
                          const PixelClassOptions& options = {});
 
@@ -53,12 +53,12 @@ struct ClassifiedMap {
   PixelClassMap classes;
 };
 
-// True for an error of more than 2 % of the true distance (PixelClassOptions::jump - 1). Most gross
-// errors lie on another surface or on none. A mean that includes gross errors says nothing about
-// the other errors.
+// True if |error| is more than 2 % of the true distance (default of PixelClassOptions::jump - 1).
+// Most points with gross errors lie on another surface or on no surface. A mean that includes gross
+// errors says nothing about the other errors. `error` and `truth`: [m].
 bool is_gross(float error, float truth);
 
-// Values of |estimate - truth| [m] of pixels that have both.
+// The values |estimate - truth| [m] of the pixels that have an estimate and a truth.
 struct Magnitudes {
   std::vector<float> all, fine;  // fine: without gross errors
 
@@ -75,7 +75,7 @@ struct ClassErrors {
   double mean = 0;               // of the errors that are not gross [m]; 0 without any
 };
 
-// Returns the errors of all pixels of all maps for each class from `edge` to `open`.
+// Returns the errors of each class, from `edge` to `open`. A class contains its pixels of all maps.
 std::array<ClassErrors, 4> errors_by_class(std::span<const ClassifiedMap> maps);
 
 // Pixels whose true position in a source view has a fractional part within [begin, end).
@@ -85,12 +85,15 @@ struct PhaseErrors {
   double shift = 0;  // median of estimated minus true position [px]
 };
 
-// Returns `bins` bins of equal width over all open pixels that are visible in a source view. The
-// source view of a map is the first one in its list that is among `maps`. Positions are taken along
-// the axis of the source view (columns or rows) in which a change of depth moves the image more.
-// Pixels that are off by more than half a pixel are left out, because they are wrong for other
-// reasons. Interpolation, or rounding in the projection, shows as a wave over the fraction of a
-// pixel.
+// Returns the position errors of open pixels in a source view, in `bins` bins of equal width over
+// the fractional part of the true position. The source view of a map is the first of the map's
+// neighbours (DepthMap::ids) that is among `maps`. Maps without such a neighbour are left out. The
+// true position is the image of the pixel's true point in the source view. The position is measured
+// along one image axis: the axis along which a change of depth moves the image more. The shift
+// is the depth error times the derivative of the position by the depth. Two kinds of pixels are
+// left out: pixels whose true point is not visible in the source view, and pixels with a shift of
+// more than half a pixel, which have other causes. A bias by interpolation, or by rounding in the
+// projection, appears as a wave over the fractional part.
 std::vector<PhaseErrors> errors_by_phase(std::span<const ClassifiedMap> maps, std::size_t bins);
 
 }  // namespace axial::evaluate

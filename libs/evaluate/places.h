@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places of the truth that cameras see, and the share of them that a reconstruction contains: by
-// the number of cameras, and by the thickness of the structure to which a place belongs.
+// Places: samples of the true surface that the cameras see. Recall: the share of the places that a
+// reconstruction contains. Recall is computed by the number of views that see a place, and by the
+// thickness of the structure to which a place belongs.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +15,8 @@
 
 namespace axial::evaluate {
 
-// Samples of the truth. All arrays have the length of `positions`, but `views` is empty if there
-// are no cameras.
+// Samples of the truth. All arrays have the same length. Exception: `views` is empty if there are
+// no cameras.
 struct Places {
   std::vector<Eigen::Vector3f> positions;
   std::vector<std::uint32_t> faces;  // faces of the truth on which the samples lie
@@ -31,10 +32,12 @@ struct PlaceDraw {
   std::uint32_t least_views = 2;
 };
 
-// Draws samples of `truth`, uniform by area. Keeps those that at least `least_views` of `views`
-// see, or all if there are no views. If few of `samples` samples are seen, up to 20 times as many
-// are drawn, so that about `samples` remain. `surface` must be made from `truth`. Error if no
-// sample is seen.
+// Draws `draw.samples` samples of `truth`, uniform by area. Keeps the samples that at least
+// `draw.least_views` of `views` see. Without views, all samples are kept. If at most half of the
+// samples are kept, the draw is repeated once with more samples, so that about `draw.samples` are
+// kept. The repeated draw has at most 20 * draw.samples samples, so fewer may be kept.
+// Precondition: `surface` is made from `truth`. Error if no sample is kept, or as for
+// sample_surface.
 Places draw_places(const Mesh& truth, const Surface& surface, std::span<const View> views,
                    const PlaceDraw& draw);
 
@@ -45,23 +48,30 @@ struct RecallOfViews {
   std::vector<double> recall;  // share of places within each tolerance; 0 without places
 };
 
-// Returns a class for exactly `least` views, for exactly one more, and so on, and a last class for
-// 4 or more views (`least` or more, if `least` is above 4). `distances`: from each place to the
-// reconstruction [m].
+// Returns the recall by the number of views that see a place. If `least` is below 4, there is one
+// class for each of the numbers `least` to 3, and a last class for 4 or more views. Otherwise the
+// only class is `least` or more views. `distances`: from each place to the reconstruction [m].
+// `tolerances`: [m]. Precondition: `places` are drawn with views.
 std::vector<RecallOfViews> recall_by_views(const Places& places, std::span<const float> distances,
                                            std::span<const double> tolerances, std::uint32_t least);
 
-// Recall of the places on structures with a thickness in [least, most).
+// Recall of the places on thin structures whose thickness [px] is in [least, most). If only `most`
+// is 0, the thickness is `least` or more. If both are 0, the places are not on thin structures.
 struct RecallOfThickness {
-  double least = 0, most = 0;  // [px]; both 0: not thin; only most 0: `least` or more
+  double least = 0, most = 0;  // [px]
   std::size_t places = 0;
   std::vector<double> recall;  // as RecallOfViews
 };
 
-// Returns classes by a factor of two around 1, 2, 4, 8 and 16 pixels, a class of thicker
-// structures, and last the places that are not thin. `thickness`: of the structure at each vertex
-// of the truth [m], 0 where it is not thin. It is converted to pixels with the mean pixel width of
-// the views that see the place. Error unless there is one thickness for each vertex.
+// Returns the recall by thickness of the structure, in seven classes. Let s = sqrt(2). The classes
+// are, in this order [px]: [0, s), [s, 2s), [2s, 4s), [4s, 8s), [8s, 16s), 16s and more, and last
+// the places that are not thin.
+//
+// `thickness`: thickness of the structure [m] at each vertex of `truth`, 0 where the structure is
+// not thin. The thickness of a place is the mean over the three vertices of its face. A place is
+// not thin if one of these vertices has thickness 0. The thickness in pixels is the thickness in
+// metres divided by the pixel width of the place (pixel_widths). `distances` and `tolerances`: as
+// for recall_by_views. Error if the number of values in `thickness` is not the number of vertices.
 std::vector<RecallOfThickness> recall_by_thickness(const Places& places,
                                                    std::span<const float> distances,
                                                    std::span<const double> tolerances,

@@ -28,29 +28,31 @@ struct ErrorsOfViews {
   std::vector<double> within;  // share of these points within each tolerance
 };
 
-// Returns classes for up to 2 views, exactly 3, and 4 or more. `views` and `distances` have one
-// element for each point; `distances` are from each point to the truth [m].
+// Returns three classes: points that were fused from up to 2, exactly 3, and 4 or more depth maps.
+// `views`: number of depth maps of each point. `distances`: from each point to the truth [m].
+// `tolerances` and `gross`: [m].
 std::vector<ErrorsOfViews> errors_by_views(std::span<const std::uint32_t> views,
                                            std::span<const float> distances,
                                            std::span<const double> tolerances, double gross);
 
-// The reliability of the points whose confidence is in [begin, end); the last class includes its
-// end.
+// The reliability of the points whose confidence is in [begin, end). The last class includes its
+// end. Only points with a positive and finite expected error count.
 struct Reliability {
   double begin = 0, end = 0;
   std::size_t points = 0;
   double mean_confidence = 0;
-  double within = 0;  // share of points within kReliableErrors expected errors of the truth
+  // Share of points whose distance to the truth is at most kReliableErrors * expected error.
+  double within = 0;
 };
 inline constexpr double kReliableErrors = 3;
 
-// Statistics of distance to the truth / expected error, for the points with an expected error above
-// 0.
+// Statistics of normalised errors. The normalised error of a point is its distance to the truth
+// divided by its expected error. Only points with a positive and finite expected error count.
 struct NormalisedErrors {
   std::size_t points = 0;
   double rms = 0;  // 1 if the expected errors are calibrated
   double median = 0;
-  std::array<double, 3> within{};  // share of the points within 1, 2 and 3 expected errors
+  std::array<double, 3> within{};  // shares of the points with a normalised error up to 1, 2 and 3
 };
 
 // Normalised errors of the points that were fused from `least` to `most` depth maps.
@@ -65,8 +67,8 @@ struct Calibration {
   std::vector<Reliability> reliability;           // empty without confidences
 };
 
-// Compares expected errors with true ones. `distances`: from each point to the truth [m]. Nothing
-// if no expected errors are known. Error for a confidence outside [0, 1].
+// Compares the expected errors with the true errors. `distances`: from each point to the truth [m].
+// Returns nothing if `uncertainty.error` is empty. Error if a confidence is outside [0, 1].
 std::optional<Calibration> calibration_of(const PointUncertainty& uncertainty,
                                           std::span<const float> distances);
 

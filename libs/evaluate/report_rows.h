@@ -14,11 +14,12 @@ namespace axial::evaluate {
 nlohmann::ordered_json to_json(const DistanceStatistics& statistics);
 nlohmann::ordered_json to_json(const std::vector<Score>& scores);
 
-// One line with the names of the columns, the first of them `title`, and one line of numbers.
+// statistics_header() returns a line with the names of the columns. The first name is `title`.
+// statistics_row() returns a line with `name` and the numbers in these columns.
 std::string statistics_header(const char* title);
 std::string statistics_row(const char* name, const DistanceStatistics& statistics);
 
-// A line with the names of the columns, and a line for each score.
+// Returns a line with the names of the columns, and one line for each score.
 std::string score_rows(const std::vector<Score>& scores);
 
 }  // namespace axial::evaluate

@@ -10,15 +10,16 @@
 
 namespace axial::evaluate {
 
-// Returns `count` points on the mesh, uniform by area. The surface is cut into `count` pieces of
-// equal area, along the order of its faces, and each piece gets one random point. The same seed
-// gives the same points. `faces`, unless null, receives the face of each sample. Error if the mesh
-// has no area, or if a coordinate or an index is not valid.
+// Returns `count` random points on the mesh, uniform by area. The surface is cut into `count`
+// pieces of equal area, in the order of its faces, and each piece gets one random point. The same
+// seed gives the same points. `faces`, unless null, receives the face of each sample. Error if the
+// total area is 0 or not finite, or if a face index is out of range.
 std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed,
                                             std::vector<std::uint32_t>* faces = nullptr);
 
-// Returns at most `count` of the points: one random point out of each of `count` runs of equal
-// length.
+// Returns `count` of the points, in their order. The points are divided into `count` runs of equal
+// length, and one random point of each run is taken. If there are at most `count` points, all are
+// returned. The same seed gives the same points.
 std::vector<Eigen::Vector3f> subsample(std::span<const Eigen::Vector3f> points, std::size_t count,
                                        std::uint64_t seed);
 

@@ -16,34 +16,42 @@ namespace axial::evaluate {
 
 struct SceneAlignment {
   Similarity similarity;
-  std::size_t images = 0;           // that took part
-  double rms = 0, largest = 0;      // distances of the centres that are left
-  std::optional<double> turn = {};  // largest angle between the rotations [rad], between scenes
+  std::size_t images = 0;       // number of images used
+  double rms = 0, largest = 0;  // of the distances between aligned centres and their targets
+  // Largest angle between aligned and reference rotations [rad]. Only align_scenes() sets it.
+  std::optional<double> turn = {};
 };
 
-// Pairs of calibrated images of two scenes, as indices.
+// Pairs of calibrated images: the index in the scene, then the index in the reference.
 struct ImagePairs {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  bool by_name = true;
+  bool by_name = true;  // false: paired by order
 };
 
-// Pairs images whose paths have the same file name. Of several candidates, the one with the most
-// equal folders before the file name is taken, and none if that is not one image. If fewer than
-// three images pair, images are paired by their order, if both scenes have the same number of
-// calibrated images. Error for neither.
+// Pairs the calibrated images of two scenes. The rules are, in this order:
+// 1. By name. Images are candidates for each other if their paths have the same file name. Of
+//    several candidates, the best one has the most equal folders directly before the file name. If
+//    two candidates are equally good, there is no best one. Two images are a pair if each is the
+//    best candidate of the other.
+// 2. By order, if rule 1 gives fewer than three pairs. The k-th calibrated image of `scene` and the
+//    k-th calibrated image of `reference` are a pair.
+// Error if rule 2 is needed and the numbers of calibrated images differ.
 ImagePairs pair_images(const Scene& scene, const Scene& reference);
 
-// Returns the similarity that maps the camera centres of `scene` to those of `reference`. Without
-// `with_scale` the scale is 1. Error as for fit_similarity.
+// Returns the similarity that maps the camera centres of `scene` to the camera centres of
+// `reference`. `images`: the pairs of images (pair_images). Without `with_scale` the scale is 1.
+// Error as for fit_similarity.
 SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const ImagePairs& images,
                             bool with_scale);
 
-// Returns the similarity that maps the camera centres of the images to `positions`. Both have the
-// same number of elements. Error as above.
+// Returns the similarity that maps the camera centre of image images[k] of `scene` to positions[k].
+// Precondition: `images` and `positions` have the same length. Without `with_scale` the scale is 1.
+// Error as for fit_similarity.
 SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_t> images,
                                   std::span<const Eigen::Vector3d> positions, bool with_scale);
 
-// Returns the calibrated images whose path ends in `name`, in whole components.
+// Returns the indices of the calibrated images whose path ends in the path `name`. Whole folder and
+// file names are compared.
 std::vector<std::size_t> images_named(const Scene& scene, const std::string& name);
 
 }  // namespace axial::evaluate

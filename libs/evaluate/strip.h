@@ -14,27 +14,29 @@ namespace axial::evaluate {
 
 // A piece of the strip. All pieces have the same length.
 struct StripPiece {
-  double begin = 0, end = 0;  // along the strip, from the first camera [m]
+  double begin = 0, end = 0;  // position along the strip; the first camera is at 0 [m]
   std::size_t points = 0, places = 0;
 };
 
 struct Strip {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit
   std::vector<StripPiece> pieces;
-  // Density (points per counted place) of the emptiest and of the fullest piece, divided by the
-  // mean density of the strip.
+  // The density of a piece is its number of points per place. `least` and `most` are the smallest
+  // and the largest density, divided by the mean density. They are 0 if there are no points.
   double least = 0, most = 0;
 };
 
-// Error unless there are at least three views whose centres lie on a line, up to a width of a
-// quarter of its length.
+// Error unless there are at least three views and their centres form a strip. Centres form a strip
+// if relative_width() of them is at most 1/4.
 void require_strip(std::span<const View> views);
 
-// Cuts the strip into pieces and counts points and places in them. The strip runs along the
-// greatest extent of the camera centres, over the whole extent of the places. There are five pieces
-// for each spacing between views. Pieces with fewer than half of the places of the median piece are
-// left out of `least` and `most`; they are the ends of the strip. Error as for require_strip, or
-// for views that are nearly at one place.
+// Cuts the strip into pieces and counts the points and places in each piece. The direction of the
+// strip is the principal axis along which the camera centres extend most, away from the first
+// camera. The strip covers the whole extent of the places in this direction. A piece is at most
+// 1/5 of the mean spacing of the views long. Pieces with few places, at the ends of the strip, are
+// left out of `least`, `most` and the mean density: they have fewer than half of the places of the
+// median piece. Error as for require_strip, or if the views are so close together that more than
+// 1e5 pieces would be needed.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 

@@ -22,25 +22,29 @@ struct View {
   Pose pose;
 };
 
-// Returns one view for each image of the model, with the ports of `housing` (null: dry). Error if
-// there are no images, if a lens is neither a pinhole nor a lens with a known distortion
-// (io::lens_distortion), or as for Housing::port_at.
+// Returns one view for each image of the model, with the ports of `housing`. If `housing` is null,
+// the views have no ports. Error if there are no images, if an image refers to a camera that the
+// model does not have, if a lens is neither a pinhole nor a lens with a known distortion
+// (lens_distortion), if the distortion of a lens mirrors the image, or as for Housing::port_at.
 std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing* housing);
 
-// Returns for each point [world] the number of views that see it. A view sees a point if its image
-// lies in the image rectangle and the straight line from the point to the camera centre is free.
-// Behind a port the line ends where the ray of that pixel crosses the outer face of the glass. The
-// orientation of the surface does not matter.
+// Returns, for each point [world], the number of views that see the point. A view sees a point
+// under two conditions. First, the point is projected into the image rectangle of the view. Second,
+// `surface` does not cross the straight line from the point to the camera. The line ends at the
+// camera centre, or, behind a port, where the ray of the point's image crosses the outer face of
+// the glass. The orientation of the surface does not matter.
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
                                        std::span<const View> views, const Surface& surface);
 
-// Returns for each point the number of views in whose image rectangle it is projected, even if it
-// is occluded. This also suits points that are slightly below the surface.
+// Returns, for each point [world], the number of views into whose image rectangle the point is
+// projected. Occlusion is not tested, so points slightly below the surface count like points on it.
 std::vector<std::uint32_t> count_frames(std::span<const Eigen::Vector3f> points,
                                         std::span<const View> views);
 
-// Returns for each point the mean width of a pixel at the point, across the ray [m], over the views
-// that see it (count_views); 0 if no view sees it.
+// Returns, for each point [world], the width of a pixel at the point [m], as the mean over the
+// views that see the point (count_views). The width is 0 if no view sees the point. In one view the
+// width is the motion of the point across its ray that moves the image by one pixel (geometric mean
+// over the directions).
 std::vector<float> pixel_widths(std::span<const Eigen::Vector3f> points,
                                 std::span<const View> views, const Surface& surface);
 

@@ -24,20 +24,22 @@ struct GroundOptions {
   std::uint64_t seed = 1;
 };
 
-// The plane with the most area of the mesh within the threshold, found by RANSAC (M. Fischler and
-// R. Bolles, 1981) over samples of the mesh, and then fitted to that area by least squares. `above`
-// is a point on its upper side, such as a camera. Error if no plane has the wanted direction, or as
-// for sample_surface.
+// Returns the plane that has the most area of the mesh within `options.threshold` of it. The area
+// is estimated with samples of the mesh. The search is RANSAC (M. Fischler and R. Bolles, 1981). A
+// least-squares fit to the samples within the threshold then refines the plane. `above`: a point on
+// the upper side of the plane, such as a camera. Error if no plane has a normal in the wanted
+// direction (GroundOptions::up_axis), or as for sample_surface.
 Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundOptions& options);
 
-// The volume of the part above the plane: the sum over all faces, clipped at the plane, of the area
-// of their projections onto the plane, times the mean height. Areas of faces that look down count
-// negative. This is the volume between the plane and a surface that looks up, and for a closed mesh
-// the part of its volume above the plane.
+// Returns the volume between the mesh and the plane, above the plane. Every face is clipped at the
+// plane. Let A be the area of the clipped face, projected onto the plane, and h its mean height
+// above the plane. A is negative if the face looks down. The result is the sum of A * h over all
+// faces. If the mesh is a surface that looks up, the result is the volume between plane and
+// surface. If the mesh is closed, the result is the part of the enclosed volume above the plane.
 double volume_above(const Mesh& mesh, const Plane& plane);
 
-// The volume that a closed mesh encloses; negative if its faces look inwards. Of no meaning for a
-// mesh with a border.
+// Returns the volume that a closed mesh encloses. The volume is negative if the faces look inwards.
+// The result has no meaning for a mesh with a border.
 double enclosed_volume(const Mesh& mesh);
 
 }  // namespace axial::evaluate

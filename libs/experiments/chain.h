@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The steps from a simulated scene to a dense cloud, each by a program of its own. Every step keeps
-// its folder, and does nothing if the folder holds the result of the same step already. judge.h
-// measures the results.
+// The steps from a simulated scene to a dense cloud. Each step runs programs of the project and
+// keeps its results in a folder of its own. A step does nothing if its folder already holds the
+// result of the same inputs. judge.h measures the results.
 //
 // The programs lie beside the running program. Their output goes to a log in the step's folder. If
-// a program fails, the step throws an Error that names the program and its log, and is repeated
-// when it is asked for again.
+// a program fails, the step throws an Error that names the program and its log. The next call of a
+// failed step repeats the step.
 #pragma once
 
 #include <filesystem>
@@ -24,22 +24,23 @@ struct Chain {
   unsigned max_threads = 0;    // of each program; 0: all cores
 };
 
-// Fingerprints of all programs of the chain. They belong to the inputs of every result that is
-// measured with the chain. Error if a program does not lie beside the running program.
+// Returns the fingerprints of all programs of the chain. The inputs of a result that is measured
+// with the chain must contain these fingerprints. Error if a program does not lie beside the
+// running program.
 Json programs_of_the_chain();
 
-// Options of SimulateUnderwater. The port is the preset's, except the values in `port`.
+// Options of SimulateUnderwater. The options of the port in `port` replace those of the preset.
 struct SceneOptions {
   std::string preset = "outcrop";
   int seed = 1, views = 10, width = 1024, height = 768;  // images of width x height pixels
   int samples = 2;                                       // rays along each side of a pixel
   double fov_degrees = 80, scale = 1, relief = 1, coarseness = 1;
   std::string medium = "both";  // "air", "water" or "both"
-  bool truth = true;            // distances; normals are removed
+  bool truth = true;            // keeps true distances; true normals are removed
   Words port;                   // "--tilt-degrees", "3"
-  Words more;                   // other options; they replace options above with the same name
+  Words more;                   // other options; they replace numbers and `truth` of the same name
 };
-// The options as the words of SimulateUnderwater's command line, without the output folder.
+// Returns the words of SimulateUnderwater's command line, without the output folder.
 Json to_json(const SceneOptions& options);
 
 // A scene with ground truth: images in `folder`/air and `folder`/water. Later steps keep their
@@ -53,10 +54,12 @@ struct SimulatedScene {
   std::filesystem::path housing() const { return folder / "housing.json"; }
 };
 
-// The scene of these options, in a folder of `chain.work` whose name depends on the options.
+// Simulates the scene of these options. The folder of the scene lies in `chain.work`. The name of
+// the folder depends on the options.
 SimulatedScene simulated(const Chain& chain, const SceneOptions& options);
 
-// The port that all underwater images of the scene are taken through. Precondition: it is flat.
+// Returns the port through which all underwater images of the scene are taken. Precondition: the
+// port is flat.
 refractive::FlatPort<double> port_of(const SimulatedScene& scene);
 
 // The lens that COLMAP gets, and whether COLMAP refines it.
@@ -65,13 +68,14 @@ struct Calibration {
   std::string parameters;  // "fx,fy,cx,cy,..." [px], in COLMAP's pixel convention
   bool refine = false;     // otherwise the lens is fixed
 };
-// The lens of the scene in air, fixed.
+// Returns the lens of the scene in air. COLMAP does not refine the lens.
 Calibration true_lens(const SimulatedScene& scene);
-// The start of a self-calibration under water: OPENCV without distortion, with the focal length of
-// the lens in air times the water's index. COLMAP refines it. Precondition: the scene's lens is a
-// pinhole.
+// Returns the initial lens of a self-calibration under water. The model is OPENCV without
+// distortion. The focal lengths are the focal lengths in air times the refractive index of the
+// water. COLMAP refines the lens. Preconditions: the lens of the scene is a pinhole (model PINHOLE)
+// and the port is flat.
 Calibration self_calibration(const SimulatedScene& scene);
-// The lens that COLMAP found in `colmap_model`, fixed.
+// Returns the lens of the first camera in `colmap_model`. COLMAP does not refine the lens.
 Calibration calibration_of(const std::filesystem::path& colmap_model);
 
 // Poses and sparse points from photographs, by the script axial-colmap-model. `model` is empty if
@@ -81,30 +85,33 @@ struct ColmapPoses {
   std::size_t images = 0;       // registered
   double centre_rms = 0;        // [m], RMS error of the aligned camera centres
 };
-// COLMAP's poses for the photographs of `medium`, in the folder `name` of the scene. COLMAP runs
-// again only if its own inputs change, because its poses are not reproducible.
+// Computes poses for the photographs of `medium` ("air" or "water") with COLMAP. The results lie in
+// the folder `name` of the scene. COLMAP's poses are not reproducible, so COLMAP runs again only if
+// the medium or the calibration changes.
 ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const SimulatedScene& scene,
                          const std::string& medium, const Calibration& calibration);
 
 struct DenseOptions {
   std::filesystem::path housing;  // empty: no port is known
   Words more;                     // for DensifyPointCloud
-  bool or_nothing = false;        // that nothing can be matched is a result, not an error
+  // If no image can be matched: true: densified() returns an empty path; false: Error.
+  bool or_nothing = false;
 };
-// The folder of a dense cloud and its depth maps, in the folder `name` of the scene: from the
-// photographs of `medium` and the poses of the COLMAP model `model`. Empty if nothing could be
-// matched.
+// Computes depth maps and a dense cloud from the photographs of `medium` ("air" or "water") and the
+// poses of the COLMAP model `model`. Returns their folder, which is the folder `name` of the scene.
+// With `options.or_nothing`, returns an empty path if no image can be matched.
 std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const SimulatedScene& scene, const std::filesystem::path& model,
                                 const std::string& medium, const DenseOptions& options);
 
-// CPU time [s] of DensifyPointCloud when densified() made the folder `dense`. Error that names the
-// file if the time cannot be read.
+// Returns the CPU time [s] that DensifyPointCloud took when densified() made the folder `dense`.
+// Error that names the file if the time cannot be read.
 double densify_seconds(const std::filesystem::path& dense);
 
-// Fuses depth maps again that densified() made with the same `options`, with other options of
-// DensifyPointCloud. `fusion` must not contain options of matching. Returns the cloud's folder,
-// which lies in `dense`.
+// Fuses the depth maps in `dense` again, with other options of fusion. `dense` and `options`: the
+// result and the options of densified(). `fusion`: further options of DensifyPointCloud.
+// Precondition: `fusion` contains no options of matching. Returns the folder of the cloud, which is
+// `dense`/`name`.
 std::filesystem::path fused_again(const Chain& chain, const std::filesystem::path& dense,
                                   const std::string& name, const DenseOptions& options,
                                   const Words& fusion);

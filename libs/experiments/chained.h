@@ -8,20 +8,23 @@
 
 namespace axial::experiments {
 
-// Each function reads the programs of the chain, whose fingerprints belong to the inputs of the
-// parts. The parts run the programs, and throw an Error if a program fails. `chain.work` belongs to
-// the experiment alone: its parts replace and remove folders there. `quick`: few views and small
-// images, for tests.
+// The inputs of the parts contain the fingerprints of the programs of the chain. So each function
+// reads the programs. Error if a program cannot be read. The parts run the programs, and throw an
+// Error if a program fails. `chain.work` must belong to the experiment alone, because its parts
+// replace and remove folders there. `quick`: few views and small images, for tests.
 
-// The paper's figures 5 and 6: a scene reconstructed in air and through a port, with the paper's
-// method, with our method, and with one half (projection or warp) of each.
+// The paper's figures 5 and 6. A scene is reconstructed in air and through a port. The methods
+// through the port are the paper's method, our method, the paper's projection with our warp, and
+// the paper's warp with our projection.
 Experiment reconstruction(const Chain& chain, bool quick);
 
-// Clouds on true poses, with housing files that differ from the true port.
+// The effect of a wrong port: clouds on true poses, with housing files that differ from the true
+// port.
 Experiment sensitivity(const Chain& chain, bool quick);
 
-// Where a refractive model is needed: a known port on true poses, beside a lens that COLMAP
-// calibrates under water and a pinhole engine uses.
+// Shows where a refractive model is needed. Compares two reconstructions: with the known port on
+// true poses, and without a port, on COLMAP's poses and with a lens that COLMAP calibrates under
+// water.
 Experiment need(const Chain& chain, bool quick);
 
 }  // namespace axial::experiments

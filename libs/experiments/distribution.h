@@ -30,8 +30,8 @@ class Distribution {
   std::int64_t count() const { return count_; }
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
   double largest() const { return largest_; }
-  // The error that the share `q` of all errors does not exceed, interpolated linearly within its
-  // bin; largest() if this error lies beyond the bins.
+  // Returns the error e such that the share `q` (0 to 1) of all errors is at most e. e is
+  // interpolated linearly within its bin. If e lies beyond the bins, the result is largest().
   double quantile(double q) const;
 
   double upper() const { return upper_; }

@@ -50,17 +50,17 @@ struct Series {
 std::string series_title(const std::string& series);               // "interface distance [mm]"
 std::string value_title(const std::string& series, double value);  // "distance 20 mm"
 
-// The name of the part for one value: "setup1_fov_degrees_100". The default setup, which occurs in
-// every series, is one part: "setup1_default".
+// Returns the name of the part for one value of a series: "setup1_fov_degrees_100". The default
+// setup occurs in every series and has one name for all series: "setup1_default".
 std::string part_name(const std::string& series, double value, int stereo_number);
 
-// Every value of every series, the default setup only once.
+// Returns one variation for each value of each series. The default setup is contained only once.
 std::vector<Variation> variations(const std::vector<Series>& series, int stereo_number);
 
 Json to_json(const CameraSetup& setup);
 Json to_json(const StereoSetup& setup);
 
-// `results["parts"][part]["result"]`.
+// Returns `results["parts"][part]["result"]`. Precondition: `results` contain the part.
 const Json& result_of(const Json& results, const std::string& part);
 
 }  // namespace axial::experiments

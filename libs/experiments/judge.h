@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the clouds and depth maps of a chain against the truth of their scene. All lengths in
-// metres.
+// Measures the clouds and depth maps of a chain against the truth of their scene. All lengths are
+// in metres.
 #pragma once
 
 #include <filesystem>
@@ -10,54 +10,68 @@
 
 namespace axial::experiments {
 
-// Distances along the rays of all pixels of a medium.
+// Statistics of the true distances [m] along the rays of all pixels of all images of a medium.
 struct SceneDistances {
   double median = 0;       // [m]
-  double range_ratio = 0;  // 95th over 5th percentile
+  double range_ratio = 0;  // 95th percentile / 5th percentile
 };
-// Precondition: the scene has images of `medium` with a truth.
+// Precondition: the scene has images of `medium` ("air" or "water") with true distances.
 SceneDistances scene_distances(const SimulatedScene& scene, const std::string& medium);
 
 struct EvaluationOptions {
   double tolerance = 0.005;  // [m]
-  // A place counts if at least so many cameras under water see it. The default is the default of
-  // --number-views-fuse.
+  // A place of the truth counts if at least `min_views` cameras under water see it. The default is
+  // the default of --number-views-fuse.
   std::size_t min_views = 3;
-  bool icp = false;
-  std::size_t samples = 200000;
-  int picture_width = 0;     // 0: no picture
-  double color_max = 0.010;  // [m], error of the last colour in pictures
-  bool or_nothing = false;   // a cloud with nothing to measure is a result, not an error
+  bool icp = false;              // aligns the cloud with the truth by a rigid motion first
+  std::size_t samples = 200000;  // of the truth
+  int picture_width = 0;         // 0: no picture
+  double color_max = 0.010;      // [m], error of the last colour in pictures
+  // If the cloud has nothing to measure: true: evaluated() returns null; false: Error.
+  bool or_nothing = false;
 };
-// The options as inputs of a part (Part::inputs). Without `icp` and `or_nothing`: a part measures
-// with both values of such an option, or always with the same value.
+// Returns the options as inputs of a part (Part::inputs), except `icp` and `or_nothing`. These two
+// options need not be inputs: a part measures with both values, or always with the same value.
 Json to_json(const EvaluationOptions& options);
 
-// Distance statistics of the cloud of the folder `dense`, and its completeness. Both are limited to
-// the field of view under water, for clouds from images in either medium: the statistics to points
-// inside the images of at least `min_views` underwater cameras, the completeness to the surface
-// that at least `min_views` of these cameras see. Fields: "points", "mean", "median", "variance",
-// "recall" and "f_score" at the tolerance, and "picture" (PNG in base64). Lengths in metres. Null
-// if there is nothing to measure.
+// Measures the cloud in the folder `dense` with EvaluateReconstruction. The scene's cameras under
+// water limit the measurement, also for clouds from images in air:
+// - The statistics count the points that lie inside the images of at least `min_views` of these
+//   cameras. Occlusion is not tested.
+// - The completeness counts the surface that at least `min_views` of these cameras see.
+// Fields of the result: "points", "mean", "median" and "variance" of the distances of the points to
+// the truth [m, m^2]; "recall" and "f_score" at the tolerance; and, if `picture_width` is above 0,
+// "picture" (PNG in base64). If there is nothing to measure, the result is null with
+// `options.or_nothing`. Otherwise this is an Error.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 
-// Errors of all depth maps of a folder together. Fields: "pixels"; "median" of |estimate - truth|
-// [m]; "gross", the share of pixels with gross errors (is_gross()); "mean" of the other errors;
-// "within", the share of pixels within the tolerance; "completeness", the share of the pixels with
-// a truth that also have an estimate. "rings" around the image centre have "inner", "outer",
-// "count" and the "median" of the signed error as a fraction of the true distance. "places" have
-// "place", "truths", "pixels", "gross", "mean" and "median"; "phases" have "begin", "end", "count"
-// and "shift" (pixel_classes.h). Error if a map, its truth or its photograph cannot be read.
+// Measures all depth maps in the folder `dense` together. `medium`: the medium of the images of
+// these maps. `tolerance`: [m]. An error is |estimate - truth| [m] of a pixel that has both. Fields
+// of the result:
+// - "pixels": number of errors
+// - "gross": share of the errors that are gross (is_gross())
+// - "mean": mean of the errors that are not gross
+// - "median": median of all errors
+// - "within": share of the errors that are at most the tolerance
+// - "completeness": share of the pixels with a truth that also have an estimate
+// - "rings": list of rings around the image centre (RelativeRing) with "inner", "outer", "count"
+//   and "median", the median of (estimate - truth) / truth
+// - "places": list of classes of pixels (ClassErrors) with "place" (a title), "truths", "pixels",
+//   "gross" (a number of pixels), "mean" and "median"
+// - "phases": list of phases (PhaseErrors) with "begin", "end", "count" and "shift"
+// Error if a map, its truth or its photograph cannot be read, or as for evaluate_depth.
 Json depth_errors(const std::filesystem::path& dense, const SimulatedScene& scene,
                   const std::string& medium, double tolerance);
 
-// EvaluateReconstruction's picture of the first view's depth, truth and error (PNG in base64).
-// `color_max`: error of the last colour [m].
+// Returns EvaluateReconstruction's picture of depth, truth and error of the first depth map in
+// `dense` (PNG in base64). `color_max`: error of the last colour [m]. `medium`: the medium of the
+// images of the maps.
 std::string depth_picture(const Chain& chain, const std::filesystem::path& dense,
                           const SimulatedScene& scene, const std::string& medium, double color_max);
 
-// The first photograph of the scene (PNG in base64), reduced to `width` pixels.
+// Returns the first photograph of the scene in `medium` (PNG in base64). A photograph wider than
+// `width` pixels is reduced to this width.
 std::string photograph(const SimulatedScene& scene, const std::string& medium, int width);
 
 }  // namespace axial::experiments

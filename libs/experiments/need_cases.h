@@ -14,16 +14,16 @@ namespace axial::experiments {
 struct NeedCase {
   std::string name;    // name of the part
   std::string series;  // name of the varied parameter
-  double value;        // of this parameter, in the unit that `series` names; 0: it has no value
+  double value;        // of this parameter, in the unit in its name; 0 if it has no value
   SceneOptions scene;
-  // Set if the lens was calibrated in this other scene and is not calibrated again.
+  // The other scene in which the lens was calibrated. Nothing: the lens is calibrated in `scene`.
   std::optional<SceneOptions> calibrated_in;
 
   bool is_usual() const { return name == "usual"; }
 };
 
-// All cases, the usual one first; the names are unique. `quick`: the usual case, a worse case and
-// one second survey, all with small images.
+// Returns all cases. The usual case is the first. The names are unique. `quick`: only the usual
+// case, the case with the largest tilt, and one second survey, all with small images and few views.
 std::vector<NeedCase> need_cases(bool quick);
 
 // A title for the table, such as "tilt 6°".

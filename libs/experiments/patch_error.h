@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of each warp of a patch, as in the paper's figures 3 and 4: a 9x9 window, every second
-// pixel, mapped from one camera behind a flat port to another by a plane.
+// The errors of warps of a patch, as in the paper's figures 3 and 4. The patch contains every
+// second pixel (texel) of a 9x9 window. A warp maps the patch from one camera behind a flat port to
+// another one. The patch shows a plane. The error e_H of a texel is the distance [px] between the
+// warped texel and its true image. The error e_BH of a patch is the mean of e_H over its texels.
 #pragma once
 
 #include <array>
@@ -13,17 +15,16 @@
 
 namespace axial::experiments {
 
-// In the order of the tables. Where a virtual camera replaces the reference camera, it is the exact
-// one.
+// The warps, in the order of the tables. The first five are homographies of virtual cameras. The
+// virtual camera of the reference belongs to the centre of the patch. These warps differ in the
+// virtual scale and in the pixel to which the virtual camera of the source belongs.
 enum class Warp : std::size_t {
-  // homography of virtual cameras with f_v = f; the source's virtual camera is looked up at the
-  // pixel nearest to the result of Algorithm 1
-  kPapers,
-  kRounded,        // the same, looked up at the pixel nearest to the exact projection
-  kExactCentre,    // the same, at the exact projection
-  kScaledRounded,  // locally correct virtual scale, nearest pixel
-  kScaled,         // locally correct virtual scale, exact projection
-  kFirstOrder,     // exact centre and exact first derivative
+  kPapers,         // f_v = f; the pixel nearest to the result of Algorithm 1
+  kRounded,        // f_v = f; the pixel nearest to the exact projection
+  kExactCentre,    // f_v = f; the exact projection, not rounded
+  kScaledRounded,  // locally correct scale; the pixel nearest to the exact projection
+  kScaled,         // locally correct scale; the exact projection, not rounded
+  kFirstOrder,     // affine warp: exact projection of the centre and exact first derivative
   kPerTexel,       // exact projection of every texel, in float
 };
 inline constexpr std::size_t kWarps = 7;
@@ -34,9 +35,9 @@ inline constexpr int kPatchReach = 4, kPatchStep = 2, kPatchSide = 5;
 inline constexpr std::size_t kPatchTexels = 25;  // row by row
 inline constexpr std::size_t kPatchCentre = 12;
 
-// The error e_H [px] of every texel.
+// The error e_H [px] of every texel, row by row.
 using TexelErrors = std::array<double, kPatchTexels>;
-double mean_error(const TexelErrors& errors);  // the paper's e_BH
+double mean_error(const TexelErrors& errors);  // e_BH [px]
 
 struct PatchErrors {
   std::array<TexelErrors, kWarps> warps;
@@ -45,12 +46,14 @@ struct PatchErrors {
 
 class WarpStudy {
  public:
-  // Images of size x size pixels, whose middle `fov_size` pixels span the field of view (0: all
-  // pixels).
+  // Both images have size x size pixels. The middle `fov_size` pixels of the width span the field
+  // of view. 0: all pixels span the field of view.
   WarpStudy(const StereoSetup& setup, int size, int fov_size = 0);
 
-  // The errors of the patch at `centre` [px]. Empty if the plane's point is not visible, or if the
-  // true image of a texel is outside the second image.
+  // Returns the errors of the patch at `centre` [px] of the first image. Returns nothing if the ray
+  // of the centre does not meet the plane, if the exact projection or Algorithm 1 reports that the
+  // second camera does not see the point of the plane at the centre, or if the true image of a
+  // texel is outside the second image.
   std::optional<PatchErrors> errors(const Vector2<double>& centre) const;
 
   int size() const { return size_; }
@@ -68,7 +71,7 @@ class WarpStudy {
   Vector3<double> source_, plane_point_, plane_normal_;
 };
 
-// Statistics of the centres whose patch lies in both images.
+// Statistics of one warp over the centres for which WarpStudy::errors() returns errors.
 struct WarpStatistics {
   double mean = 0;            // of e_BH [px]
   double largest = 0;         // of e_BH
@@ -78,25 +81,28 @@ struct WarpStatistics {
 struct StudyStatistics {
   std::int64_t centres = 0;
   std::array<WarpStatistics, kWarps> warps;
-  // Shares of the centres. The warp's part of the error is e_BH with an exact centre. The part of
-  // rounding is e_H of the middle texel, where the homography has no other error.
-  double rounding_over_warp = 0;         // rounding causes the larger part, nearest pixel
-  double papers_rounding_over_warp = 0;  // the same, with the result of Algorithm 1
-  double middle_not_least = 0;  // paper's warp: another texel has less error than the middle one
+  // The next three fields are shares of the centres. Let W be e_BH of kExactCentre: the part of the
+  // error that the homography causes. The part that rounding causes is e_H of the middle texel,
+  // where a homography has no other error.
+  double rounding_over_warp = 0;         // e_H of the middle texel of kRounded is larger than W
+  double papers_rounding_over_warp = 0;  // e_H of the middle texel of kPapers is larger than W
+  double middle_not_least = 0;  // kPapers: another texel has less error than the middle texel
 
   const WarpStatistics& operator[](Warp w) const { return warps[static_cast<std::size_t>(w)]; }
 };
 
-// Statistics over every `step`-th centre in each direction.
+// Returns the statistics over every `step`-th centre in each direction. The centres range from
+// kPatchReach to size - 1 - kPatchReach.
 StudyStatistics study_statistics(const WarpStudy& study, int step);
 
-// e_BH [px] of one warp for every centre from kPatchReach to size - 1 - kPatchReach, row by row. -1
-// where errors() is empty.
+// Returns e_BH [px] of one warp for every centre from kPatchReach to size - 1 - kPatchReach in each
+// direction, row by row. The value is -1 where WarpStudy::errors() returns nothing.
 std::vector<double> patch_error_map(const WarpStudy& study, Warp warp);
 
-// e_H [px] of every texel of every centre from `border` to size - 1 - border. Patches lie side by
-// side, so that the map is kPatchSide times as wide as the range of centres. -1 where errors() is
-// empty.
+// Returns e_H [px] of one warp for every texel of every centre, as a map, row by row. The centres
+// range from `border` to size - 1 - border in each direction. The map shows the patches side by
+// side, so the map is kPatchSide times as wide and high as the range of centres. The value is -1
+// where WarpStudy::errors() returns nothing.
 std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border = kPatchReach);
 
 }  // namespace axial::experiments

@@ -15,13 +15,13 @@ struct RoundTrips {
 };
 
 struct ProjectionErrors {
-  RoundTrips line_search;  // Algorithm 1, in double: its error is not caused by rounding
-  RoundTrips exact;        // fixed number of steps, in float
+  RoundTrips line_search;  // Algorithm 1, in double, so that float rounding adds no error
+  RoundTrips exact;        // the exact projection, with a fixed number of steps, in float
 };
 
-// Round trips of positions `step` pixels apart that fill the area of a size x size image. The point
-// of each position lies 0.5 to 10 m along its ray, at a log-uniform distance that depends on the
-// position's index alone.
+// Returns the errors of the round trips. The positions are `step` pixels apart and fill the area of
+// a size x size image. The point of a position lies on its ray, at a random distance of 0.5 to 10 m
+// (log-uniform). The random number depends only on the index of the position.
 ProjectionErrors projection_errors(const CameraSetup& setup, int size, double step);
 
 }  // namespace axial::experiments

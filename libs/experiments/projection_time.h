@@ -10,20 +10,21 @@
 
 namespace axial::experiments {
 
-// The order of the projected points. A search in a table waits for memory if the points are
-// scattered over the image.
+// The order of the projected points. kScattered: anywhere in the image. kReading: runs of 100
+// neighbouring pixels of a row. A search in a table waits for memory if the points are scattered.
 enum class Order { kScattered, kReading };
 
 struct TimingOptions {
-  int points = 20000;          // projected in one repetition; the analytic solver gets fewer
-  int analytic_points = 1000;  // at most `points`
-  int repetitions = 9;         // of all methods, in turn
+  int points = 20000;          // points that each method but "analytic" projects in a repetition
+  int analytic_points = 1000;  // the same for "analytic"; larger values are reduced to `points`
+  int repetitions = 9;         // each repetition runs all methods in turn
 };
 
 struct MethodTime {
-  std::string method;      // "exact", "line_search_plain", "_compact", "_tight", "analytic"
-  double nanoseconds = 0;  // per projection: median of the thread's CPU time over the repetitions
-  double ratio = 0;        // of the time to that of "exact": median over the repetitions
+  // "exact", "line_search_plain", "line_search_compact", "line_search_tight" or "analytic".
+  std::string method;
+  double nanoseconds = 0;  // CPU time of a projection, median over the repetitions
+  double ratio = 0;        // time / time of "exact" in the same repetition, median
   double mean_error = 0;   // [px]
   int points = 0, missed = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the computation and the documents of the experiment `reconstruction` have in common.
+// Declarations that the computation and the documents of the experiment `reconstruction` share.
 #pragma once
 
 #include <array>
@@ -14,22 +14,25 @@ namespace axial::experiments {
 struct Method {
   const char* name;   // field of the results
   const char* title;  // in tables and figures
-  bool in_water;      // photographs through the port; else in air
+  bool in_water;      // true: photographs through the port; false: photographs in air
   Words options;      // of DensifyPointCloud
-  // Also evaluates depth maps on true poses, and completeness by the number of cameras.
+  // True: depth maps on true poses and completeness by the number of cameras are evaluated, too.
   bool judged_closely;
 };
-// In the order of the tables.
+// Returns all methods, in the order of the tables.
 const std::array<Method, 5>& reconstruction_methods();
 
-// Completeness is also measured for places that at least so many cameras see.
+// For each of these numbers, completeness is measured for the places that at least this number of
+// cameras see.
 inline constexpr std::array<std::size_t, 4> kCompletenessViews{2, 3, 4, 5};
 
-// Names of the parts of a seed: clouds on COLMAP's poses, and depth maps on true poses.
+// Return the names of the two parts of a seed. colmap_part(): clouds on COLMAP's poses.
+// true_part(): clouds and depth maps on true poses.
 std::string colmap_part(int seed);
 std::string true_part(int seed);
 
-// All tables and figures. `results`: of the whole experiment (experiment.h), with these seeds.
+// Returns all tables and figures. `results`: results of the whole experiment, in the form that
+// Experiment::documents takes. `seeds`: the seeds of the experiment.
 std::vector<Document> reconstruction_documents(const Json& results, const std::vector<int>& seeds);
 
 }  // namespace axial::experiments

@@ -13,19 +13,20 @@ namespace axial::experiments {
 // The parts whose names begin with `beginning`.
 std::vector<Part> chosen_parts(const Experiment& experiment, const std::string& beginning);
 
-// Computes the parts that `folder`/parts/<experiment> does not hold yet. Writes each part there as
-// soon as it is finished, and its computation time beside it. A part counts as finished if its file
-// is complete and has the same inputs. `progress` gets the number of finished parts. If a part
-// throws, the parts before it stay finished, and the function throws the same. Error that names a
-// folder or file that cannot be written.
+// Computes the unfinished ones of `parts`. A part is finished if `folder`/parts/<experiment> holds
+// a complete file of the part with the same inputs. Writes the file of each part as soon as the
+// part is computed, and the computation time into a second file beside it. `progress` gets the
+// number of finished parts. If the computation of a part throws, the exception leaves this
+// function, and the parts before it stay finished. Error if a folder or file cannot be written. The
+// Error names the folder or file.
 void compute(const std::string& experiment, const std::vector<Part>& parts,
              const std::filesystem::path& folder, const ProgressSink& progress);
 
-// All stored results, in the form that Experiment::documents takes, with "experiment" and "quick";
-// null unless all parts are finished.
+// Returns all stored results in the form that Experiment::documents takes. Returns null unless all
+// parts of the experiment are finished (compute()).
 Json kept_results(const Experiment& experiment, bool quick, const std::filesystem::path& folder);
 
-// Computation times [s] of the finished parts, on the machines that computed them.
+// Wall-clock times [s] of the computations of the parts, on the machines that computed the parts.
 struct PartTimes {
   std::size_t parts = 0;  // number of parts with a known time
   double sum = 0, longest = 0;

@@ -16,8 +16,9 @@ struct ScaledVirtualCamera {
   refractive::Matrix3<T> pixel_from_ray;  // K with `scale` as its upper left 2x2 block
 };
 
-// The virtual camera of `pixel`. With y = (x/z, y/z) of the ray in the virtual camera's frame, the
-// scale is d(pixel)/dy, from the derivative of the ray by the pixel; c_v as in the paper's eq. 3.
+// Returns the virtual camera of `pixel`. Let (x, y, z) be the direction of the pixel's ray in the
+// frame of the virtual camera, and s = (x/z, y/z). The scale is the 2x2 matrix d(pixel)/ds, the
+// inverse of ds/d(pixel). The principal point is c_v = pixel - scale * s, as in the paper's eq. 3.
 template <class Camera, class T = typename Camera::Scalar>
 ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
                                              const refractive::Vector2<T>& pixel) {
@@ -35,8 +36,8 @@ ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
   return {ray.origin, rotation, K};
 }
 
-// The homography of the paper's eq. 2 for these cameras; frames as in
-// refractive::virtual_homography.
+// Returns the homography [px to px] of the paper's eq. 2 for these virtual cameras. The other
+// arguments and their frames are those of refractive::virtual_homography.
 template <class T>
 refractive::Matrix3<T> scaled_homography(const ScaledVirtualCamera<T>& reference,
                                          const ScaledVirtualCamera<T>& source,

@@ -26,9 +26,9 @@ struct CameraSetup {
   double n_water = 1.333;
 };
 
-// The lens of an image of `width` x `height` pixels. The middle `fov_width` pixels of the width
-// span the field of view, and the other pixels are a border (0: no border). The principal point is
-// in the middle.
+// Returns the lens of an image of `width` x `height` pixels. The middle `fov_width` pixels of the
+// width span the field of view. The other pixels are a border. 0: the whole width spans the field
+// of view. The principal point is in the middle of the image.
 PinholeLens<double> make_lens(const CameraSetup& setup, int width, int height, int fov_width = 0);
 FlatPort<double> make_port(const CameraSetup& setup);
 
@@ -36,11 +36,11 @@ FlatPort<double> make_port(const CameraSetup& setup);
 struct StereoSetup {
   int number = 1;  // 1: baseline of 1 m; 2: second camera at x = 0.5 m, z = -1 m
   CameraSetup camera;
-  double plane_degrees = 0;  // rotation of the plane about y
+  double plane_degrees = 0;  // rotation of the plane about y; positive: away from second camera
 };
 
-// The centre of the second camera, a point of the plane, and the plane's unit normal towards the
-// cameras; in the frame of the first camera [m].
+// The centre of the second camera [m], a point of the plane [m], and the unit normal of the plane.
+// All are in the frame of the first camera. The normal points towards the cameras.
 Vector3<double> source_centre(const StereoSetup& setup);
 Vector3<double> plane_point(const StereoSetup& setup);
 Vector3<double> plane_normal(const StereoSetup& setup);
@@ -53,7 +53,9 @@ struct Variation {
   StereoSetup setup;
 };
 
-// The setup with one parameter changed. Error for an unknown series.
+// Returns the default setup with one parameter changed. `series`: the parameter, as in Variation.
+// `value`: in the unit in the name of the parameter. `stereo_number`: StereoSetup::number. Error
+// for an unknown series.
 Variation vary(const std::string& series, double value, int stereo_number = 1);
 
 }  // namespace axial::experiments

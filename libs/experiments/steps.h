@@ -11,9 +11,9 @@ namespace axial::experiments {
 // Appends `more`.
 Words& operator+=(Words& words, const Words& more);
 
-// Fills `folder` with `make`, unless the folder was made with the same `inputs` before. `make` gets
-// an empty folder. If `make` throws, the folder counts as not made: what `make` left there is
-// removed at the next call.
+// Calls make() to fill `folder`, unless the folder was made with the same `inputs` before. The
+// folder is empty when make() is called. If make() throws, the folder counts as not made, and the
+// next call removes its content.
 template <class Make>
 void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   const std::filesystem::path mark = folder / "made-from.json";
@@ -24,25 +24,27 @@ void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   write_atomically(mark, io::to_text(inputs));
 }
 
-// Runs one of the project's programs, which lies beside the running program, with `max_threads` of
-// the chain. Its output goes to the file `log`. Returns false if its error is one of `excuses`
-// (run_unless_excused). Any other error of the program is an Error.
+// Runs one of the project's programs with `chain.max_threads`. `program` lies beside the running
+// program. The output of the program goes to the file `log`. Returns true if the program succeeds.
+// Returns false if the program fails with one of `excuses` (run_unless_excused). Throws an Error if
+// the program fails otherwise.
 bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
                  const std::filesystem::path& log, const Words& excuses = {});
 
-// CPU time [s] of all child processes that have ended.
+// Returns the CPU time [s] of all child processes that have ended.
 double children_seconds();
 
-// The files of a folder whose paths end in `end`, in the order of names.
+// Returns the entries of a folder whose paths end in the text `end`, in the order of their names.
 std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& folder,
                                                    const std::string& end);
 
-// A fingerprint of the name and bytes of a file, or of all files of a folder that has no folders in
-// it. Error if a file cannot be read.
+// Returns a fingerprint of the name and bytes of a file, or of the names and bytes of all files of
+// a folder. Precondition: the folder contains only files. Error if a file cannot be read.
 std::string content_of(const std::filesystem::path& file_or_folder);
 
-// Fingerprints of some of the project's programs. As inputs of a step they make sure that the step
-// is repeated with changed programs. Error if a program does not lie beside the running program.
+// Returns fingerprints of some of the project's programs. If the inputs of a step contain the
+// fingerprints, the step is repeated when a program changes. Error if a program does not lie beside
+// the running program.
 Json content_of_programs(const Words& programs);
 
 }  // namespace axial::experiments

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Algorithm 1 with other table layouts than refractive/line_search.h: the memory of a pixel's entry
-// determines how long a search waits for it.
+// Algorithm 1 with other table layouts than refractive/line_search.h, to measure the influence of
+// the layout on time. The smaller the entry of a pixel, the less a search waits for memory.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,9 @@
 
 namespace axial::experiments {
 
-// The entry as the paper prints it: L(x) = {C_v, X_v, c_v}, all vectors, 8 numbers for each pixel.
+// The entry of a pixel x as the paper prints it: L(x) = {C_v, X_v, c_v}. C_v (3 numbers) is the
+// origin of the pixel's ray in water, X_v (3) its unit direction, and c_v (2) the principal point
+// of the virtual camera. The entry has 8 numbers.
 template <class T>
 struct PlainCell {
   refractive::Vector3<T> centre, direction;
@@ -23,15 +25,18 @@ struct PlainCell {
     return {ray.origin, ray.direction, {at.lens.cx, at.lens.cy}};
   }
 
-  // Whether Algorithm 1 goes forward: alpha < beta, computed as in the paper.
+  // Returns whether Algorithm 1 goes forward: alpha < beta, computed as in the paper. alpha and
+  // beta are cosines. X: the point to project. n: the unit normal of the port. Both are in the
+  // camera frame.
   bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
     const refractive::Vector3<T> from_centre = X - centre;
     return from_centre.dot(n) / from_centre.norm() < direction.dot(n);
   }
 };
 
-// The smallest entry for Algorithm 1: the height of C_v on the axis and beta, 2 numbers for each
-// pixel.
+// The smallest entry for Algorithm 1. An entry has 2 numbers, from the pixel's ray in water:
+// `along`, the distance [m] of the ray's origin C_v from the camera centre along the port's normal
+// n, and `cosine` (beta), the cosine of the angle between the ray's direction and n.
 template <class T>
 struct TightCell {
   T along, cosine;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requirements on the numbers of an experiment, and whether the numbers meet them.
+// Requirements on the numbers of an experiment, and whether the numbers meet the requirements.
 #pragma once
 
 #include <string>
