@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON texts and files. Only json.cpp calls the parser and the writer of the JSON library, because
-// each file that calls them takes seconds longer to compile.
+// Reads and writes JSON texts and files. Only json.cpp calls the parser and the writer of the JSON
+// library, because each source file that calls the parser or writer takes seconds longer to
+// compile.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +11,22 @@
 
 namespace axial::io {
 
-// Reads a JSON file of at most 256 MiB. Error that names the file for malformed JSON or a key that
-// occurs twice in an object.
+// Reads a JSON file. Error that names the file for a file larger than 256 MiB, malformed JSON, or a
+// key that occurs twice in an object.
 nlohmann::json read_json(const std::filesystem::path& path);
 
 // Writes `json` indented, with a newline at the end. The file is written completely or not at all.
 // Error that names the file for text that is not UTF-8.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
-// The JSON text on one line, for messages.
+// Returns the JSON text on one line, for messages.
 std::string to_text(const nlohmann::json& json);
 
-// The JSON text on one line, or indented by `indent` spaces for each level. Bytes that are not
-// UTF-8 are replaced by U+FFFD.
+// Returns the JSON text on one line if `indent` is negative, otherwise indented by `indent` spaces
+// for each level. Bytes that are not UTF-8 are replaced by U+FFFD.
 std::string to_text(const nlohmann::ordered_json& json, int indent = -1);
 
-// Parses a text; null if it is malformed.
+// Parses a text. Returns null if the text is malformed.
 nlohmann::ordered_json json_from(std::string_view text);
 
 }  // namespace axial::io

@@ -10,21 +10,23 @@
 
 namespace axial::io {
 
-// Lists all regular files below `folder`, at any depth, without symbolic links: { "relative/path":
-// fingerprint, ... }.
+// Lists all regular files below `folder`, at any depth. Symbolic links are left out. Returns a JSON
+// object { "relative/path": fingerprint, ... } with paths relative to `folder`.
 nlohmann::json list_files(const std::filesystem::path& folder);
 
 struct WrittenFiles {
-  std::vector<std::filesystem::path> unchanged;  // paths below the folder, sorted
-  std::vector<std::filesystem::path> changed;    // exist with another content
+  // Paths relative to the folder, sorted. The content is or is not that of the listed fingerprint.
+  std::vector<std::filesystem::path> unchanged;
+  std::vector<std::filesystem::path> changed;
 };
 
-// Finds the files of `listed` (made by list_files) that exist in `folder`. Entries that list_files
-// cannot have made are ignored, for example paths that lead out of the folder.
+// Returns the files of `listed` that exist as regular files in `folder`. `listed` is a result of
+// list_files. Entries that list_files cannot have made are ignored, for example paths that lead out
+// of the folder.
 WrittenFiles find_written(const std::filesystem::path& folder, const nlohmann::json& listed);
 
-// Removes `files`, given relative to `folder`, and then the folders below `folder` that have become
-// empty.
+// Removes `files`, whose paths are relative to `folder`. Also removes the folders below `folder`
+// that become empty. `folder` itself stays.
 void remove_below(const std::filesystem::path& folder,
                   const std::vector<std::filesystem::path>& files);
 

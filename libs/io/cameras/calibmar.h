@@ -13,17 +13,17 @@ namespace axial::io {
 // True for file names that end in .yaml or .yml.
 bool is_calibmar(const std::filesystem::path& path);
 
-// Reads the camera. Its id is 1, and it has the port if the file has one. Pixel centres are at 0.5,
-// as in COLMAP's files. Keys that do not describe this camera are ignored, for example the pose of
-// a stereo camera.
+// Reads the camera, with its port if the file describes one. The id of the camera is 1. Pixel
+// centres are at 0.5, as in COLMAP's files. Keys that do not describe this camera are ignored, for
+// example the pose of a stereo camera.
 //
 // Error that names the file, the key and the value for a missing or repeated key, a malformed
 // number, a camera model that COLMAP does not have, a wrong number of parameters, or port values
 // that are not possible.
 ColmapCamera read_calibmar(const std::filesystem::path& path);
 
-// True if the file states that the camera has no port: "non_svp_model" is NONE or empty. False if
-// that key is missing. Errors as for read_calibmar.
+// True if the file states that the camera has no port: its key "non_svp_model" is NONE or empty.
+// False if the key "non_svp_model" is missing or has another value. Errors as for read_calibmar.
 bool says_no_port(const std::filesystem::path& path);
 
 // Writes `camera` with its port, if it has one. `comments` are written at the top of the file, one

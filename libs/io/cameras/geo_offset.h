@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The origin of a scene's coordinates: the file beside a scene that names it, and functions that
-// move models and housings into the local frame. COLMAP models and housing files are always in
-// world coordinates.
+// Reads and writes the file beside a scene that states the origin of the scene's coordinates. Moves
+// scenes, COLMAP models and housings into the local frame. The files of COLMAP models and housings
+// are always in world coordinates.
 #pragma once
 
 #include <filesystem>
@@ -16,19 +16,21 @@ namespace axial::io {
 // "<scene without extension>.geo.json".
 std::filesystem::path geo_offset_beside(const std::filesystem::path& scene_path);
 
-// Returns the frame that the file beside the scene names; nothing if there is no file. Error that
-// names the file, the key and the value for an unknown key, a version other than 1, or an offset
-// that is not three finite numbers.
+// Returns the frame whose origin the file beside the scene states; nothing if there is no file.
+// Error that names the file, the key and the value for an unknown key, a version other than 1, or
+// an offset that is not three finite numbers.
 std::optional<LocalFrame> read_geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Writes the file beside the scene. If `frame` is the world, an existing file is removed instead.
 void write_geo_offset_beside(const std::filesystem::path& scene_path, const LocalFrame& frame);
 
-// Returns the local frame of a scene that was read from `scene_path`. After the call the scene is
-// in that frame. If there is a file beside the scene, the scene is in its frame already; a warning
-// is given if the cameras are far from its origin. Otherwise the scene is in world coordinates. If
-// it lies far from the origin it is moved into frame_of(scene), with a warning, because its sparse
-// points are float and have lost digits.
+// Moves a scene that was read from `scene_path` into its local frame and returns this frame.
+//
+// First, if there is a file beside the scene, the scene is already in the frame that the file
+// states. The scene stays unchanged. A warning is given if the cameras are more than 1e5 units from
+// the origin of the frame. Otherwise the scene is in world coordinates and is moved into
+// frame_of(scene). If frame_of(scene) is not the world, a warning states that the sparse points,
+// which are float, have lost digits.
 LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path);
 
 // Moves a model in world coordinates into the frame near its cameras (frame_of) and returns that
@@ -39,7 +41,7 @@ LocalFrame enter_local_frame(ColmapModel& model);
 void enter(const LocalFrame& frame, ColmapModel& model);
 void leave(const LocalFrame& frame, ColmapModel& model);
 
-// Returns `housing`, which is in world coordinates, for poses in `frame`. Only water surfaces
+// Converts `housing` from world coordinates to `frame` and returns the result. Only water surfaces
 // change, because other ports have no position in the world.
 Housing in_frame(const LocalFrame& frame, Housing housing);
 

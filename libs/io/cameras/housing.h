@@ -28,51 +28,54 @@ struct Housing {
   std::map<std::uint32_t, std::string> cameras;  // COLMAP camera id -> port name
   std::map<std::string, std::string> images;     // image name -> port name
 
-  // Returns the entry of `images` for an image. `image_name` is its name or a path that ends in it.
-  // An entry matches if it is the end of `image_name` in whole path components; the longest such
-  // entry is taken. `images.end()` if there is none. This function does not check whether the same
-  // entry matches other images; for_images and attach_ports do.
+  // Returns the entry of `images` for an image. `image_name` is the name of the image, or a path
+  // that ends in this name. An entry matches if its key is the end of `image_name` in whole path
+  // components. Returns the longest matching entry, or `images.end()` if no entry matches. This
+  // function does not check whether the entry also matches other images. for_images and
+  // attach_ports check this.
   std::map<std::string, std::string>::const_iterator entry_of(const std::string& image_name) const;
 
-  // The name of the port of an image: its own entry, otherwise the entry of its camera, otherwise
-  // the default.
+  // Returns the name of the port of an image. First the entry of the image in `images` counts
+  // (entry_of), then the entry of its camera in `cameras`, otherwise `default_port`.
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
 
-  // Returns the port `name` for the image `image` taken at `pose`; nothing for "none". A water
-  // surface becomes a flat port for this pose. Error that starts with `image` if the port is not
-  // defined, if the camera is not above the water surface, or if its optical axis does not meet the
-  // surface (port_seen_from).
+  // Returns the port `name` for an image that was taken at `pose`; nothing for "none". A water
+  // surface becomes a flat port for this pose (port_seen_from). Error that starts with `image`, the
+  // name of the image, if the port is not defined, if the camera is not above the water surface, or
+  // if the optical axis does not meet the water surface.
   std::optional<refractive::Port<double>> port_at(const std::string& name, const Pose& pose,
                                                   const std::string& image) const;
 
-  // Returns the port `name` where no pose is known; nothing for "none". Error if the port is not
-  // defined or is a water surface.
+  // Returns the port `name` without a pose; nothing for "none". Error if the port is not defined,
+  // or if the port is a water surface, because a water surface is another port for every pose.
   std::optional<refractive::Port<double>> carried_port(const std::string& name) const;
 };
 
 // A housing with one port, named "main", for all images.
 Housing housing_with(const HousingPort& port);
 
-// Error that starts with `where` for values that are not possible: see read_housing.
+// Error that starts with `where` for values that are not possible. The comment of read_housing
+// lists these values.
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_port(const HousingPort& port, const std::string& where);
 
-// Error that names `file` and the port if a port is a water surface. For programs that handle only
-// ports that move with the camera.
+// Error that names `file` and the port if a port of `housing` is a water surface. Programs that
+// handle only ports that move with the camera call this function.
 void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& file);
 
-// `checked`: unusual values give warnings (warn_of_port_values).
+// `checked`: unusual values of ports give warnings (warn_of_port_values). `passed_over`: no
+// warnings are given.
 enum class PortValues { checked, passed_over };
-// Reads a housing file, or the port of Calibmar's calibration.yaml (calibmar.h), which then holds
-// for all images. Lengths are metres. Directions and the dome centre are in the camera frame, a
-// water surface is in the world.
+// Reads a housing file or Calibmar's calibration.yaml (calibmar.h). The port of a calibration.yaml
+// becomes the port of all images. Lengths are in metres. The normal of a flat port and the centre
+// of a dome are in the camera frame. The normal and the point of a water surface are in the world.
 //
 // Error that names the file, the key and the value for an unknown key, a wrong type, a version
 // other than 1, an unknown port type, a port name that is not defined, an index outside 1 to 3, a
-// length outside 0 to 1 m, a zero or backward normal, a dome centre farther from the camera than
-// 0.9 times the inner radius, a water or glass index below that of air, or a Calibmar file that
-// does not mention a port. A normal whose length differs from 1 by more than 1e-6 is normalised
-// with a warning.
+// length outside 0 to 1 m, a zero normal, a flat port's normal whose z is not positive, a dome
+// centre that is not nearer to the camera than 0.9 times the inner radius, a water or glass index
+// below the air index, or a Calibmar file without the key "non_svp_model". A normal whose length
+// differs from 1 by more than 1e-6 is normalised with a warning.
 Housing read_housing(const std::filesystem::path& path, PortValues values = PortValues::checked);
 
 // Writes a housing file. Error that names the file and the port for values that are not possible or
@@ -87,18 +90,20 @@ struct NamedCamera {
   std::uint32_t camera = 0;  // COLMAP's id
 };
 
-// Returns `housing` resolved for these images. An entry that is the whole name of an image belongs
-// to that image only; other images whose names end in it get an entry of their own. Error that
-// names `file`, the entry and two images if an entry is the end of several names and the whole name
-// of none.
+// Returns a copy of `housing` in which port_of gives every one of `images` its own port. An entry
+// that is the whole name of an image belongs to this image only. Other images whose names end in
+// the same text get entries of their own in the result. Error that starts with `file` and the entry
+// and names two images, if an entry is the end of several names and the whole name of none.
 Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
                    const std::string& file);
 
-// Attaches ports to the calibrated images of the scene, found by the ends of the image paths. A
-// water surface becomes a flat port for each image's pose.
+// Attaches ports to the calibrated images of `scene`. The entry of an image in `housing.images` is
+// the longest entry that is the end of the image's path in whole path components. An entry that is
+// the whole path of another image does not count. An image without an entry gets
+// `housing.default_port`. A water surface becomes a flat port for the pose of each image.
 //
-// Errors name the image, as in port_at and for_images. An image without an entry is also an Error
-// if `housing.cameras` is not empty, because a scene does not know COLMAP's camera ids
+// Errors as for port_at and for_images. An image without an entry is also an Error if
+// `housing.cameras` is not empty, because a scene does not contain COLMAP's camera ids
 // (InterfaceCOLMAP writes entries by image where cameras differ). Warns of entries that match no
 // image, and of ports that disagree with the sparse points (warn_of_ports_in_scene). All messages
 // start with `file`.

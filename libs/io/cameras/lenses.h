@@ -22,28 +22,33 @@ struct SceneLenses {
 // "<scene without extension>.lenses.json".
 std::filesystem::path lenses_beside(const std::filesystem::path& scene_path);
 
-// Read and write the file. Error of reading that names the file, the key and the value for an
-// unknown key, a wrong type, a lens name that is not defined, a version other than 1, or numbers
-// that are not possible.
+// Read and write the file of the lenses. Reading gives an Error that names the file, the key and
+// the value for an unknown key, a wrong type, a lens name that is not defined, a version other than
+// 1, or numbers that are not possible.
 SceneLenses read_lenses(const std::filesystem::path& path);
 void write_lenses(const std::filesystem::path& path, const SceneLenses& lenses);
 
-// Attaches lenses to the calibrated images of the scene, found by the ends of the image paths (as
-// in attach_ports). Warns of entries that match no image. Error that starts with `file` if a lens
-// does not show the image centre or shows it mirrored.
+// Attaches lenses to the calibrated images of `scene`. The entry of an image in `lenses.images` is
+// the longest entry that is the end of the image's path in whole path components. An entry that is
+// the whole path of another image does not count. An image without an entry gets
+// `lenses.default_lens`. Warns of entries that match no image. Error that starts with `file` if
+// several images share an entry, or if a lens does not show the image centre or shows the image
+// centre mirrored.
 void attach_lenses(Scene& scene, const SceneLenses& lenses, const std::filesystem::path& file);
 
 // Attaches the lenses of the file beside the scene, if there is one. Returns true if the file
 // exists and any image has a distorted lens.
 bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path);
 
-// Returns the lenses of the scene's images, for the file beside `scene_path`. Error if an image
-// would get the lens of another one because of the end of its path.
+// Returns the lenses of the scene's images, for the file beside `scene_path`. Readers of the file
+// assign a lens to an image by the end of the image's path. Error if this rule would give an image
+// a wrong lens.
 SceneLenses lenses_of(const Scene& scene, const std::filesystem::path& scene_path);
 
-// Writes the file beside the scene. If no lens is distorted, the file is written only if
-// `behind_ports`: there images are rarely undistorted, so that a missing file could mean a lost
-// one. In air an existing file is removed then.
+// Writes the file of the lenses beside the scene. First, if a lens is distorted, the file is
+// written. Second, if `behind_ports` is true, the file is written although no lens is distorted:
+// images behind ports are rarely undistorted, so that a missing file would look like a lost file.
+// Otherwise no file is written and an existing file is removed.
 void write_lenses_beside(const std::filesystem::path& scene_path, const SceneLenses& lenses,
                          bool behind_ports);
 

@@ -7,10 +7,10 @@
 
 namespace axial::io {
 
-// Returns `housing` for poses that `similarity`, from world to world coordinates, has moved. Water
-// surfaces move with the poses. Ports that the cameras carry are fixed to the camera, so that only
-// their lengths can change: with `scale_ports` they are multiplied by the scale, and every point
-// keeps its pixel. Without it they keep their lengths.
+// Returns the housing that belongs to the poses after they have been moved by `similarity`, which
+// maps world to world coordinates. Water surfaces are moved by `similarity` too. Other ports are
+// fixed to the camera, so that only their lengths can change. If `scale_ports` is true, the lengths
+// are multiplied by the scale, and every point keeps its pixel. Otherwise the lengths stay.
 Housing moved(const Similarity& similarity, Housing housing, bool scale_ports);
 
 }  // namespace axial::io

@@ -14,23 +14,23 @@ namespace axial::io {
 // True if the two ports are of the same kind and no number differs by more than 1e-9.
 bool same_port(const HousingPort& a, const HousingPort& b);
 
-// Returns the first image of `model` for which `other` has a port that differs from the port in
-// `taken`, or for which `taken` has none; empty if there is no such image. An image without a port
-// in `other` never counts, because a camera file without a port makes no statement (housing_of).
+// Returns the name of the first image of `model` that has a port in `other`, and in `taken` another
+// port or no port. The result is empty if there is no such image. An image without a port in
+// `other` is never returned, because a camera file without a port makes no statement (housing_of).
 std::string image_with_other_port(const Housing& taken, const Housing& other,
                                   const ColmapModel& model);
 
-// Warns that `taken_from` is used and `other_from` is not, if image_with_other_port finds an image.
-// The warning names that image.
+// Warns if image_with_other_port finds an image. The warning names the image and states that the
+// ports of `taken_from` are used and those of `other_from` are ignored.
 void warn_of_other_ports(const Housing& taken, const std::string& taken_from, const Housing& other,
                          const std::string& other_from, const ColmapModel& model);
 
 // True if `housing` has ports but none of the model's images gets one.
 bool gives_no_image_a_port(const Housing& housing, const ColmapModel& model);
 
-// Warns if there is a housing file beside `scene_path` that differs from `taken` for an image of
-// the scene, or that cannot be read. No warning if that file is `file`, from which `taken` was
-// read.
+// Warns if the housing file beside `scene_path` cannot be read, or if it gives an image of the
+// scene another port than `taken`. `file` is the file from which `taken` was read. There is no
+// warning if no file lies beside `scene_path`, or if the file beside `scene_path` is `file`.
 void warn_of_housing_beside(const Scene& scene, const std::filesystem::path& scene_path,
                             const Housing& taken, const std::filesystem::path& file);
 

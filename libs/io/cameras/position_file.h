@@ -17,19 +17,21 @@ struct NamedPosition {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   int line = 0;
-  bool known = false;  // `is_image` is true for the name
+  bool known = false;  // the argument `is_image` of read_positions returned true for the name
 };
 
 // Reads a file with lines "NAME X Y Z", in UTF-8 with or without a byte order mark. The numbers are
-// read from the end of the line, so a name may contain blanks. A comment starts with '#' at the
-// beginning of the line or after a blank, unless `is_image` knows a name that contains that '#'. A
-// name in double quotes is taken literally; "" in it stands for a quote. Error that names the file
-// and the line for other lines and for numbers that are not finite.
+// read from the end of the line, so that a name may contain blanks. A comment starts with '#' at
+// the beginning of the line or after a blank. Exception: a '#' is part of the name if `is_image`
+// returns true for the name with this '#'. A name in double quotes is taken literally, and ""
+// between the quotes stands for one quote. Empty lines are skipped. Error that names the file and
+// the line for a line of another form and for numbers that are not finite.
 std::vector<NamedPosition> read_positions(const std::filesystem::path& file,
                                           const IsImage& is_image);
 
-// Returns the fields of a list separated by commas. A field in double quotes may contain commas,
-// and "" for a quote. Error that starts with `where` if a quote is not closed.
+// Splits a list at its commas and returns the fields. A field in double quotes may contain commas,
+// and "" between the quotes stands for one quote. Error that starts with `where` if a quote is not
+// closed.
 std::vector<std::string> split_list(std::string_view text, const std::string& where);
 
 }  // namespace axial::io

@@ -8,12 +8,14 @@
 
 namespace axial::io {
 
-// Reads 12 or 16 numbers: the first three rows, or all four rows, of a homogeneous matrix that maps
-// world coordinates to world coordinates. Words that are not numbers are skipped, and commas and
-// semicolons separate numbers as blanks do. Error that names the file for another count, a number
-// that is not finite, a last row other than 0 0 0 1, or a matrix that is not a uniform positive
-// scale, a rotation and a translation (by more than 1e-3 of the scale). A smaller deviation is
-// removed: the rotation is made exactly orthonormal.
+// Reads a homogeneous 4 x 4 matrix that maps world coordinates to world coordinates. The file holds
+// all 16 numbers row by row, or the 12 numbers of the first three rows. Words that are not numbers
+// are skipped. Commas and semicolons separate numbers as blanks do.
+//
+// Let A be the upper left 3 x 3 block, s the cube root of det A, and R = A / s. The result has the
+// scale s and the rotation R. A small deviation of R from a rotation is removed. Error that names
+// the file for another count of numbers, a number that is not finite, a last row other than
+// 0 0 0 1, an s that is not positive, or if an element of R R^T - I exceeds 1e-3.
 Similarity read_transform(const std::filesystem::path& file);
 
 }  // namespace axial::io

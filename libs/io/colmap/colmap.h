@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads and writes COLMAP sparse models, text and binary, as COLMAP 3.8 to 4.1 write them
-// (docs/formats.md).
+// Reads and writes COLMAP sparse models in text and binary form. The formats are those of COLMAP
+// 3.8 to 4.1 (docs/formats.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@ struct ColmapCamera {
   std::string model;  // "PINHOLE", "OPENCV", ...
   std::uint64_t width = 0, height = 0;
   std::vector<double> params;  // pixel centres at 0.5, as in the file
-  // Only COLMAP-Underwater's and Calibmar's files have a port. `params` then describes the lens in
-  // air.
+  // Only the files of COLMAP-Underwater and Calibmar contain ports. If there is a port, `params`
+  // describes the lens in air.
   std::optional<refractive::Port<double>> port = std::nullopt;
 };
 
@@ -62,16 +62,18 @@ struct ColmapModel {
   std::vector<ColmapPoint3D> points;
 };
 
-// Finds the folder that holds the model. The candidates are DIR/sparse, DIR/sparse/0 and DIR, in
-// this order. The first one with a complete model is taken; if none is complete, the first one with
-// a cameras file. The log names other complete models that were found. Error that lists the
-// candidates if none has a cameras file.
+// Returns the folder that holds the model of `folder`. The candidates are `folder`/sparse,
+// `folder`/sparse/0 and `folder`, in this order. First, the first candidate with a complete model
+// is taken. Otherwise the first candidate with a cameras file is taken. The log names other
+// complete models that were found. Error that lists the candidates if no candidate has a cameras
+// file.
 std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 
-// Reads cameras, images and points3D of COLMAP or COLMAP-Underwater. A binary cameras file does not
-// say which program wrote it; its length tells. As in COLMAP, the binary model in the folder is
-// read if it is complete, otherwise the text model. A warning names the files of the other form
-// that differ. All camera models of COLMAP are parsed.
+// Reads the cameras, images and points3D of COLMAP or COLMAP-Underwater. A binary cameras file does
+// not state which of the two programs wrote it. The program is determined from the length of the
+// file. As in COLMAP, the binary model in the folder is read if it is complete, otherwise the text
+// model. A warning names the files of the form not read whose contents differ from the model that
+// is read. All camera models of COLMAP are accepted.
 //
 // Error for an unknown camera model, a wrong number of parameters, a value that is not finite, a
 // reference to a camera, image or point that does not exist, an id that occurs twice, two images
@@ -86,14 +88,15 @@ std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path)
 // in the same folder.
 void require_no_binary_model(const std::filesystem::path& folder);
 
-// Write a model for COLMAP. Ports are left out because COLMAP cannot read them. Error if a text
-// model would be written into a folder with a complete binary model, which readers prefer. Error
-// for a name that the format cannot hold.
+// Write a model for COLMAP. Ports are left out because COLMAP cannot read them. The text writer
+// gives an Error if the folder holds a complete binary model (require_no_binary_model). Both
+// writers give an Error for an image name that the format cannot hold.
 void write_colmap_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_colmap_binary(const std::filesystem::path& folder, const ColmapModel& model);
 
-// Write a model for COLMAP-Underwater, with the ports of the cameras. The binary writer gives an
-// Error for a camera model that COLMAP-Underwater does not have.
+// Write a model for COLMAP-Underwater, with the ports of the cameras. Errors as for the writers
+// above. The binary writer also gives an Error for a camera model that COLMAP-Underwater does not
+// have.
 void write_underwater_text(const std::filesystem::path& folder, const ColmapModel& model);
 void write_underwater_binary(const std::filesystem::path& folder, const ColmapModel& model);
 

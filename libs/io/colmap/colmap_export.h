@@ -9,16 +9,17 @@
 
 namespace axial::io {
 
-// Returns the calibrated images of `scene`, the sparse points, and one camera for each distinct
-// camera, with its port if it has one: PINHOLE, or the model of its distorted lens
-// (lens::model_of). The id of an image is the scene's id plus one.
-// Image names are relative to `image_folder`.
+// Returns a model with the calibrated images of `scene`, their cameras, and the sparse points.
+// Images with equal cameras share one camera of the model. The camera model is PINHOLE, or for a
+// distorted lens the result of lens::model_of. A camera keeps its port. The id of an image is the
+// scene's id plus one. Image names are relative to `image_folder`.
 //
-// A scene does not keep the measured observations, so each observation is the projection of its
-// point. Observations that the camera does not see are left out, and points without any
-// observation. Error that names the image for a lens that no model of
-// COLMAP describes, a path outside `image_folder`, or
-// two images with the same name.
+// A scene does not keep the measured observations. Each observation of the model is therefore the
+// projection of its sparse point. Observations of points that the camera does not see are left out.
+// Points without any observation are left out too.
+//
+// Error that names the image for a lens that no model of COLMAP describes, a path outside
+// `image_folder`, or two images with the same name.
 ColmapModel export_colmap_model(const Scene& scene, const std::filesystem::path& image_folder);
 
 // Returns the deepest folder that contains all calibrated images; an empty path if there are none.

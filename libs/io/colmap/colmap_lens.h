@@ -9,11 +9,13 @@
 
 namespace axial::io {
 
-// Returns the lens. Error for a wrong number of parameters, and for a model that is not supported:
-// EQUIRECTANGULAR, which is no perspective camera, and METASHAPE_FISHEYE.
+// Returns the lens of `camera`, with pixel centres at integers. Error for a wrong number of
+// parameters and for a model that is not supported. EQUIRECTANGULAR, which is not a perspective
+// camera, and METASHAPE_FISHEYE are not supported.
 lens::Lens lens_of(const ColmapCamera& camera);
 
-// lens::pinhole_inside of the camera's lens. Error that starts with `name` if there is none.
+// Returns lens::pinhole_inside of the camera's lens. Error that starts with `name` if the lens has
+// no such pinhole. Other errors as for lens_of.
 refractive::PinholeLens<double> pinhole_inside(const ColmapCamera& camera, const std::string& name);
 
 }  // namespace axial::io

@@ -21,17 +21,22 @@ struct ColmapImport {
   bool undistort = true;  // false: keep the lenses whose distortion the matcher can model
 };
 
-// Returns the scene of `model` with its images in the model's order. Images of pinhole cameras are
-// used as they are. Other cameras either keep their lens (see `undistort` and lens_distortion), or
-// are replaced by a pinhole (pinhole_inside). In the second case their images and masks are
-// resampled into `undistorted_folder`. JPEG files with 8 bits and no transparency stay JPEG; other
-// files become PNG.
+// Returns the scene of `model`, with the images in the model's order. The rules for the cameras, in
+// order:
+// 1. Images of pinhole cameras are used as they are.
+// 2. If `import.undistort` is false and lens_distortion describes the lens, the camera keeps its
+//    distorted lens and its images are used as they are.
+// 3. Otherwise the camera is replaced by a pinhole (pinhole_inside), and its images and masks are
+//    resampled into `import.undistorted_folder`. JPEG files with 8 bits and no transparency stay
+//    JPEG. Other files become PNG.
 //
-// An image id is COLMAP's id minus one, or COLMAP's id if the ids start at 0. The views of a sparse
-// point are sorted by image and have confidence 0. An image that occurs twice in a track counts
-// once, and a line of the log states how many such observations there are.
+// The id of an image is COLMAP's id minus one. Exception: if a COLMAP id is 0, all ids are COLMAP's
+// ids. The views of a sparse point are sorted by image and have confidence 0. If an image occurs
+// more than once in a track, it counts once. The log states how many observations are ignored for
+// this reason.
 //
-// Memory: undistortion maps exist only for images in work, at most one image for each thread.
+// Memory: one image for each thread is undistorted at a time. The undistortion map of a camera
+// stays in memory from the first to the last image of the camera.
 //
 // Error that names the file, the field and the value, before any file is written, if the model has
 // fewer than two images, an image file is missing or has another size than its camera, two images
@@ -40,17 +45,19 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
                           const ProgressSink& preparing_cameras = {});
 
-// Returns the ports of `cameras`, as files of COLMAP-Underwater contain them. The port of camera 1
-// is named "camera_1", and so on. The housing has no ports if no camera has one.
+// Returns a housing with the ports of `cameras`, which were read from a file of COLMAP-Underwater
+// or Calibmar. The port of camera 1 is named "camera_1", and so on. Cameras without a port get the
+// default port "none".
 Housing housing_of(std::span<const ColmapCamera> cameras);
 
 // Reads a housing file and resolves its entries for the images of `model` (for_images).
 Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
 
-// Returns `housing` with one entry for every image whose port is not the default, and without
-// entries by camera id. attach_ports, and programs that no longer know COLMAP's camera ids, need
-// this form. `scene` must have been imported from `model`. Error if an image would get the port of
-// another image because the end of its path is the name of that image.
+// Returns a housing that gives every image the same port as `housing`, with entries by image only
+// and without entries by camera id. attach_ports needs this form, because a scene does not contain
+// COLMAP's camera ids. An image that gets the default port has no entry unless another entry would
+// match it. `scene` must have been imported from `model` with `import`. Readers assign a port to an
+// image by the end of the image's path. Error if this rule would give an image a wrong port.
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
                          const ColmapImport& import);
 

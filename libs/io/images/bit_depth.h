@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds how many bits the 16-bit values of a run's photographs use. One number serves the whole
-// run.
+// Determines how many bits the 16-bit values of photographs use. A run of a program uses one number
+// of bits for all photographs.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,26 @@
 
 namespace axial::io {
 
-// Adds the option `--bit-depth`. Its default, 0, means: find the number of bits in the photographs.
+// Adds the option `--bit-depth` to `list`. Its value is stored in `bit_depth`. The default is 0:
+// the largest value in the photographs determines the number of bits (common_bit_depth).
 void declare_bit_depth(OptionList& list, int& bit_depth);
 
-// Error for a value that is neither 0 nor from 8 to 16. `setting`: its name in the message.
+// Error if `bit_depth` is neither 0 nor from 8 to 16. The message calls the value `setting`.
 void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 
-// Returns the number of bits (8 to 16) from which all `photographs` are converted to 8 bits per
-// value. The result is `asked` if that is not 0. Otherwise it is the number of bits that the
-// largest value in any of the photographs needs, and one line of the log states it. Messages call
-// `asked` by the name `setting`.
+// Returns the number of bits (8 to 16) that the values of 16-bit photographs use. in_8_bits needs
+// this number to convert the photographs to 8 bits. `headers[i]` is the header of `photographs[i]`.
+// `asked` is the number of bits that the user asks for, or 0. The rules, in order:
+// 1. If no photograph has more than 8 bits, the result is 16. The result then has no effect,
+//    because pixels of 8 bits are not converted. A warning says that `asked` is not used if `asked`
+//    is not 0.
+// 2. If `asked` is not 0, the result is `asked`.
+// 3. Otherwise the result is the number of bits that the largest value in all photographs needs, at
+//    least 8. The log states the result.
 //
-// `headers[i]` is the header of `photographs[i]`. Photographs of 8 bits are not read. If all are of
-// 8 bits, the result is 16 and has no effect; a warning says so if `asked` is not 0. Photographs
-// are decoded in parallel, as many at a time as fit into a quarter of the free memory. Error for a
-// photograph that cannot be read.
+// Messages call `asked` by the name `setting`. Photographs are decoded only under rule 3, and only
+// those of more than 8 bits. They are decoded in parallel, as many at a time as fit into a quarter
+// of the free memory, and at least one. Error for a photograph that cannot be read.
 int common_bit_depth(std::span<const std::filesystem::path> photographs,
                      std::span<const ImageHeader> headers, int asked,
                      const std::string& setting = "bit_depth");

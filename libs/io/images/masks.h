@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the mask files, which hold the labels, of a scene's images.
+// Finds the mask files of a scene's images. A mask file is an image that holds labels.
 #pragma once
 
 #include <filesystem>
@@ -22,28 +22,36 @@ struct FoundMask {
 
 // Finds the masks of all images of a scene.
 //
-// Without `folder`, the candidates for cam0/a.jpg are, in this order, the mask that the scene
-// names, and in the folder of the image a.mask.png (OpenMVS), a.jpg.png (COLMAP) and a_mask.png.
+// Without `folder`, the candidates for the image cam0/a.jpg are, in this order: the mask that the
+// scene names, then a.mask.png (OpenMVS), a.jpg.png (COLMAP) and a_mask.png in the folder of the
+// image.
 //
-// With `folder`, masks are searched only there, and a.png is a fourth name. Subfolders that match
-// the end of the image's path are searched first, the longest end first: `folder`/cam0/a.mask.png,
-// then `folder`/a.mask.png. A name that several images of the scene share is not used.
+// With `folder`, masks are searched only in `folder`, and the mask that the scene names does not
+// count. The names are the three above and a.png. Let an end be one or more of the last components
+// of the path of the image's folder, for example cam0. The subfolders of `folder` that an end names
+// are searched first, the longest end first, and `folder` itself last. In the example all names are
+// searched in `folder`/cam0, then in `folder`. A name is not used in a folder where several images
+// of the scene would have it.
 //
-// Images of the scene never count as masks. Error if `folder` is not a folder, or if two images
-// would share a mask that the scene does not name.
+// Without `folder`, images of the scene do not count as masks unless the scene names them as masks.
+// With `folder`, they never count. Error if `folder` is not a folder, or if two images would share
+// a mask that the scene does not name.
 std::vector<FoundMask> find_masks(std::span<const MaskRequest> images,
                                   const std::filesystem::path& folder = {});
 
-// "<image without extension>.mask.png": the name under which programs write an image's mask.
+// Returns the path under which programs write the mask of an image:
+// "<image without extension>.mask.png".
 std::filesystem::path mask_beside(const std::filesystem::path& image);
 
-// Compares each mask, which is used, with the other candidates (`others`), which are ignored.
-// `used` and `other` are the first pair of files with different labels; `count` is the number of
-// images that have such a pair. A file that cannot be read counts as different.
+// The masks that are used although other candidates (FoundMask::others) with different labels
+// exist. `count` is the number of images with such a candidate. `used` and `other` are the mask and
+// the candidate of the first such image.
 struct IgnoredMasks {
   std::size_t count = 0;
   std::filesystem::path used, other;
 };
+// Compares each mask with its other candidates. If a file cannot be read, its labels count as
+// different.
 IgnoredMasks ignored_masks(std::span<const FoundMask> masks);
 
 }  // namespace axial::io

@@ -10,13 +10,15 @@
 
 namespace axial::io {
 
-// The file to write for the options -o and --export-type (`type`, "ply" or "obj"). If the type was
-// not given, the extension .obj of `path` chooses it. The extension of a mesh or of a scene is
-// replaced; to any other name the extension is appended.
+// Returns the path of the mesh file to write. `path` is the value of the option -o. `type` is the
+// value of the option --export-type, "ply" or "obj". `type_given` is true if the user gave the
+// type. If the user did not give the type and `path` ends in .obj, the type is "obj". The type
+// becomes the extension of the result. The new extension replaces .ply, .obj and .mvs, and is
+// appended to any other path.
 std::filesystem::path mesh_file(std::filesystem::path path, std::string type, bool type_given);
 
-// Writes the mesh in the format of the extension, .ply or .obj, with positions relative to `frame`.
-// Errors as for write_mesh_ply.
+// Writes the mesh as OBJ if the extension of `path` is .obj, otherwise as PLY. `frame` is the frame
+// of the mesh's positions. Errors as for write_mesh_ply.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame);
 
 }  // namespace axial::io

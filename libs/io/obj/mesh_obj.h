@@ -8,8 +8,9 @@
 
 namespace axial::io {
 
-// Writes the vertices and faces of a mesh in Wavefront's OBJ format, without colours. Positions are
-// relative to `frame`, which a comment "geo_offset X Y Z" names unless it is the world. They have
+// Writes the vertices and faces of a mesh in Wavefront's OBJ format, without colours. `frame` is
+// the frame of the mesh's positions. Positions are written in `frame`. A comment
+// "# geo_offset X Y Z" states the origin of `frame` unless `frame` is the world. Coordinates have
 // nine significant digits, so that reading gives the same float.
 void write_mesh_obj(const std::filesystem::path& path, const Mesh& mesh,
                     const LocalFrame& frame = {});

@@ -11,41 +11,48 @@
 
 namespace axial::io {
 
-// A .dmap file holds z-depth and normals in the camera frame, and the in-air K and the pose. The
-// side file "<path>.json" holds the camera model with its port, `made_from`, which is a fingerprint
-// of the inputs and options, and a fingerprint of the .dmap file. The last one shows whether the
-// depth map is damaged or was written by another program. Without a side file the camera counts as
-// a pinhole and `made_from` is empty. In memory depth is lambda (see DepthMap). The functions below
-// convert between z-depth and lambda.
+// A depth map that is stored in a .dmap file and a side file "<path>.json".
+//
+// The .dmap file holds the z-depth and the normals in the camera frame, the in-air K, and the pose.
+// The side file holds the camera model with its port, the text `made_from`, and a fingerprint of
+// the bytes of the .dmap file. `made_from` is a fingerprint of the inputs and options from which
+// the depth map was made. The fingerprint of the bytes shows whether the .dmap file is damaged or
+// was written by another program. Without a side file the camera counts as a pinhole and
+// `made_from` is empty.
+//
+// Depth in memory is lambda (see DepthMap). The functions below convert between z-depth in the file
+// and lambda in memory.
 struct StoredDepthMap {
   DepthMap map;
   std::string made_from;
 };
 
-// `ignored`: the camera counts as a pinhole even if there is a side file. This is for depth maps of
-// another program that replaced our own.
+// Whether the side file is read. `ignored`: the camera counts as a pinhole even if there is a side
+// file. Use this value if another program has replaced the depth map that belongs to the side file.
 enum class DmapSide { used, ignored };
 
-// Reads a depth map and converts its z-depth to lambda with the camera of the side file, or with
-// the K of the .dmap file and no port. Error for a truncated or malformed file, sizes that
-// disagree, depths that are not positive, or a side file that belongs to another depth map.
+// Reads a depth map and converts its z-depth to lambda. The camera is that of the side file. If
+// there is no side file or `side` is `ignored`, the camera is a pinhole without a port and has the
+// K of the .dmap file. Error for a truncated or malformed file, sizes that disagree, depths that
+// are negative or not finite (0 means no depth), or a side file that belongs to another depth map.
 StoredDepthMap read_dmap(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
 // Reads a depth map without its pixels: `depth`, `normal` and `confidence` stay empty. The
-// fingerprint in the side file is not checked. Errors as for read_dmap, and for a file whose length
-// disagrees with its header.
+// fingerprint of the .dmap file is not checked. Errors as for read_dmap except for pixels and for
+// the fingerprint, and an Error for a file whose length disagrees with its header.
 DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
-// Writes a depth map and its side file. An existing depth map at `path` is removed first, then the
-// side file is replaced, and last the new depth map gets its name. No depth map is therefore ever
-// beside the side file of another depth map, even if the program is interrupted. `made_from` is the
-// text that read_dmap returns later. Error for an empty map, arrays of different sizes, a map
-// without ids, or a depth that is not in front of the camera.
+// Writes a depth map and its side file. First an existing depth map at `path` is removed. Then the
+// side file is replaced. Last the new depth map gets its name. In this order an interruption never
+// leaves a depth map beside the side file of another depth map. `made_from` is the text that
+// read_dmap returns later. Error for an empty map, arrays of different sizes, a map without ids, or
+// a depth that is not in front of the camera.
 void write_dmap(const std::filesystem::path& path, const DepthMap& map,
                 const std::string& made_from);
 
-// An upper bound of the memory [bytes] of read_dmap() and write_dmap() for a map of `pixels`
-// pixels, without the map itself: the bytes of the file, and converted depths.
+// Returns an upper bound of the memory [bytes] that read_dmap() or write_dmap() needs for a map of
+// `pixels` pixels. The memory of the map itself is not included. The bound counts the bytes of the
+// file and the converted depths.
 constexpr std::uint64_t dmap_bytes_needed(std::uint64_t pixels) {
   return 44 * pixels;
 }
@@ -54,18 +61,20 @@ enum class DmapOrigin {
   none,     // no such file
   ours,     // matches its side file
   damaged,  // has a side file, but the map or the side file is incomplete
-  foreign   // has no side file, or is complete but does not match its side file
+  foreign   // has no side file, or is not damaged but does not match its side file
 };
 
 struct DmapStatus {
   DmapOrigin origin = DmapOrigin::none;
-  std::string made_from;  // of ours
+  std::string made_from;  // empty unless `origin` is `ours`
 };
 
-// Tells who wrote the file at `path`. If there is a side file, the whole depth map is read.
+// Tells whether AxialMVS or another program wrote the depth map at `path`, and whether the depth
+// map is damaged. If there is a side file, the whole depth map is read to compare its fingerprint.
 DmapStatus dmap_status(const std::filesystem::path& path);
 
-// Returns `made_from` of the side file if the depth map exists and matches it (DmapOrigin::ours).
+// Returns `made_from` of the side file if the depth map exists and matches its side file
+// (DmapOrigin::ours). Otherwise returns nothing.
 std::optional<std::string> dmap_made_from(const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -8,21 +8,25 @@
 
 namespace axial::io {
 
-// Reads a scene. Image paths in the file are relative to `working_folder`; they become absolute.
-// Ports are not part of the format (see housing.h). Cameras without a resolution (normalised K) get
-// it from the header of the image file.
+// Reads a scene. Relative paths of images and masks in the file count from `working_folder`. All
+// paths in the result are absolute. Ports are not part of the format (see housing.h). If a camera
+// is stored without a resolution (normalised K), the resolution is read from the header of the
+// image file.
 //
 // Error that names the file, the field and the value for a truncated or malformed file, fewer than
-// two images, ids out of range, values that are not finite, poses that are not rotations, a focal
-// length that is not positive, or a native OpenMVS project ("MVS\0").
+// two images, ids out of range or repeated, values that are not finite, rotation matrices that are
+// not rotations, a focal length that is not positive, a skew, or a native OpenMVS project
+// ("MVS\0").
 Scene read_mvs(const std::filesystem::path& path, const std::filesystem::path& working_folder);
 
-// How K is written. `normalised`: divided by the longer side of the image, without a resolution, as
-// with OpenMVS's --normalize.
+// How write_mvs stores K. `pixels`: in pixels, with the resolution of the image. `normalised`:
+// divided by the longer side of the image, without a resolution, as with OpenMVS's --normalize.
 enum class MvsIntrinsics { pixels, normalised };
 
-// Writes version 7. Image paths are relative to `working_folder` if they lie below it. Error for
-// fewer than two images, no calibrated image, or values that read_mvs refuses.
+// Writes a scene in version 7 of the format. Paths of images and masks below `working_folder` are
+// stored relative to it, other paths are stored whole. Error for fewer than two images, no
+// calibrated image, sparse points that read_mvs refuses, or a principal point that readers of a
+// normalised K would place elsewhere.
 void write_mvs(const std::filesystem::path& path, const Scene& scene,
                const std::filesystem::path& working_folder,
                MvsIntrinsics intrinsics = MvsIntrinsics::pixels);

@@ -24,19 +24,22 @@ struct MvsCounts {
   // Replaces the number of view scores and adapts `file_bytes`.
   void set_view_scores(std::uint64_t number);
 
-  // Upper bound of the memory of the scene that read_mvs makes.
+  // Upper bound of the memory [bytes] of the scene that read_mvs makes.
   std::uint64_t scene_bytes() const;
-  // Upper bounds of the memory while the file is read, including the scene, and while it is
-  // written, in addition to the scene.
+  // Upper bounds of the memory [bytes] that read_mvs and write_mvs need while they work. The bound
+  // for reading includes the scene that is made. The bound for writing does not include the scene
+  // that is written.
   std::uint64_t reading_bytes() const;
   std::uint64_t writing_bytes() const;
 };
 
-// Scans the file with a buffer of at most one megabyte. Nothing for a file of version 0, and for a
-// file that cannot be read or is malformed, for which read_mvs reports the reason.
+// Counts the contents of an interchange scene. The file is read through a buffer of at most one
+// MiB. Returns nothing for a file of version 0, a file that cannot be read and a malformed file. In
+// the last two cases read_mvs reports the reason.
 std::optional<MvsCounts> count_mvs(const std::filesystem::path& path);
 
-// The counts of the file that write_mvs makes, as upper bounds.
+// Returns the counts of the file that write_mvs would make of `scene`. `cameras`, `poses`,
+// `name_bytes` and `file_bytes` are upper bounds. `pairs` is not counted and stays 0.
 MvsCounts count_scene(const Scene& scene);
 
 }  // namespace axial::io

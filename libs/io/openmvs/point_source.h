@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clouds and meshes that belong to a scene, as the options -p and -m of OpenMVS's programs name
-// them.
+// Reads clouds and meshes that belong to a scene. Users name these files with the options -p and -m
+// of OpenMVS's programs.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,25 @@
 
 namespace axial::io {
 
-// Read the PLY file of a cloud or a mesh of a scene whose coordinates are in `frame`; the result is
-// in `frame`. If the file has a comment geo_offset, that is the origin of its positions. Otherwise
-// its positions are in the world or in `frame`, whichever origin is nearer to its first point,
-// because OpenMVS's programs keep coordinates but drop comments. Errors as for read_cloud_ply and
-// read_mesh_ply.
+// Read the PLY file of a cloud or a mesh that belongs to a scene in `frame`. The positions of the
+// result are in `frame`.
+//
+// First, if the file has a comment geo_offset, its point is the origin of the stored positions.
+// Otherwise the frame of the stored positions is guessed, because OpenMVS's programs write
+// coordinates in the frame of their input but drop its comment geo_offset. The guess is the world
+// or `frame`: the one whose origin is nearer to the first vertex. A comment geo_offset 0 0 0 counts
+// as no comment.
+//
+// Errors as for read_cloud_ply and read_mesh_ply.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 
-// Replaces the points, normals and colours of `scene` by those of read_cloud_of_scene(). The cloud
-// must have view_indices, which are indices of the scene's images, and may have view_weights.
+// Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
+// read_cloud_of_scene(). The cloud must have the property view_indices, which holds indices of the
+// scene's images. The property view_weights is optional: without it all confidences are 0.
 //
-// Error that names the file for a cloud without views, a view of an image that the scene does not
-// have, or a point that is not finite.
+// Error that names the file for a cloud without view_indices, an index of an image that the scene
+// does not have, or a point that is not finite. Other errors as for read_cloud_ply.
 void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply);
 
 struct PointSourceCounts {
@@ -35,9 +41,11 @@ struct PointSourceCounts {
   std::uint64_t reading_bytes = 0;  // lower bound of the memory that use_point_cloud needs
 };
 
-// Counts from the header and the size of the cloud's file; `scene` holds the counts of the scene.
-// Observations are 0 for an ascii PLY and for a PLY with other lists or elements. Nothing for a
-// file that cannot be read or is malformed; use_point_cloud reports the reason.
+// Estimates the counts of a scene after use_point_cloud, from the header and the size of the file
+// `ply`. `scene` holds the counts of the scene before. The number of observations cannot be
+// computed, and is 0, for an ascii PLY and for a PLY with other elements than the vertices or other
+// lists than those of views. Returns nothing for a file that cannot be read and for a malformed
+// file. In these cases use_point_cloud reports the reason.
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The options that name the cameras of a scene, which several programs have.
+// Command-line options that several programs share: they choose how the cameras of a scene are
+// modelled.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +11,19 @@
 
 namespace axial::io {
 
-// The values of the options as text.
+// The values of the options as the user gave them.
 struct SceneOptions {
   std::string housing, camera_model = "auto";
   bool refractive = false, allow_missing = false;
 };
 
-// Adds --refractive, --housing, --camera-model and --allow-missing to `list`, bound to `options`,
-// which must exist until parse_options() has returned.
+// Adds --refractive, --housing, --camera-model and --allow-missing to `list`. Their values are
+// stored in `options`, which must exist until parse_options() has returned.
 void declare_scene_options(OptionList& list, SceneOptions& options);
 
-// The files of the scene `input`, which may be relative to the working folder. Messages name the
-// options. Error for an unknown camera model, and for options that contradict each other.
+// Returns the files of the scene `input`. `input` and `options.housing` may be relative to the
+// working folder of `common`. Later messages about these files name settings by their options.
+// Error for an unknown camera model, and for options that contradict each other.
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
                        const CommonOptions& common);
 

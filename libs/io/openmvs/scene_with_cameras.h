@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene file together with the files beside it, which describe what the .mvs format cannot store:
-// the distortion of the lenses, the ports, and the origin of the coordinates.
+// Reads and writes a scene file together with the files beside it. The files beside the scene hold
+// the data that the .mvs format cannot store: the distortion of the lenses, the ports, and the
+// origin of the coordinates.
 #pragma once
 
 #include <filesystem>
@@ -21,37 +22,41 @@ enum class PortChoice {
   flat        // a housing file must exist and give every image a flat port
 };
 
-// The files of a scene. The paths are absolute; an empty path means "none", unless its comment says
-// otherwise. The names of settings in errors are "allow_missing", "housing", "refractive" (for
-// PortChoice::required) and "camera is flat_port" (for PortChoice::flat).
+// The files of a scene. The paths are absolute. Messages name four settings: "allow_missing",
+// "housing", "refractive" (which asks for PortChoice::required) and "camera is flat_port" (which
+// asks for PortChoice::flat). `name_of` translates these names to the names that the user knows.
 struct SceneFiles {
   std::filesystem::path scene;           // .mvs
   std::filesystem::path working_folder;  // base of relative image paths in the scene
   std::filesystem::path housing;         // empty: beside the scene, if there is one
   PortChoice ports = PortChoice::automatic;
-  bool allow_missing = false;  // go on if the housing gives no image a port
+  bool allow_missing = false;  // go on if the named `housing` gives no image a port
   SettingNames name_of = own_name;
 };
 
 struct SceneWithCameras {
   Scene scene;                     // in `frame`; cameras have their lenses and ports
   LocalFrame frame;                // the frame of the scene's coordinates
-  std::optional<Housing> housing;  // the source of the ports; in world coordinates
+  std::optional<Housing> housing;  // in world coordinates; nothing if no image has a port
 };
 
-// The path of the housing file, which may not exist.
+// Returns the path of the housing file. The file need not exist.
 std::filesystem::path housing_file(const SceneFiles& files);
 
 // Reads the scene, moves it into a frame near its cameras (enter_local_frame), and attaches lenses
-// and ports. Image and mask paths that do not exist in the working folder are looked up relative to
-// the scene's folder. The image files are not read. Logs what was found. Warns if the scene has
-// ports but no file of lenses. Error for any fault of these files, and if `files.ports` is not met.
+// and ports. If the path of an image or a mask does not exist, its part below the working folder is
+// looked up below the scene's folder. The pixels of images are not read. The log states the housing
+// file and the numbers of images with ports and with distorted lenses. Warns if the scene has ports
+// but no file of lenses. Error for a missing or malformed file, and if the ports do not meet
+// `files.ports`.
 SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
 
-// Writes housing, lenses and offset beside the scene `output`, where later programs look for them.
-// Removes such a file of the same name if the scene has no ports, distorted lenses or offset. The
-// housing file of `files`, from which the scene was read, is never changed. `lenses`: lenses_of()
-// the scene and `output`.
+// Writes the files of the housing, the lenses and the offset beside the scene `output`, where later
+// programs look for them. An existing housing file is removed if the scene has no housing. An
+// existing offset file is removed if the scene is in the world and `output` is not the scene that
+// was read. The file of lenses is written or removed as in write_lenses_beside. The housing file of
+// `files`, from which the scene was read, is never changed or removed. `lenses` is the result of
+// lenses_of() for the scene and `output`.
 void write_cameras_beside(const std::filesystem::path& output, const SceneWithCameras& scene,
                           const SceneLenses& lenses, const SceneFiles& files);
 

@@ -13,33 +13,39 @@
 
 namespace axial::io {
 
-// Reads a cloud. Properties are found by name: x y z, nx ny nz, red green blue (or diffuse_red and
-// so on), view_indices, view_weights. Old (float, uchar) and new (float32, uint8) type names are
-// known. Other elements and properties are skipped. Error that names the file for a malformed or
-// truncated file.
+// Reads a cloud. Properties are recognised by their names: x y z, nx ny nz, red green blue (or
+// diffuse_red and so on), view_indices, view_weights. Old (float, uchar) and new (float32, uint8)
+// names of types are accepted. Other elements and properties are skipped.
 //
-// Positions are returned as stored. In a file with a line "comment geo_offset X Y Z" they are
-// relative to that point.
+// Positions are returned as stored. If the file has a line "comment geo_offset X Y Z", the stored
+// positions are relative to the point X Y Z. Otherwise the file does not state their origin.
+//
+// Error that names the file for a malformed or truncated file, vertices without x, y or z, or a
+// position or normal that is not finite.
 PointCloud read_cloud_ply(const std::filesystem::path& path);
 
-// Reads a cloud with positions in `frame`. The positions are moved from the file's own origin in
-// double, before they become float.
+// Reads a cloud and returns its positions in `frame`. The origin of the stored positions is the
+// file's comment geo_offset, or the world's origin if there is no such comment. The positions are
+// moved in double precision and then rounded to float.
 PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
 // The origin and the precision of a file's positions.
 struct PlyPlace {
-  Eigen::Vector3d first_vertex = Eigen::Vector3d::Zero();  // [world]; zero if there is none
-  LocalFrame frame;                                        // origin of the stored positions
-  bool is_float = true;                                    // positions are float32
+  // The stored first vertex plus the origin of `frame`; zero if the file has no vertices.
+  Eigen::Vector3d first_vertex = Eigen::Vector3d::Zero();
+  LocalFrame frame;      // from the comment geo_offset; the world without this comment
+  bool is_float = true;  // positions are float32
 };
 
 // Reads the header and the first vertex. Errors as for read_cloud_ply.
 PlyPlace ply_place(const std::filesystem::path& path);
 
-// How positions are written.
+// How positions are written. If `world` is true, positions are written as float64 in world
+// coordinates. Otherwise positions are written as float32 in `frame`, and a comment geo_offset
+// states the origin of `frame` unless `frame` is the world.
 struct PlyPlacement {
-  LocalFrame frame;    // of the positions; a comment geo_offset names it unless it is the world
-  bool world = false;  // write float64 in world coordinates, without the comment
+  LocalFrame frame;  // of the positions in memory
+  bool world = false;
 };
 
 // The properties that every point of a cloud has besides its position.
@@ -48,10 +54,11 @@ struct CloudLayout {
   bool errors = false;  // the expected error and the confidence
 };
 
-// Writes a cloud of any size in portions. The file gets its name in finish(); without finish() no
-// file remains. The layout is OpenMVS's: x y z, red green blue, nx ny nz, view_indices,
-// view_weights. Our own error and confidence follow. The number of points is known only at the end,
-// so the header reserves room for its digits in a comment line.
+// Writes a cloud of any size in portions. The file gets its name in finish(). If finish() is not
+// called, no file remains. The order of the properties is that of OpenMVS: x y z, red green blue,
+// nx ny nz, view_indices, view_weights. The properties error and confidence, which OpenMVS does not
+// have, follow. The number of points is known only at the end. The header therefore contains a
+// comment line with blanks that reserve room for the digits of this number.
 class CloudWriter {
  public:
   CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
@@ -59,9 +66,9 @@ class CloudWriter {
   ~CloudWriter();
   CloudWriter(CloudWriter&&) = delete;
 
-  // Appends all points of `portion`. Error that names the file if an array of the layout is missing
-  // or has another length than the positions, if a point has more than 255 views (the format counts
-  // them in a byte), or if the file cannot be written.
+  // Appends all points of `portion`. Error that names the file if an array that the layout demands
+  // is missing or does not match the number of points, if a point has more than 255 views (the
+  // format counts views in a byte), or if the file cannot be written.
   void add(const PointCloud& portion);
 
   std::size_t size() const;  // points so far
@@ -74,13 +81,16 @@ class CloudWriter {
   std::unique_ptr<File> file_;
 };
 
-// Writes a whole cloud with the properties that it has; view_indices and view_weights only if
-// `with_views`. Errors as for CloudWriter::add.
+// Writes a whole cloud. The file has the properties whose arrays in `cloud` are not empty, with one
+// exception: view_indices and view_weights are written only if `with_views` is true. Errors as for
+// CloudWriter::add.
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true, const PlyPlacement& placement = {});
 
-// Read a mesh. Faces with more than three corners are split into a fan of triangles. Positions are
-// treated as in read_cloud_ply. Error for a face index out of range, and as for read_cloud_ply.
+// Read a mesh. Faces with more than three corners are split into a fan of triangles. With and
+// without `frame`, positions are treated as in the two functions read_cloud_ply. Error that names
+// the file for a file without an element face, a face with fewer than three corners, or a vertex
+// index out of range. Other errors as for read_cloud_ply.
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
@@ -88,14 +98,17 @@ Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 
-// Parts of a file for writers of other properties: the comment line with the origin of the
-// positions (empty for the world), the header lines of the position, and the bytes of one position.
+// Parts of a PLY file, for writers that add properties of their own. geo_comment returns the header
+// line "comment geo_offset X Y Z" with its newline, or an empty text if the positions are in the
+// world. position_properties returns the header lines of x, y and z. append_position appends the
+// bytes of one position, which is given in `placement.frame`, to `bytes`.
 std::string geo_comment(const PlyPlacement& placement);
 const char* position_properties(const PlyPlacement& placement);
 void append_position(std::string& bytes, const Eigen::Vector3f& position,
                      const PlyPlacement& placement);
 
-// True if the header declares a non-empty face element.
+// True if the header declares an element face with at least one face. Error that names the file for
+// a malformed header.
 bool ply_has_faces(const std::filesystem::path& path);
 
 }  // namespace axial::io

@@ -11,8 +11,9 @@
 
 namespace axial::io {
 
-// Reads the property `name`: one value for each vertex, in the order of the file. Empty if the
-// vertices have no such property or it is a list. Errors as for read_cloud_ply.
+// Reads the property `name` of the vertices. Returns one value for each vertex, in the order of the
+// file. The result is empty if the vertices have no property of this name, or if the property is a
+// list. Error that names the file for a malformed or truncated file.
 std::vector<float> read_vertex_property(const std::filesystem::path& path, const std::string& name);
 
 struct VertexProperty {
@@ -20,7 +21,7 @@ struct VertexProperty {
   std::span<const float> values;  // one for each vertex
 };
 
-// Writes a mesh as write_mesh_ply in ply.h does, with one more float property of the vertices.
+// Writes a mesh as write_mesh_ply in ply.h does, and adds one float property to the vertices.
 // Error if the number of values differs from the number of vertices.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const VertexProperty& property, const PlyPlacement& placement = {});

@@ -14,36 +14,43 @@ namespace axial::io {
 
 enum class TexturedFormat { ply, obj, glb, gltf };
 
-// The format of a name "ply", "obj", "glb" or "gltf"; nothing for another name.
+// Returns the format that the name "ply", "obj", "glb" or "gltf" stands for; nothing for another
+// name.
 std::optional<TexturedFormat> textured_format(std::string_view name);
 
-// The files of a mesh with `textures` textures, the mesh first. `path` has any extension, or none,
-// which is replaced. The textures of "dir/scene.ply" are "dir/scene0.png", "dir/scene1.png" and so
-// on, as in OpenMVS. A GLB contains its textures.
+// Returns the paths of all files that write_textured_mesh writes for a mesh with `textures`
+// textures. The first path is that of the mesh. The extension of `path`, if it has one, is replaced
+// by the extension of the format. The second path is the .mtl file of an OBJ or the .bin file of a
+// glTF. The paths of the textures follow: for "dir/scene.ply" they are "dir/scene0.png",
+// "dir/scene1.png" and so on, as in OpenMVS. A GLB is a single file that contains its textures.
 std::vector<std::filesystem::path> textured_files(const std::filesystem::path& path,
                                                   TexturedFormat format, std::size_t textures);
 
 // Writes the mesh and its textures. Either all files are written, or none is.
-//   - PLY: comments TextureFile; for each face texcoord, a list of u v of its corners, and the
-//     index texnumber if there is more than one texture. u = (x + 0.5) / width,
-//     v = 1 - (y + 0.5) / height.
-//   - OBJ: the same u and v, each pair once for each vertex and texture; a group and a material
-//     "material_K" for each texture.
-//   - glTF: a primitive for each texture, with vertices and bounds of its own,
-//     u = (x + 0.5) / width and v = (y + 0.5) / height; materials without lighting
-//     (KHR_materials_unlit). The axes are those of the scene. GLB is the same in one file, of at
-//     most 4 GiB.
-// Positions are written in `frame`, as float. If that is not the world, PLY has the comment
-// geo_offset, OBJ a comment "# geo_offset X Y Z", and glTF the same key in the extras of its node.
-// Error if uv and texture_of do not have an entry for each face, if an index is out of range or a
-// coordinate is not finite, if a GLB would be larger than
-// 4 GiB, and if a file cannot be written.
+// Let (x, y) be a texture coordinate of the mesh in pixels of its texture.
+//   - PLY: a comment TextureFile names each texture. The list texcoord of a face holds u and v of
+//     its corners. If there is more than one texture, texnumber is the index of the face's texture.
+//     u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
+//   - OBJ: u and v as in PLY. A pair (u, v) is written once for each vertex and texture that have
+//     it. Each texture that faces use has a group and a material "material_K", where K is the index
+//     of the texture.
+//   - glTF: each texture that faces use has a primitive with vertices and bounds of its own.
+//     u = (x + 0.5) / width, v = (y + 0.5) / height. Materials are without lighting
+//     (KHR_materials_unlit). The axes are those of the scene. GLB holds the same data in one file.
+//
+// `frame` is the frame of the mesh's positions. Positions are written in `frame`, as float. If
+// `frame` is not the world, its origin is written too: PLY has a comment "geo_offset X Y Z", OBJ a
+// comment "# geo_offset X Y Z", and glTF a key geo_offset in the extras of its node.
+//
+// Error if uv or texture_of does not have one entry for each face, if an index is out of range, if
+// a coordinate is not finite, if a GLB would be larger than 4 GiB, or if a file cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
 
-// Reads a textured PLY and the textures beside it. Error that names the file for a face that is no
-// triangle or has no texcoord, for a texture that is missing or cannot be read, for an index out of
-// range, and as for read_mesh_ply. With `frame`, positions are in that frame, as in read_mesh_ply.
+// Reads a textured PLY and the textures beside it. With and without `frame`, positions are treated
+// as in the two functions read_mesh_ply. Error that names the file for a file without a comment
+// TextureFile, a face that is not a triangle, a face without texcoord, a texture that is missing or
+// cannot be read, or an index out of range. Other errors as for read_mesh_ply.
 TexturedMesh read_textured_ply(const std::filesystem::path& path,
                                const std::optional<LocalFrame>& frame = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: bounds-checked reading of little-endian binary files, shared by .mvs, .dmap,
-// binary PLY and COLMAP's binary models.
+// Private to libs/io: reads little-endian binary data with checks of the bounds. The readers of
+// .mvs, .dmap, binary PLY and COLMAP's binary models use this class.
 #pragma once
 
 #include <bit>
@@ -20,9 +20,9 @@ namespace axial::io {
 
 static_assert(std::endian::native == std::endian::little, "the file readers assume little-endian");
 
-// Reads values one after the other. `bytes` must outlive the reader. Every reading function takes
-// the name of the field, which appears in the Error that the function throws if the bytes end too
-// early.
+// Reads values one after the other. The bytes given to the constructor must outlive the reader. If
+// the bytes end too early, a reading function throws an Error that contains the names of the file
+// and of the field. The caller passes the name of the field in `field`.
 class ByteReader {
  public:
   ByteReader(std::string_view bytes, std::string file) : bytes_(bytes), file_(std::move(file)) {}
@@ -31,7 +31,7 @@ class ByteReader {
   std::size_t position() const { return position_; }
   std::size_t left() const { return bytes_.size() - position_; }
 
-  // The next `size` bytes.
+  // Reads and returns the next `size` bytes.
   std::string_view take(std::size_t size, std::string_view field) {
     if (size > left())
       fail("{}: truncated: {} needs {} bytes at byte {}, but {} are left", file_, field, size,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: lines and tokens of text files.
+// Private to libs/io: reads the lines and tokens of text files.
 #pragma once
 
 #include <algorithm>

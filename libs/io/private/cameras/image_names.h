@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: how the files beside a scene refer to images. An image is identified by its
-// whole name, a path. An entry may be the end of a path if only one image has that end.
+// Private to libs/io: entries by which the files beside a scene refer to images. The name of an
+// image is a path. The key of an entry is a whole name, or the end of a name. An end may be used if
+// only one image has it.
 #pragma once
 
 #include <map>
@@ -12,25 +13,27 @@
 
 namespace axial::io {
 
-// Maps an image's name, or the end of its path in whole components, to a value.
+// Entries: each maps the name of an image, or the end of a name in whole path components, to a
+// value.
 using ByImage = std::map<std::string, std::string>;
 
-// Returns the entry that matches the longest end of `image_name`; `entries.end()` if none does.
-// Only entries_of_all checks whether the same entry matches other images.
+// Returns the entry that matches the longest end of `image_name`; `entries.end()` if no entry
+// matches. This function does not check whether the entry also matches other images.
+// entries_of_all checks this.
 ByImage::const_iterator entry_of(const ByImage& entries, const std::string& image_name);
 
-// Returns the entry of each image; `entries.end()` if it has none. The entry with the longest
-// matching end is taken, except that an entry that is the whole name of another image does not
-// count. Error that starts with `where` and the entry, and names two images, if several images
-// share an entry that is the whole name of none.
+// Returns the entry of each image in `names`; `entries.end()` for an image without an entry. The
+// entry of an image is the entry that matches the longest end of its name. An entry that is the
+// whole name of another image does not count. Error that starts with `where` and the entry, and
+// names two images, if images with different names share an entry.
 std::vector<ByImage::const_iterator> entries_of_all(const ByImage& entries,
                                                     std::span<const std::string> names,
                                                     const std::string& where);
 
-// Returns entries that give every image its value: image i has the path `paths[i]`, the name
-// `names[i]`, which is the end of that path, and the value `values[i]`. Images without an entry get
-// the value `otherwise`, so an entry is written only where it is needed. If two images share a
-// name, the entry of the second one is its whole path.
+// Returns entries that give every image its value. Image i has the path `paths[i]` and the value
+// `values[i]`. Its name `names[i]` is the end of its path. Readers give an image without an entry
+// the value `otherwise`. The result therefore contains only entries that are needed. If two images
+// share a name and need entries, the key of the second image's entry is its whole path.
 ByImage entries_for(const std::vector<std::string>& names, const std::vector<std::string>& paths,
                     const std::vector<std::string>& values, const std::string& otherwise);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: the distortion of a lens in JSON (lens files of scenes, side files of depth
-// maps).
+// Private to libs/io: reads and writes the distortion of a lens in JSON. The lens files of scenes
+// and the side files of depth maps contain such distortions.
 #pragma once
 
 #include "private/cameras/port_json.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: a port in JSON (housing files, side files of depth maps).
+// Private to libs/io: reads and writes a port in JSON. Housing files and the side files of depth
+// maps contain such ports.
 #pragma once
 
 #include <initializer_list>
@@ -29,22 +30,25 @@ struct JsonPlace {
 // a wrong unit.
 inline constexpr double kLongestGap = 1;
 
-// Reads a port. Error for an unknown key, values that are not possible, a flat port farther than
-// `longest_gap` [m] from the camera, or a type other than "flat" and "dome". A normal whose length
-// differs from 1 by more than 1e-6 is normalised with a warning.
+// Read and write a port of the type "flat" or "dome". Reading gives an Error for an unknown key,
+// another type, values that are not possible, or a flat port farther than `longest_gap` [m] from
+// the camera. A normal whose length differs from 1 by more than 1e-6 is normalised with a warning.
 refractive::Port<double> port_from_json(const JsonPlace& place, double longest_gap = kLongestGap);
 nlohmann::json port_to_json(const refractive::Port<double>& port);
 
-// Functions for the type "water-surface".
+// Recognise, read and write a port of the type "water-surface". Reading gives an Error for an
+// unknown key and for values that are not possible.
 bool is_water_surface(const JsonPlace& place);
 WaterSurface water_surface_from_json(const JsonPlace& place);
 nlohmann::json water_surface_to_json(const WaterSurface& surface);
 
-// Returns `n` normalised; unchanged if its length is 1 up to rounding. Warns if the length differs
-// from 1 by more than 1e-6. Error that starts with `where` if `n` is almost zero or not finite.
+// Returns `n` normalised. If the length differs from 1 by no more than rounding (1e-15), `n` is
+// returned unchanged. Warns if the length differs from 1 by more than 1e-6. Error that starts with
+// `where` if the length is not above 1e-6 or not finite.
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& n, const std::string& where);
 
-// Error that starts with `where` for values that are not possible: see read_housing (housing.h).
+// Error that starts with `where` for values that are not possible. The comment of read_housing
+// (housing.h) lists these values.
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_water_surface(const WaterSurface& surface, const std::string& where);
 

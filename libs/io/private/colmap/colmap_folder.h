@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: finds the files of a folder that hold its COLMAP model.
+// Private to libs/io: determines which files in a folder hold its COLMAP model.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,8 @@ namespace axial::io {
 
 enum class ModelForm { text, binary };
 
-// The file of one part ("cameras", "images" or "points3D") in `form`.
+// Returns the path of the file that holds one part of a model in `form`. `part` is "cameras",
+// "images" or "points3D".
 std::filesystem::path part_file(const std::filesystem::path& folder, const std::string& part,
                                 ModelForm form);
 
@@ -23,18 +24,21 @@ bool has_part(const std::filesystem::path& folder, const std::string& part, Mode
 // True if the folder holds all three parts in `form`.
 bool holds_model(const std::filesystem::path& folder, ModelForm form);
 
-// Chooses the form as COLMAP does, for the whole folder and not for each file: binary if the binary
-// model is complete, otherwise text if the text model is complete. Error that names the missing
-// files of both forms.
+// Returns the form in which a model is read, as COLMAP chooses it. First, the form is binary if the
+// binary model is complete. Otherwise the form is text if the text model is complete. All files of
+// a model are read in one form. Error that names the missing files of both forms if no model is
+// complete.
 ModelForm model_form(const std::filesystem::path& folder);
 
-// The form in which the cameras are read: the form of the model if it is complete, otherwise the
-// form of the cameras file that exists (binary if both exist). Error if there is no cameras file.
+// Returns the form in which the cameras are read. First, if a model is complete, the form is that
+// of model_form. Otherwise the form is that of the cameras file that exists, or binary if both
+// files exist. Error if there is no cameras file.
 ModelForm cameras_form(const std::filesystem::path& folder);
 
-// Warns, in one line, of files in the other form than `read` whose content differs from the model,
-// or which cannot be read. The order of the elements does not matter, nor do differences up to 1e-9
-// (relative for values above 1).
+// Warns, in one line, of files that are ignored although their contents differ from `model` or
+// `cameras`. `read` is the form that was read. The ignored files are those of the other form. A
+// file that cannot be read counts as different. The order of cameras, images and points does not
+// matter. Numbers a and b count as equal if |a - b| <= 1e-9 max(1, |a|, |b|).
 void warn_of_ignored_files(const std::filesystem::path& folder, ModelForm read,
                            const ColmapModel& model);
 void warn_of_ignored_cameras(const std::filesystem::path& folder, ModelForm read,

@@ -17,10 +17,11 @@ namespace axial::io {
 // Who writes the files: COLMAP, or COLMAP-Underwater, whose cameras may have ports.
 enum class Dialect { colmap, underwater };
 
-// The name of a camera model by its number in binary files; empty if unknown. Number 11 is a
-// different model in each dialect.
+// Returns the name of the camera model that has the number `id` in binary files; empty if the
+// number is unknown. The number 11 stands for a different model in each dialect.
 std::string_view colmap_model_name(int id, Dialect dialect);
-// The number of a camera model by its name; -1 if the dialect does not have the model.
+// Returns the number of the camera model `name` in binary files; -1 if the dialect does not have
+// the model.
 int colmap_model_id(std::string_view name, Dialect dialect);
 
 // Quaternion (w, x, y, z) and translation of the transformation from world to camera.

@@ -23,9 +23,9 @@ struct DistortedImage {
   bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold the pixels
 };
 
-// Returns the name of the undistorted image, relative to its folder. Names that end in ".png" stay;
-// JPEG names stay if a JPEG can hold the pixels. ".png" is appended to all other names, so that
-// a.tif and a.bmp get different names.
+// Returns the path of the undistorted image, relative to the folder of undistorted images. Names
+// that end in ".png" stay. JPEG names stay if a JPEG can hold the pixels. ".png" is appended to all
+// other names, so that a.tif and a.bmp get different names.
 std::filesystem::path undistorted_name(const DistortedImage& image);
 
 // Error that starts with `model_folder` and names both images if two of `images` would be
@@ -34,10 +34,10 @@ std::filesystem::path undistorted_name(const DistortedImage& image);
 void require_apart(std::span<const DistortedImage> images,
                    const std::filesystem::path& model_folder);
 
-// Writes the undistorted images below `folder` under undistorted_name, each with its mask beside
-// it. The images of one camera should follow each other: an undistortion map stays in memory from
-// the first to the last image of its camera. If images cannot be read or written, throws the error
-// of the first such image in the given order.
+// Writes the undistorted images below `folder`, each with its mask beside it. undistorted_name
+// gives the path of each image. The images of one camera should be consecutive in `images`: an
+// undistortion map stays in memory from the first to the last image of its camera. If images cannot
+// be read or written, the function throws the error of the image that comes first in `images`.
 void undistort_images(std::span<const DistortedImage> images, const std::filesystem::path& folder,
                       const ProgressSink& progress);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: decodes images with the library of each format. OpenCV can decode these
-// formats too, but it rotates pixels, drops alpha and lets the libraries print messages. Every
-// function throws an Error of one line that names `path` for damaged bytes and for features that
-// are not supported.
+// Private to libs/io: decodes JPEG, PNG and TIFF images with the library of each format. OpenCV can
+// decode these formats too, but OpenCV rotates pixels, drops alpha and lets the libraries print
+// messages. Every function with an argument `path` throws an Error of one line that names `path`
+// for damaged bytes and for features that are not supported.
 #pragma once
 
 #include <filesystem>
@@ -22,13 +22,14 @@ bool is_jpeg(std::string_view bytes);
 bool is_png(std::string_view bytes);
 bool is_tiff(std::string_view bytes);
 
-// Error for a truncated file: a JPEG without an end marker, or a PNG without a complete end chunk.
+// Error for a truncated file. A JPEG is truncated if it has no end marker. A PNG is truncated if it
+// has no complete end chunk.
 void refuse_truncated_jpeg(std::string_view bytes, const std::filesystem::path& path);
 void refuse_truncated_png(std::string_view bytes, const std::filesystem::path& path);
 
 ImageHeader jpeg_header(std::string_view bytes, const std::filesystem::path& path);
 ImageHeader png_header(std::string_view bytes, const std::filesystem::path& path);
-// Also an Error if the file is shorter than its TIFF directory says.
+// Error also if the file is shorter than its TIFF directory says.
 ImageHeader tiff_header(std::string_view bytes, const std::filesystem::path& path);
 
 Photograph decode_jpeg(std::string_view bytes, const std::filesystem::path& path);
@@ -42,8 +43,8 @@ cv::Mat decode_png_labels(std::string_view bytes, const std::filesystem::path& p
 // Error if a photograph of this size has too many pixels (more than 2^30).
 void check_image_size(cv::Size size, const std::filesystem::path& path);
 
-// ImageHeader::decode_bytes for a format whose pixels are all decoded, then converted, then reduced
-// to 8 bits.
+// Returns ImageHeader::decode_bytes for a format whose decoder holds the whole image in memory. All
+// pixels are first decoded, then converted, then reduced to 8 bits.
 unsigned bytes_as_a_whole(const ImageHeader& header);
 
 // Converts pixels (B G R, or B G R and alpha) of 8 or 16 bits to a photograph.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: conversion between z-depth, which .dmap files hold, and lambda, the distance
-// along the pixel's ray (see DepthMap).
+// Private to libs/io: converts between z-depth and lambda. Z-depth is the depth in .dmap files.
+// Lambda is the distance along the ray of a pixel (see DepthMap).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -23,12 +23,13 @@ struct DepthAlongRay {
 // The ray of the image centre.
 DepthAlongRay centre_ray(const CameraModel& camera);
 
-// Return the given map with every valid value converted to z-depth or to lambda. Error that starts
-// with `file` if a value or a result is not finite or not positive.
+// z_depth_of converts a map of lambda to z-depth. lambda_of converts a map of z-depth to lambda.
+// The value 0 means no depth and stays 0. Error that starts with `file` if another value or its
+// result is not finite or not positive.
 cv::Mat1f z_depth_of(const cv::Mat1f& lambda, const CameraModel& camera, const std::string& file);
 cv::Mat1f lambda_of(const cv::Mat1f& z_depth, const CameraModel& camera, const std::string& file);
 
-// The range [low, high], extended to contain all valid depths.
+// Returns the range [low, high], extended so that it contains all positive values of `depth`.
 std::pair<float, float> enclosing(double low, double high, const cv::Mat1f& depth);
 
 }  // namespace axial::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: the bytes of a .dmap file, without its side file (docs/formats.md). Depths
-// here are z-depths as in the file, the camera has no port, and the image's name is that in the
-// file.
+// Private to libs/io: reads and makes the bytes of a .dmap file, without the side file
+// (docs/formats.md). In the maps that the functions below read, depths are z-depths, the camera has
+// no port, and `image_path` is the name that the file stores.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace axial::io {
 
 struct DmapHeader {
   DepthMap map;              // without pixels; the camera has the depth map's resolution
-  std::uint8_t content = 0;  // which images follow
+  std::uint8_t content = 0;  // flags of the pixel arrays that follow the header
 
   std::uint64_t pixels() const {
     return static_cast<std::uint64_t>(map.camera.width) *
@@ -26,15 +26,16 @@ struct DmapHeader {
   std::uint64_t bytes_of_pixels() const;
 };
 
-// Error that names the file for a truncated or malformed header.
+// Parses the header. Error that names the file for a truncated or malformed header.
 DmapHeader parse_dmap_header(ByteReader& in);
 
-// Parses a whole file. Errors as for parse_dmap_header, and for pixels that are not finite or too
-// few or too many bytes.
+// Parses a whole file. Errors as for parse_dmap_header, and an Error for pixels that are not
+// finite, too few bytes, or too many bytes.
 DepthMap parse_dmap(ByteReader& in);
 
-// Returns the bytes of a file with the normals, confidences, ids, lens and pose of `map`. `image`
-// is the name in the file, at most 65535 bytes, and `range` that of the z-depths.
+// Returns the bytes of a file. `map` gives the normals, confidences, ids, lens and pose. `z_depth`
+// gives the depths and `range` their smallest and largest value. `image` is the name of the image
+// to store. The caller must check that `image` has at most 65535 bytes.
 ByteWriter format_dmap(const DepthMap& map, const cv::Mat1f& z_depth,
                        const std::pair<float, float>& range, const std::string& image);
 

@@ -20,7 +20,8 @@ struct DmapSideFile {
 
 std::filesystem::path dmap_side_path(const std::filesystem::path& dmap);
 
-// Nothing if there is no such file. Error if the file is malformed.
+// Reads the side file of the depth map `dmap`. Returns nothing if there is no side file. Error if
+// the side file is malformed.
 std::optional<DmapSideFile> read_dmap_side_file(const std::filesystem::path& dmap);
 
 void write_dmap_side_file(const std::filesystem::path& dmap, const DmapSideFile& side);

@@ -15,7 +15,7 @@
 
 namespace axial::io {
 
-inline constexpr std::uint32_t kMvsVersion = 7;  // the newest known; the one written
+inline constexpr std::uint32_t kMvsVersion = 7;  // the newest version read; the version written
 
 // Sizes in the file [bytes]. A string or a list starts with its length.
 namespace mvs_bytes {
@@ -55,8 +55,8 @@ struct MvsBox {
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
 };
 
-// The contents of a file. Lines and the transform are skipped: AxialMVS does not use them, nor does
-// OpenMVS 2.3.
+// The contents of a file, without its lines and its transform. Neither AxialMVS nor OpenMVS 2.3
+// uses the lines and the transform.
 struct MvsFile {
   std::vector<MvsPlatform> platforms;
   std::vector<MvsImage> images;
@@ -70,7 +70,7 @@ struct MvsFile {
 // too few or too many bytes.
 MvsFile parse_mvs(std::string_view bytes, const std::string& file);
 
-// The bytes of version 7.
+// Returns the bytes of a file of version 7.
 std::string format_mvs(const MvsFile& mvs);
 
 }  // namespace axial::io

@@ -9,8 +9,9 @@
 
 namespace axial::io {
 
-// Returns `r`, made orthonormal if rounding in the file left it inexact. Error that starts with
-// `where` if it is not finite, an element of R R^T differs from I by more than 1e-3, or det R < 0.
+// Returns a rotation for the matrix `r`. Let d be the largest absolute element of r r^T - I. If d
+// is less than 1e-9, the result is `r`. Otherwise the result is the orthonormal matrix nearest to
+// `r`. Error that starts with `where` if `r` is not finite, if d exceeds 1e-3, or if det r < 0.
 Eigen::Matrix3d checked_rotation(const Eigen::Matrix3d& r, const std::string& where);
 
 }  // namespace axial::io

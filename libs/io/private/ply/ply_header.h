@@ -43,22 +43,22 @@ struct PlyHeader {
 // Parses the header. Error that names `file` if it is not well-formed.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file);
 
-// Reads the values of the body, in any of the three formats, as double, which holds all PLY types
-// exactly.
+// Reads the values of the body, in any of the three formats. Values are returned as double, because
+// a double holds the values of all PLY types exactly.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header);
 
-  // Error if the bytes left cannot hold the declared rows of `element`. Call this before reading
-  // the rows; afterwards memory can be allocated for the count.
+  // Error if the bytes left cannot hold the declared rows of `element`. Call this function before
+  // memory is allocated for `element.count` rows: the count of a damaged file may be huge.
   void require_rows(const PlyElement& element) const;
 
   // Reads one value. Error if the bytes end or a value does not fit its type. Infinite and NaN
   // values are returned.
   double scalar(PlyType type, const std::string& name);
 
-  // Reads the length of a list; the caller reads its values next. Error if the bytes left cannot
-  // hold them.
+  // Reads the length of a list. The caller must read the values of the list next. Error if the
+  // bytes left cannot hold these values.
   std::size_t list_size(const PlyProperty& property);
 
   // Error if data follow the last element.
