@@ -11,10 +11,11 @@
 namespace axial {
 
 // A file that is being written. The caller writes to temporary(), a file in the same folder as
-// `path`; commit() renames it to `path`. Without commit() the destructor removes the temporary, and
-// `path` keeps its old content. The name of the temporary has the extension of `path`, because some
-// libraries choose the format by the extension. The constructor removes temporaries that killed
-// processes left of the same `path` (see remove_abandoned).
+// `path`. commit() renames the temporary file to `path`. Without commit() the destructor removes
+// the temporary file, and `path` keeps its old content. The name of the temporary file has the
+// extension of `path`, because some libraries choose the format by the extension.
+// If an earlier process was killed while it wrote `path`, its temporary file is still in the
+// folder. The constructor removes such files (see remove_abandoned).
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -25,47 +26,54 @@ class AtomicFile {
   const std::filesystem::path& path() const { return path_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  // Flushes the temporary to the disk and renames it to `path`. Call it after the temporary has
-  // been closed. Throws an Error that names `path` if either step fails.
+  // Flushes the temporary file to the disk and renames it to `path`. The caller must close the
+  // temporary file before the call. Throws an Error that names `path` if either step fails.
   void commit();
 
  private:
   std::filesystem::path path_, temporary_;
 };
 
-// Writes `path` through a temporary file in the same folder. `write` gets the temporary's name and
-// must close the file before it returns. Then the temporary is flushed to the disk and renamed to
-// `path`. On any failure (unwritable folder, full disk, exception from `write`) the temporary is
-// removed, `path` keeps its old content, and an Error that names `path` is thrown. Only
-// std::bad_alloc is passed on as it is.
+// Writes `path` through a temporary file in the same folder. `write` gets the name of the temporary
+// file and must close the file before it returns. Then the temporary file is flushed to the disk
+// and renamed to `path`. On any failure (unwritable folder, full disk, exception from `write`) the
+// temporary file is removed, `path` keeps its old content, and an Error that names `path` is
+// thrown. Exception: a std::bad_alloc from `write` is thrown on unchanged.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-// As above for several files. They are renamed after all of them have reached the disk. `write`
-// gets the temporaries' names, in the order of `paths`. An Error from `write` is thrown on with the
-// final names in place of the temporaries' names.
+// Writes several files through temporary files. `write` gets the names of the temporary files, in
+// the order of `paths`, and must close the files before it returns. First all temporary files are
+// flushed to the disk, then they are renamed one after the other. If `write` or a flush fails, all
+// files of `paths` keep their old content. In the message of an Error from `write`, each name of a
+// temporary file is replaced by the final name. Other exceptions from `write` are thrown on
+// unchanged.
 void write_together(
     const std::vector<std::filesystem::path>& paths,
     const std::function<void(const std::vector<std::filesystem::path>& temporaries)>& write);
 
-// As above for all files that `write` leaves in the folder `staging` and in its subfolders. `write`
-// gets the name of `staging`. If `folder` does not exist, it appears at once with all its files. If
-// it exists, its other files stay. Files that are to be replaced are removed before the first new
-// file is moved to its place: if the process is killed in between, some files are missing, but old
-// and new files are never mixed. On failure throws an Error that names `folder` or the file.
+// Writes the files of a folder through a temporary folder, `staging`. `write` gets the name of
+// `staging` and creates the files in it and in its subfolders. If `folder` does not exist,
+// `staging` is renamed to `folder`, so that `folder` appears at once with all its files. If
+// `folder` exists, the new files are moved into it one by one, and its other files stay. Files with
+// the names of new files are removed before the first new file is moved. If the process is killed
+// in between, some of these files are missing, but none of the old ones is left among the new ones.
+// A failed file operation throws an Error that names `folder` or the file. In the message of an
+// Error from `write`, the name of `staging` is replaced by the name of `folder`.
 void write_folder(const std::filesystem::path& folder,
                   const std::function<void(const std::filesystem::path& staging)>& write);
 
-// Writes `bytes` to `path`, with the guarantees of the first write_atomically().
+// Writes `bytes` to `path`, with the guarantees of write_atomically() above.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// Throws the Error of write_atomically() if `path` cannot be written, so that a program can fail
-// before hours of work. It creates a temporary file in the same folder and removes it again. It
-// also removes temporaries that killed processes left of `path`.
+// Throws the Error of write_atomically() if `path` cannot be written. A program can call it before
+// hours of work. The test creates a temporary file in the same folder and removes it again. If an
+// earlier process was killed while it wrote `path`, its temporary file is still in the folder.
+// require_writable() removes such files.
 void require_writable(const std::filesystem::path& path);
 
-// The same for write_folder(). `folder` and its parents need not exist, because write_folder()
-// creates them: the test is made in the deepest folder of the path that exists.
+// The same test for write_folder(). `folder` and its parents need not exist, because write_folder()
+// creates them. The test creates its temporary file in the deepest existing folder of the path.
 void require_writable_folder(const std::filesystem::path& folder);
 
 // Creates `folder` and its parents where they are missing. Throws an Error that names `folder` if
@@ -77,8 +85,8 @@ void make_folder(const std::filesystem::path& folder);
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
 // Removes temporary files and folders that killed processes left in `folder`, if their final names
-// begin with `prefix`. The name of a temporary contains the number of its process. Temporaries of
-// running processes stay.
+// begin with `prefix`. The name of a temporary file contains the number of the process that created
+// it. Temporary files of running processes stay.
 void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix);
 
 }  // namespace axial

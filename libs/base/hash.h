@@ -11,9 +11,9 @@
 
 namespace axial {
 
-// Collects bytes into a 128-bit XXH3 fingerprint, printed as 32 hex digits. It identifies the
-// inputs from which a file was made. It is chosen for speed, since it reads whole files, and is not
-// secure against intended collisions.
+// Collects bytes into a 128-bit XXH3 fingerprint, printed as 32 hex digits. The fingerprint
+// identifies the inputs from which a file was made. XXH3 was chosen for speed, because whole files
+// are read. It is not secure against intended collisions.
 class Fingerprint {
  public:
   Fingerprint();
@@ -29,8 +29,9 @@ class Fingerprint {
   std::unique_ptr<State> state_;
 };
 
-// A bijective scramble of 64 bits (the splitmix64 finaliser). It gives random numbers from a key
-// such as (image, pixel, sweep, trial), so that they do not depend on the order of evaluation.
+// A bijective map of 64 bits to 64 bits (the splitmix64 finaliser). Applied to a key such as
+// (image, pixel, sweep, trial), it gives random numbers that do not depend on the order of
+// evaluation.
 constexpr std::uint64_t scramble(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -38,7 +39,7 @@ constexpr std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// A number in [0, 1) from the upper 24 bits. It is uniform if the bits are.
+// A number in [0, 1) from the upper 24 bits. The number is uniformly distributed if the bits are.
 constexpr float unit_float(std::uint64_t bits) {
   return static_cast<float>(bits >> 40) * (1.0f / 16777216.0f);
 }

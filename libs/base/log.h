@@ -22,15 +22,15 @@ LogLevel log_level();
 // Whether lines of `level` are written.
 bool logs(LogLevel level);
 
-// Starts the log: lines go to standard output as "HH:MM:SS [name] text". Each line is preceded by
-// `line_start`.
+// Starts the log. Lines go to standard output as "HH:MM:SS [name] text". `line_start` is written
+// before each line.
 void start_log(const std::string& name, const std::string& line_start);
 
 // Writes one line, unless `level` is below the log's level.
 void log_line(LogLevel level, std::string_view line);
 
-// The same for a format and its arguments, which are formatted only if the line is written. A
-// warning is shortened by as_message() (base/message.h).
+// The same for a format and its arguments. The line is formatted only if it is written. A warning
+// is shortened by as_message() (base/message.h).
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
 template <class... Args>
@@ -48,8 +48,8 @@ void log_details(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::trace, format, fmt::make_format_args(args...));
 }
 
-// Collects the log's lines of `info` and above while the object exists; they are not written. For
-// tests.
+// While the object exists, collects the log's lines of `info` and above instead of writing them.
+// For tests.
 class LogCapture {
  public:
   LogCapture();

@@ -8,12 +8,12 @@
 namespace axial {
 
 // The bytes that can be allocated without swapping: the smaller of the system's MemAvailable and
-// the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains proc and
-// sys, which tests replace. Throws an Error if the system does not report MemAvailable.
+// the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains the folders
+// proc and sys; tests give another one. Throws an Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
-// The bytes of this process that are in memory now, including its code and its libraries. Differs
-// by some pages from run to run.
+// The bytes of this process that are in memory now, including its code and its libraries. The
+// number differs by some pages from run to run.
 std::uint64_t resident_memory();
 
 // The bytes that this process has allocated from the C library and not freed. Large blocks of
@@ -26,14 +26,16 @@ std::uint64_t allocated_memory();
 // threads interleaves. Call it before the first thread starts.
 void share_one_heap();
 
-// From now on every block of a megabyte or more comes directly from the system and is returned to
-// it when freed. By default the C library takes such blocks from its heaps once it has freed one,
-// and leaves holes between them whose size depends on how the work of the threads interleaves.
+// From now on every block of 1 MiB or more comes directly from the system and is returned to the
+// system when it is freed. By default the C library raises this limit: after it has freed a block
+// that came directly from the system, it takes blocks of up to that size from its heaps. Freed
+// blocks then leave holes in the heaps. The size of the holes depends on how the work of the
+// threads interleaves.
 void map_large_blocks();
 
-// Returns memory to the system that this process has freed and that the C library keeps for reuse,
-// in the heaps of all threads. Call it at the end of a stage if the next stage needs blocks of
-// other sizes.
+// Returns to the system the memory that this process has freed and that the C library keeps for
+// reuse, in the heaps of all threads. Call it at the end of a stage if the next stage needs blocks
+// of other sizes.
 void return_freed_memory();
 
 }  // namespace axial

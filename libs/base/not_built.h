@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of OpenMVS's programs that scripts pass but that are not built. They are declared, so
-// that scripts which pass their defaults work, and every other value is refused.
+// Options of OpenMVS's programs whose function is not built here, but which scripts pass. Each of
+// these options is declared and accepts only its default. So scripts that pass the default work,
+// and every other value is refused.
 #pragma once
 
 #include <span>
@@ -20,7 +21,8 @@ struct NotBuilt {
 // Declares `options`, which must exist until parse_options() has returned.
 void declare_not_built(OptionList& list, std::span<NotBuilt> options);
 
-// Error that names the option and the value, if a value is not accepted.
+// Throws an Error that names the option and the value if an option has a value that is not
+// accepted.
 void refuse_not_built(std::span<const NotBuilt> options);
 
 }  // namespace axial

@@ -30,21 +30,21 @@ class OptionList {
   // `title` is the headline in --help.
   explicit OptionList(std::string title) : title_(std::move(title)) {}
 
-  // Adds an option without a default, or with a default that `help` explains. A vector takes the
+  // Adds an option that has no default, or whose default is explained in `help`. A vector takes the
   // values of all occurrences of the option.
   OptionList& add(const char* name, OptionTarget target, const char* help) {
     options_.push_back({name, target, help});
     return *this;
   }
 
-  // Adds an option whose default is the value that the target has now. Not for vectors.
+  // Adds an option whose default is the present value of the target. Not for vectors.
   OptionList& add_with_default(const char* name, OptionTarget target, const char* help) {
     options_.push_back({name, target, help, true});
     return *this;
   }
 
-  // Adds a bool option whose default is the value that the target has now, and whose value may be
-  // omitted on the command line: "--quick" means "--quick 1".
+  // Adds a bool option whose default is the present value of the target. The value may be omitted
+  // on the command line: "--quick" means "--quick 1".
   OptionList& add_switch(const char* name, bool* target, const char* help) {
     options_.push_back({name, target, help, true, true});
     return *this;

@@ -10,20 +10,20 @@
 
 namespace axial {
 
-// Calls body(i) for every i in [0, count), in any order, on any thread, and returns when all have
-// returned. The first exception that a body throws is rethrown here; items that have not begun may
-// then be left out. `grain`: the largest number of consecutive items that a thread takes at once.
-// If loops are nested, a thread that waits for the end of the inner loop does not begin another
-// item of the outer loop. So no thread holds the memory of two items of the outer loop.
+// Calls body(i) for every i in [0, count), in any order, on any thread. Returns when all calls have
+// returned. If calls throw, the first exception is rethrown here, and items that have not begun may
+// be left out. `grain`: the largest number of consecutive items that a thread takes at once. If
+// loops are nested, a thread that waits for the end of the inner loop does not begin another item
+// of the outer loop. So no thread holds the memory of two items of the outer loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
 // `grain` for items as short as the work on one point or one pixel.
 inline constexpr std::size_t kPointGrain = 1024;
 
-// Calls body(i) for every i in [0, count). Items begin in the order of i, and at most `in_flight`
-// of them (at least 1) run at the same time. For items that need much memory. The items may use
-// parallel loops themselves.
+// Calls body(i) for every i in [0, count). This loop is for items that need much memory. The items
+// begin in the order of i. No more than `in_flight` items run at the same time; 0 is raised to 1.
+// The items may use parallel loops themselves.
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 

@@ -30,7 +30,8 @@ struct ProgramOptions {
   // Options of this program, allowed on the command line and in the cfg file.
   OptionList visible{"Options"};
   OptionList hidden{"Hidden options"};
-  // For --help: ", ..." names the additional output of this program with -v 3 and above.
+  // Text that --help appends to "3 and above: also details". It has the form ", ..." and names the
+  // output that this program adds at -v 3 and above.
   std::string when_verbose = "";
   std::string version = "";  // the line that --version prints (base/version.h)
 };
@@ -60,13 +61,13 @@ ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOpti
 // True if the user gave the option of this full name, on the command line or in the cfg.
 bool given(const ParsedOptions& parsed, const std::string& name);
 
-// The absolute path of `path`, which may be relative to the working folder. An empty path stays
-// empty.
+// Returns `path` as an absolute path. A relative `path` starts at the working folder. An empty path
+// stays empty.
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
 
-// Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns its result.
-// An exception becomes one line on standard error (base/message.h) and the result 1. A program that
-// links this function also opens closed standard streams when it starts
+// Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns the result of
+// `body`. An exception from `body` becomes one line on standard error (base/message.h), and the
+// result is 1. A program that links this function also opens closed standard streams when it starts
 // (base/standard_streams.h), and reports uncaught exceptions (base/out_of_memory.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 

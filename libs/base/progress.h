@@ -8,13 +8,14 @@
 
 namespace axial {
 
-// A stage calls it with the number of items done and of all items, from one thread at a time. May
-// be empty.
+// Receives the progress of a stage: the number of items done and the number of all items. The stage
+// calls the sink from one thread at a time. A stage accepts an empty sink and then reports nothing.
 using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
 
 // A sink that writes "<title> 3/10 (30%, 12s, 28s left)". On a terminal it overwrites the same
-// line; otherwise it logs a line every 5 seconds at most. Progress has the log level debug, the end
-// of the stage the level info. The sink writes nothing at a level that the log does not write.
+// line. Otherwise it logs a line every 5 seconds at most. The end of the stage is a line of its
+// own. Progress has the log level debug, and the end of the stage has the level info. The sink
+// writes nothing at a level that the log does not write.
 ProgressSink console_progress(const std::string& title);
 
 }  // namespace axial

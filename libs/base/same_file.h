@@ -9,9 +9,9 @@
 namespace axial {
 
 // Throws an Error that names `setting`, `output` and the input if `output` exists and is one of
-// `inputs`. Files are compared by device and inode, so that links are found too. Inputs that do not
-// exist and empty paths are ignored. For an input that is a folder, only the folder itself is
-// compared and not the files in it.
+// `inputs`. Files are compared by device and inode, so that links are found too. Empty paths and
+// inputs that do not exist are ignored. If an input is a folder, only the folder itself is
+// compared, and not the files in it.
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting);

@@ -51,8 +51,8 @@ class SharedCache {
                         [&](const Entry& entry) { return entry.key == key; });
   }
 
-  // The future of the value of `key`. It is invalid if there was no entry: then `promise` has been
-  // entered for `key`, and the caller must fulfil it.
+  // The future of the value of `key`. If there was no entry for `key`, the future is invalid: then
+  // this function has entered `promise` for `key`, and the caller must fulfil the promise.
   std::shared_future<Pointer> enter(std::size_t key, std::promise<Pointer>& promise) {
     const std::lock_guard lock(mutex_);
     if (const auto found = find(key); found != recent_.end()) {

@@ -6,8 +6,9 @@
 
 namespace axial {
 
-// Returns the words of a list: "1,2," has the words "1", "2" and "". An empty text has no words.
-// The words refer to the characters of `text`.
+// Returns the words of `text`, which are separated by `separator`. With the separator ',' the text
+// "1,2," has the words "1", "2" and "". An empty text has no words. The words refer to the
+// characters of `text`.
 inline std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> words;
   if (text.empty()) return words;

@@ -8,16 +8,18 @@
 
 namespace axial {
 
-// Runs `command`: a program, which is searched in PATH unless its name has a slash, and its
-// arguments. Standard input is empty; standard output and error go to the file `log`. If the
-// program does not end with exit code 0, throws an Error with its name, the name of the log and the
-// last line of the log. Also throws an Error if the program cannot be started. The program is
-// killed if the calling thread ends first.
+// Runs a program and waits for its end. `command`: the program, followed by its arguments. A
+// program whose name has no slash is searched in PATH. Standard input is empty. Standard output and
+// standard error go to the file `log`. Throws an Error if the program cannot be started. If the
+// program does not end with exit code 0, throws an Error that contains the name of the program, the
+// name of the log and the last line of the log. The program is killed if the calling thread ends
+// first.
 void run_subprocess(const std::vector<std::string>& command, const std::filesystem::path& log);
 
-// The same, but returns false if the program ends with exit code 1 and its log contains one of
-// `excuses`. An excuse is a text by which the program says that it found nothing, which the caller
-// does not treat as an error. Returns true if the exit code is 0.
+// The same, but an excused failure is not an error. A failure is excused if the program ends with
+// exit code 1 and its log contains one of the texts `excuses`. An excuse is a text by which a
+// program says that it found nothing. Returns true for exit code 0, and false for an excused
+// failure.
 bool run_unless_excused(const std::vector<std::string>& command, const std::filesystem::path& log,
                         const std::vector<std::string>& excuses);
 

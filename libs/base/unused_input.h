@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Input that the user gave and that a program cannot use, because the data it refers to are
-// missing.
+// Input that the user gave, but that a program cannot use because it refers to missing data.
 #pragma once
 
 #include <string>
@@ -10,24 +9,25 @@
 
 namespace axial {
 
-// Treats unused input as an error, or where it is allowed as a warning.
+// Reports unused input. If unused input is allowed, a report is a warning, otherwise an error.
 class UnusedInput {
  public:
   // Adds the option --allow-missing to `list`, bound to `allowed`. `allowed` must exist until the
   // options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
-  // For a program with this option.
+  // For a program that has the option --allow-missing.
   explicit UnusedInput(bool allowed);
 
   // For a library: `setting` is the name of the setting that allows unused input.
   UnusedInput(bool allowed, std::string setting);
 
-  // Reports one unused input. `line` names the setting, the input and the reason. Throws an Error
-  // with this line, or if allowed logs it as a warning and keeps it.
+  // Reports one unused input. `line` names the setting, the input and the reason. If unused input
+  // is allowed, logs a warning that begins with `line`, and keeps `line`. Otherwise throws an Error
+  // whose message begins with `line`.
   void report(const std::string& line);
 
-  // The lines of the warnings, in the order of the reports.
+  // The lines that were reported as warnings, in the order of the reports.
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:

@@ -21,22 +21,25 @@ struct Limits {
   double thickness = 0.002;  // [m]
 };
 
-// The gaps of the photographs, as texts that continue "no photograph shows": corners near an edge
-// of the image, a tilted board, a second distance. Empty without gaps.
+// The gaps of the photographs. Each text continues the sentence "no photograph shows". There are
+// three kinds of gaps: corners near an edge of the image, a tilted board, and a second distance.
+// Empty if there is no gap.
 std::vector<std::string> gaps(const Calibration& calibration);
 
-// The most useful next photograph: of placed_boards(), the one with which the largest ratio of a
-// standard deviation to its limit is smallest. No board is closer than 0.8 times the distance
-// of the nearest board in the photographs, since closer boards may be out of focus. Empty if no
-// board fits into the image.
+// The most useful next photograph. The candidates are placed_boards(). Let the ratio of a number be
+// its standard deviation with the candidate added, divided by the limit of the number. The result
+// is the candidate with which the largest ratio is smallest. No candidate is closer than 0.8 times
+// the distance of the nearest board in the photographs, because a closer board may be out of focus.
+// Empty if no candidate fits into the image, or if no candidate gives a finite largest ratio.
 struct NextPhotograph {
   PlacedBoard board;
   pose::HousingChange<double> sigmas;  // standard deviations with this photograph added
 };
 std::optional<NextPhotograph> next_photograph(const Calibration& calibration, const Limits& limits);
 
-// Error if a number has a standard deviation above its limit. The message names the number, its
-// standard deviation, the gaps of the photographs, and the next photograph to take.
+// Throws an Error if a number has a standard deviation above its limit. The message names the
+// number with the largest ratio of standard deviation and limit, its standard deviation, the gaps
+// of the photographs, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
 // The place of the board in one image.

@@ -21,28 +21,28 @@ struct Board {
   std::string dictionary;  // of the markers, with OpenCV's name: "4X4_50", "APRILTAG_36h11"
 };
 
-// Reads
+// Reads a board from a text of one of these forms, with lengths in metres:
 //
 //     checkerboard:COLUMNSxROWS:SQUARE                     inner corners
 //     charuco:COLUMNSxROWS:SQUARE:MARKER[:DICTIONARY]      squares; default 4X4_50
-//     apriltags:COLUMNSxROWS:TAG:GAP[:DICTIONARY]          default APRILTAG_36h11
+//     apriltags:COLUMNSxROWS:TAG:GAP[:DICTIONARY]          tags; default APRILTAG_36h11
 //
-// with lengths in metres. Markers are numbered from 0, row by row. Error that names `text` and what
-// is wrong with it.
+// Markers are numbered from 0, row by row. If `text` has none of these forms, throws an Error that
+// contains `text` and the reason.
 Board parse_board(const std::string& text);
 
 // All corners [m], in the order of their numbers. ChArUco: the inner corners of the squares.
 // AprilTags: the four corners of each tag.
 std::vector<Eigen::Vector3d> corners_of(const Board& board);
 
-// One corner in a photograph; pixel centres at integers.
+// One corner in a photograph. The centres of pixels have integer coordinates.
 struct Corner {
   std::size_t number = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 
-// The corners in a photograph, to fractions of a pixel. Empty where no board is found. A
-// checkerboard must be visible completely; the other boards may be visible in part.
+// Returns the corners in a photograph, to fractions of a pixel. Empty if no board is found. A
+// checkerboard must be visible completely. The other boards may be visible in part.
 std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

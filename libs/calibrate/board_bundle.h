@@ -18,16 +18,17 @@ struct View {
   std::vector<Corner> corners;
 };
 
-// The views as images of one camera behind `port`. The board is the world frame, with `corners` [m]
-// by number as points. `poses` are the images' poses, or empty if they are unknown. An
-// observation's `source` is the corner's index within its view.
+// Returns a bundle with one camera behind `port` and the views as its images. The points of the
+// bundle are `corners` [m], in the order of their numbers. The frame of the board is the world
+// frame. `poses`: the poses of the images, or empty if they are unknown. The `source` of an
+// observation is the index of the corner within its view.
 pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                                 std::span<const View> views,
                                 std::span<const Eigen::Vector3d> corners,
                                 std::span<const Pose> poses = {});
 
-// The corners that the camera of `bundle` images at `pose`, at least one pixel inside the
-// photograph. Pixels of the photograph.
+// Projects `corners` [m] into the camera of `bundle` at `pose`. Returns the corners that the camera
+// sees at least one pixel inside the edges of the photograph, in pixels of the photograph.
 std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
                                  std::span<const Eigen::Vector3d> corners, const Pose& pose);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/calibrate: boards of markers, by OpenCV's aruco module.
+// Private to libs/calibrate: boards of markers, with OpenCV's aruco module.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace axial::calibrate {
 
-// Error that starts with `where` for a dictionary OpenCV does not have, or one with too few
-// markers.
+// Throws an Error that starts with `where` if OpenCV does not have the dictionary of `board`, or if
+// the dictionary has too few markers for `board`.
 void check_markers(const Board& board, const std::string& where);
 
 // As corners_of and find_corners, for boards of markers.

@@ -12,15 +12,17 @@
 
 namespace axial::calibrate {
 
-// The photographs: given files as they are, and of each folder the files with an image's extension,
-// in the order of names. Error for a path that does not exist, and for a folder without
-// photographs.
+// Returns the photographs of `input`, in the order of `input`. A path of a file is returned as it
+// is, whatever its extension. A folder is replaced by its files with the extension of an image, in
+// the order of their names. Throws an Error for a path that does not exist, and for a folder
+// without photographs.
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
-// The board's corners in every photograph, in the order of `photographs`; without corners where the
-// board is not found. A view has the name of its photograph's file. Error that names the first
-// photograph that cannot be read or whose size differs from the lens's. `bit_depth` and its
-// name in messages: as for io::common_bit_depth.
+// Finds the corners of the board in every photograph. Returns one view per photograph, in the order
+// of `photographs`. A view has the name of the photograph's file, and no corners if the board is
+// not found. Throws an Error that names the first photograph that cannot be read or differs in size
+// from the lens. `bit_depth` and `bit_depth_name` (its name in messages): as for
+// io::common_bit_depth.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
                              const io::ColmapCamera& lens, int bit_depth = 0,
                              const std::string& bit_depth_name = "bit_depth");

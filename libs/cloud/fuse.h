@@ -20,44 +20,45 @@ namespace axial::cloud {
 // One image that has a depth map.
 struct FusionView {
   std::uint32_t image = 0;  // index into Scene::images
-  // Images whose pixels may support this view's points, best first (filter_neighbours). Images
-  // without a FusionView of their own are ignored.
+  // Images whose pixels may support the points of this view, best first (filter_neighbours). Images
+  // that have no FusionView of their own are ignored.
   std::vector<std::uint32_t> neighbours;
-  // Views are fused in decreasing rank, views of equal rank in the order of `image`. The rank is
-  // the number of unfiltered neighbours.
+  // Views are fused in decreasing order of rank. Views of equal rank are fused in the order of
+  // `image`. The rank is the number of neighbours before filter_neighbours.
   std::size_t rank = 0;
 };
 
 // Functions that load the inputs. Both are called with an index into Scene::images, as late as
-// possible, from at most FuseOptions::max_loads threads. A view is loaded once, unless max_maps is
-// so small that its map has to be evicted and loaded again.
+// possible, from at most FuseOptions::max_loads threads. A view is loaded once. Exception: if
+// max_maps is so small that the map of the view is evicted, the view is loaded again.
 struct FusionProviders {
   std::function<DepthMap(std::size_t image)> load_map;
-  // The image in B G R at the depth map's size. Empty function: the cloud has no colours.
+  // Returns the image in B G R at the depth map's size. If the function is empty, the cloud has no
+  // colours.
   std::function<cv::Mat3b(std::size_t image)> load_color;
 };
 
 struct FuseOptions {
-  // The number of images that must agree on a point, including the image of the point's first
-  // pixel; at most the number of views. Below 2 the maps are merged without tests: every valid
-  // pixel becomes a point with one view.
+  // The number of images that must agree on a point. The image of the point's first pixel counts as
+  // one of them. A value above the number of views is reduced to the number of views. With a value
+  // below 2 the maps are merged without tests: every valid pixel becomes a point with one view.
   std::size_t min_views = 3;
-  // With min_views above 2: two images are enough if no other image disagrees and both maps pass
-  // the test for surfaces (see fuse).
+  // Only for min_views above 2. Two images are enough if no other image disagrees and both maps
+  // pass the test for surfaces (see fuse).
   bool two_if_undisputed = true;
   double depth_threshold = 0.005;                             // relative, along the neighbour's ray
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
   bool normals = true;                                        // fill PointCloud::normals
   bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
-  // Limits of memory (see bytes_needed); the cloud does not depend on them. max_maps: maps in
-  // memory at the same time, but never fewer than a view and its neighbours. max_loads: calls of
-  // the providers at the same time.
+  // Limits of memory (see bytes_needed). The cloud does not depend on them. max_maps: the number of
+  // maps in memory at the same time; if it is too small for a view and its neighbours, these maps
+  // are in memory all the same. max_loads: the number of simultaneous calls of the providers.
   std::size_t max_maps = std::numeric_limits<std::size_t>::max();
   std::size_t max_loads = 1;
 };
 
-// Adds the points of `portion` to `cloud`. Preconditions: both have the same attributes, and
+// Adds the points of `portion` to `cloud`. Preconditions: both have the same attributes, and the
 // view_begin of an empty `cloud` is {0}.
 void append(PointCloud& cloud, const PointCloud& portion);
 
@@ -65,28 +66,38 @@ void append(PointCloud& cloud, const PointCloud& portion);
 using CloudSink = std::function<void(PointCloud portion)>;
 
 // Fuses the depth maps of `views` and passes the cloud to `sink` in portions. The views are
-// processed one after the other. For every pixel with a depth that is not used yet:
+// processed one after the other. Each pixel that has a depth and is not used yet is processed as
+// follows:
 //
-// * The pixel's point is projected into each neighbour of the view and compared with the depth of
-//   the nearest pixel there. The neighbour agrees if depth and normal agree within the thresholds.
-//   It disagrees if its depth is larger (it sees through the point) or its normal differs. It is
-//   neutral if the point is outside its image or hidden behind its surface, or if its map has no
-//   depth there.
-// * The point is accepted if min_views images agree, counting neighbours only whose pixel is not
-//   used yet. With `two_if_undisputed` one such neighbour is enough if no neighbour disagrees, and
-//   if the pixel lies in a piece of surface in its own map and in the map of the first neighbour
-//   that agrees: of the eight pixels at a distance of two, at least four are nearer to the pixel's
-//   tangent plane than half of depth_threshold times the depth, and at most three are not.
-// * The point is the mean of the back-projected pixels that agree (eq. 4), with the weights
-//   1 / (max(1 - confidence, 0.03) depth^2). Colour and normal are means with the same weights. The
-//   pixels are then used. Pixels of neighbours that see through an accepted point are discarded.
+// * The point of the pixel is projected into each neighbour of the view and compared with the
+//   nearest pixel there. The depth agrees if it differs by less than depth_threshold times the
+//   depth of the point, and the normal agrees within normal_threshold. The neighbour agrees if both
+//   agree. The neighbour disagrees if its depth is larger, so that it sees through the point, or if
+//   its depth agrees and its normal differs. The neighbour is neutral in all other cases: the point
+//   is outside its image, its map has no depth there, or its depth is smaller, so that the point is
+//   hidden behind its surface.
+// * The point is accepted if min_views images agree. The view itself counts as one image. A
+//   neighbour counts if it agrees and its pixel is not used yet. With `two_if_undisputed` one such
+//   neighbour is enough under two conditions: no neighbour disagrees, and two pixels lie in a piece
+//   of surface of their maps. These are the pixel itself and its counterpart in the first neighbour
+//   that agrees.
+// * A pixel lies in a piece of surface if, of the eight pixels at a distance of two, at least four
+//   lie on the tangent plane of the pixel and at most three do not. Pixels without a depth do not
+//   count. A pixel lies on the tangent plane if its point is nearer to the plane than half of
+//   depth_threshold times the depth of the pixel in the middle.
+// * The supports of an accepted point are the pixel itself and the pixels of the neighbours that
+//   count. The position of the point is the weighted mean of the back-projected supports. The
+//   weights are 1 / (max(1 - confidence, 0.03) depth^2). Colour and normal are means with the same
+//   weights. From then on the supports are used. The pixels of neighbours that see through the
+//   point are discarded, which means that they count as used.
 //
 // So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
-// image) are always filled. Maps without normals get normals from their depths
-// (estimate_map_normals); a pixel without a normal passes every normal test. The cloud is identical
+// image) are always filled. A map without normals gets normals from its depths
+// (estimate_map_normals). A pixel without a normal passes every normal test. The cloud is identical
 // for any number of threads. Besides the maps, only one bit per pixel is kept for each view that is
-// still needed. Throws an Error for a view that does not exist or is given twice, and for a map
-// whose camera, normals, confidences or image do not have the size of its depths.
+// still needed. Throws an Error in these cases: a view's image is not in the scene or is given
+// twice, a depth map or a loaded image is empty, or the camera, the normals, the confidences or the
+// image of a map do not have the size of its depths.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 
@@ -103,14 +114,14 @@ struct FusionSize {
   bool colors = false;
 };
 
-// An upper bound of the memory [bytes] that fuse() holds, without the portions of the cloud and
-// what the providers need while they load.
+// An upper bound of the memory [bytes] that fuse() holds. The portions of the cloud and the memory
+// that the providers need while they load are not included.
 std::uint64_t bytes_needed(const FusionSize& size);
 
-// Estimates a map's normals from the back-projected points in the 3x3 neighbourhood of each pixel.
-// Only neighbours count whose depth differs by less than 3 % from the pixel's; at least 3 are
-// needed. The normals have unit length, are in the camera frame and face the camera. 0 where there
-// is no depth or where the estimation fails.
+// Estimates the normals of a map from the back-projected points in the 3x3 neighbourhood of each
+// pixel. A neighbour counts if its depth differs from the depth of the pixel by less than 3 %. At
+// least 3 neighbours must count. The normals have unit length, are in the camera frame and face the
+// camera. The normal is 0 where there is no depth or where the estimation fails.
 cv::Mat3f estimate_map_normals(const DepthMap& map);
 
 }  // namespace axial::cloud

@@ -13,9 +13,9 @@
 
 namespace axial::cloud {
 
-// A depth map in the form that fusion needs: 20 bytes per pixel, 23 with colours. Points are
-// computed when they are needed, because storing them costs more. Pixels are addressed by
-// y * width + x.
+// A depth map in the form that fusion needs: 20 bytes per pixel, 23 with colours. Points are not
+// stored, because storing them costs more than computing them when they are needed. Pixels are
+// addressed by y * width + x.
 struct FusionMap {
   std::string image_path;
   Pose pose;
@@ -42,9 +42,9 @@ struct FusionMap {
 };
 
 // Checks the map, rotates its normals into the world frame and computes the weights. A map without
-// normals gets normals from its depths. Depths and colours share memory with the arguments if their
-// rows are contiguous. Throws an Error that names the map's image if the map is empty or if the
-// size of the camera, the normals, the confidences or `color` differs from that of the depths.
+// normals gets normals from its depths. Depths share memory with `map`, and colours with `color`,
+// if their rows are contiguous. Throws an Error that names the map's image in two cases: the map is
+// empty, or the camera, the normals, the confidences or `color` differ in size from the depths.
 FusionMap make_fusion_map(DepthMap map, const cv::Mat3b& color);
 
 // Some pixels of a view and their points in the world frame.
@@ -60,8 +60,10 @@ void back_project(const FusionMap& view, PixelPoints& where);
 //   - cannot see: the point is outside the image or hidden, or the map has no depth there,
 //   - differs: the neighbour's pixel has the same depth, but another normal,
 //   - joins: the neighbour's pixel has the same depth and normal,
-//   - contradicts: the neighbour's pixel is farther away, so that it sees through the point.
-// The last two name the neighbour's pixel. An answer takes 4 bytes.
+//   - contradicts: the depth of the neighbour's pixel is larger: the neighbour sees through the
+//     point.
+// Answers of the kinds `joins` and `contradicts` name the neighbour's pixel. An answer takes 4
+// bytes.
 class Answer {
  public:
   Answer() = default;  // cannot see
@@ -81,9 +83,10 @@ class Answer {
   std::uint32_t code_ = kCannotSee;
 };
 
-// Compares the points of the pixels `asking` of `reference` with the map of `neighbour`. Fills
-// `answers` in the order of `asking`. Precondition: both have the same length. Whether a pixel is
-// already used has no influence.
+// Compares the points `asking` of pixels of `reference` with the map of `neighbour`. Fills
+// `answers` in the order of `asking`. Preconditions: `asking` and `answers` have the same length,
+// and back_project() has filled the points. The answers do not depend on whether pixels are already
+// used.
 void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
                    const PixelPoints& asking, const FuseOptions& options,
                    std::span<Answer> answers);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of fuse(): keeps maps in memory. The order in which maps are needed is known in advance, so
-// that the store evicts the map whose next use is farthest away.
+// Part of fuse(): keeps maps in memory. The order in which maps are needed is known in advance. So
+// the store can evict the map whose next use is farthest in the future.
 #pragma once
 
 #include <functional>
@@ -20,12 +20,12 @@ class MapStore {
   using Load = std::function<FusionMap(std::size_t slot)>;
 
   // Step i needs the maps of the slots needed[i]. Precondition: the slots of a step are below
-  // `slots` and differ from each other.
+  // `slots` and differ from each other. `load` makes the map of a slot.
   MapStore(std::vector<std::vector<std::size_t>> needed, std::size_t slots, Limits limits,
            Load load);
 
-  // Loads the missing maps of this step, and evicts others if there are too many. Call begin_step()
-  // and end_step() in turn, for the steps in ascending order.
+  // Loads the missing maps of this step. If there are too many maps, first evicts maps that this
+  // step does not need. Call begin_step() and end_step() in turn, for the steps in ascending order.
   void begin_step(std::size_t step);
 
   // Removes the maps that no later step needs.

@@ -6,11 +6,12 @@
 
 namespace axial::cloud {
 
-// Fills cloud.normals (unit length, world frame) by principal component analysis of the
-// `neighbours` nearest points of each point, including the point itself; at least 3 are used. The
-// normals face the camera of the point's first view, or the mean centre of all calibrated cameras
-// if the point has no views. In a cloud of fewer than 3 points the normal is the direction to this
-// camera. Throws an Error for views of images that do not exist.
+// Fills cloud.normals (unit length, world frame). The normal of a point comes from a principal
+// component analysis of its `neighbours` nearest points, which include the point itself. A value of
+// `neighbours` below 3 is raised to 3, and a value above the number of points is reduced. If the
+// point has views, its normal faces the camera of the first view. Otherwise it faces the mean
+// centre of all calibrated cameras. In a cloud of fewer than 3 points the normal is the direction
+// to this centre. Throws an Error for views of images that do not exist.
 void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbours = 16);
 
 }  // namespace axial::cloud

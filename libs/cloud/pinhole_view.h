@@ -11,33 +11,38 @@ namespace axial::cloud {
 
 struct PinholeView {
   CameraModel camera;  // no port, no distortion
-  // The pinhole's centre [m] in the frame of the camera that it replaces. The axes of both cameras
-  // are parallel.
+  // The pinhole's centre [m] in the frame of the camera that the pinhole replaces. The axes of both
+  // cameras are parallel.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   bool whole = true;  // the pinhole's image shows everything that the other camera sees
 
   // The same view with an image of another size [px].
   PinholeView resized(int width, int height) const;
 
-  // The pinhole's pose. `of_camera`: the pose of the camera that it replaces.
+  // The pose of the pinhole. `of_camera`: the pose of the camera that the pinhole replaces.
   Pose pose(const Pose& of_camera) const {
     return {of_camera.rotation, of_camera.to_world(centre)};
   }
 
-  // The point that `pixel` of the pinhole sees at `z_depth` [m] from the pinhole, in the frame of
-  // the camera that it replaces.
+  // The point [m] that `pixel` of the pinhole sees at `z_depth` [m] from the pinhole. The point is
+  // in the frame of the camera that the pinhole replaces.
   Eigen::Vector3d point(const Eigen::Vector2d& pixel, double z_depth) const {
     return centre + z_depth * camera.lens.bearing(pixel);
   }
 };
 
-// The pinhole that replaces `model`, for a scene at distances (lambda) from `near` to `far` [m].
-// Precondition: 0 < near <= far. Its centre is the point nearest to the rays of all pixels (least
-// squares). So almost the same surfaces are hidden from both cameras, and the correspondence of
-// their pixels depends little on depth. In the centre of the image both have pixels of the same
-// angular size. The pinhole's image is large enough to show everything that `model` sees, but at
-// most 1.4 times as wide and as high as the image of `model`, and reaches at most 70 degrees from
-// the axis. For a model that is a pinhole already, the result is the same pinhole.
+// Returns the pinhole that replaces `model`, for a scene at distances (lambda) from `near` to `far`
+// [m]. Precondition: 0 < near <= far. If `model` is a pinhole already, the result is the same
+// pinhole. Otherwise:
+//
+// * The centre of the pinhole is the point nearest to the rays of the whole image (least squares).
+//   So almost the same surfaces are hidden from both cameras, and the correspondence of their
+//   pixels depends little on depth.
+// * In the centre of the image the pixels of both cameras have the same angular size.
+// * The image is large enough to show everything that `model` sees, with two exceptions. First,
+//   rays more than 70 degrees from the axis are left out. Second, the image reaches no farther from
+//   the centre of the image of `model` than 0.7 times the width of that image to the left and
+//   right, and 0.7 times the height up and down. `whole` is false in both cases.
 PinholeView pinhole_for(const CameraModel& model, double near, double far);
 
 }  // namespace axial::cloud

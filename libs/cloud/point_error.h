@@ -13,24 +13,24 @@
 
 namespace axial::cloud {
 
-// The measurement of a point by one depth map. World frame.
+// The measurement of a point by one depth map, in the world frame.
 struct PointSupport {
   Eigen::Vector3d point;  // back-projected point of the map's pixel [m]
   Eigen::Vector3d ray;    // unit vector from the camera to the point
-  double pixel;           // width of the map's pixel at the point, with refraction [m]
+  double pixel;           // width of a pixel of the map at the point, with refraction [m]
   double depth;           // along the pixel's ray [m]
   double cost;            // of matching: 1 - the map's confidence; 1: unknown
 };
 
-// Makes the supports of one view in a tenth of the time that exact rays with derivatives need. It
-// makes two approximations: the angular size of a pixel comes from a table (error 2 %), and rays
+// Makes the supports of one view in a tenth of the time that exact rays with derivatives need.
+// There are two approximations. The angular size of a pixel comes from a table (error 2 %). Rays
 // start at the camera centre (error below a degree behind a port).
 class SupportCamera {
  public:
   SupportCamera(const CameraModel& model, const Pose& pose);
 
-  // The support of the map's pixel y * width + x. `depth` [m] must be above 0; `point` is the
-  // pixel's back-projected point [world].
+  // The support of the map's pixel number y * width + x. `depth` [m] must be above 0. `point`: the
+  // back-projected point of the pixel [m], in the world frame.
   PointSupport support(std::uint32_t pixel, double depth, double cost,
                        const Eigen::Vector3d& point) const;
 
@@ -42,20 +42,23 @@ class SupportCamera {
 
 // Properties of a map and its photograph around one pixel.
 struct Surroundings {
-  // Mean of 1 - cosine of the angle between the pixel's normal and the normals of the pixels at a
-  // distance of three. 0: flat, or the pixel's normal is unknown.
+  // Let c be the cosine of the angle between the normal of the pixel and the normal of another
+  // pixel. The relief is the mean of 1 - c (no unit) over eight pixels: those 3 px away in x, in y,
+  // or in both. Pixels outside the map or without a normal are left out. 0: flat, or the normal of
+  // the pixel is unknown.
   double relief = 0;
   // Standard deviation of the position of a match due to noise in the photograph [px of the map].
-  // It is large where there is little texture. 0: unknown.
+  // The deviation is large where there is little texture. 0: unknown.
   double noise = 0;
 };
 // Measures the surroundings of `pixel`. `reduction`: the width of the photograph divided by the
 // width of the map. The noise is unknown for a map without colours.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
-// The standard deviation of a triangulated point along the unit vector `normal` [m per px]. The
-// point is triangulated from the supports' pixels; both coordinates of each pixel have independent
-// errors of 1 px. The result is at most the mean depth, also for parallel rays.
+// The standard deviation of a triangulated point along the unit vector `normal` [m per px]. Each
+// support contributes one pixel to the triangulation. Both coordinates of each pixel have
+// independent errors of 1 px. The result is never larger than the mean depth [m] of the supports,
+// even for parallel rays.
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
 struct PointError {
@@ -63,19 +66,19 @@ struct PointError {
   float confidence = 0;  // probability that the distance is at most 3 errors
 };
 
-// The expected error of the mean of the supports' points, on a surface with the unit normal
-// `normal`. `around`: the surroundings of the point in the map of the first support. The variance
-// is the sum of three parts:
+// The expected error of a point that is the mean of the supports' points, on a surface with the
+// unit normal `normal`. `around`: the surroundings of the point in the map of the first support.
+// The variance is the sum of three parts:
 //
-// * relief: matching fits planes to windows of several pixels. Relief that planes cannot follow
+// * Relief: matching fits planes to windows of several pixels. Relief that planes cannot follow
 //   raises the cost of even the best match and makes the normals of neighbouring pixels differ. All
-//   maps are smoothed in the same way, so that more maps do not reduce this part, but wider angles
-//   between the rays do;
-// * the variance of the supports' points along the normal;
-// * the photograph's noise, which matters where there is little texture.
+//   maps are smoothed in the same way. So more maps do not reduce this part, but wider angles
+//   between the rays do.
+// * Scatter: the variance of the supports' points along the normal.
+// * Noise of the photograph: this part matters where there is little texture.
 //
-// The confidence is higher if the supports' points are closer to each other. Both are 0 (unknown)
-// for fewer than two supports and if no support has a known cost.
+// The confidence is higher if the supports' points are closer to each other. Error and confidence
+// are 0 (unknown) if there are fewer than two supports, or if no support has a known cost.
 PointError expected_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal,
                           const Surroundings& around);
 

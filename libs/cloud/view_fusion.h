@@ -19,23 +19,25 @@ struct WorkingView {
   double reduction = 1;      // width of the photograph divided by the width of the map
 };
 
-// Makes points from some pixels of a view at a time. Call collect(), compare(), accept() and
-// points() in this order, and repeat.
+// Makes the points of a view in steps. A step processes some pixels: call collect(), compare(),
+// accept() and points() in this order. Repeat until all pixels are processed.
 class ViewFusion {
  public:
   // `views`: the reference view first, then its neighbours, best first.
   explicit ViewFusion(std::span<const WorkingView> views);
 
-  // Collects the next pixels of the reference view, from `pixel` on, that have a depth and are not
-  // taken. Returns the pixel with which the next call has to continue.
+  // Begins a step. Goes through the pixels of the reference view from `pixel` on, and collects the
+  // pixels that have a depth and are not taken. Returns the pixel at which the next call has to
+  // continue, or the number of pixels at the end.
   std::size_t collect(std::size_t pixel);
 
-  // Compares these pixels with the maps of all neighbours, and finds the pixels for which two views
-  // are enough.
+  // Compares the collected pixels with the maps of all neighbours. Finds the collected pixels for
+  // which two views are enough.
   void compare(const FuseOptions& options);
 
-  // Decides which pixels become points, and takes the pixels that support them. A point needs
-  // `min_views` supports, or two if two views are enough.
+  // Decides which collected pixels become points, and marks the pixels that support these points as
+  // taken. Also marks the pixels of neighbours that see through an accepted point. A point needs
+  // `min_views` supports, or two supports if two views are enough.
   void accept(std::size_t min_views);
 
   std::size_t size() const { return begin_.size() - 1; }  // accepted points
@@ -55,7 +57,7 @@ class ViewFusion {
   void estimate_errors(PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
-  std::vector<PixelPoints> where_;  // the collected pixels; of the neighbours, the supports
+  std::vector<PixelPoints> where_;            // [0]: collected pixels; others: supports
   std::vector<std::vector<Answer>> answers_;  // of each neighbour to each collected pixel
   std::vector<std::uint8_t> proved_by_two_;   // per collected pixel: two views are enough; or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])

@@ -8,11 +8,13 @@
 
 namespace axial::cloud {
 
-// A score per point of scene.points: the higher, the more other observations support the point.
-// Each view of each point p defines a cone through p with a diameter of one pixel. A point in the
-// cone whose depth is more than 1 % larger than that of p gains its own number of views. A point
-// whose depth is more than 1 % smaller loses the number of views of p, because p is seen through
-// it. Throws an Error for views of images that do not exist.
+// A score per point of scene.points. The more other observations support a point, the higher its
+// score. The scores start at 0. Let p be a point, and take each view of p in a calibrated image.
+// The view defines a cone of rays through p with a diameter of one pixel. Let q be another point in
+// the cone. If the depth of q is more than 1 % larger than the depth of p, the score of q rises by
+// the number of views of q. If the depth of q is more than 1 % smaller, the score of q falls by the
+// number of views of p, because p is seen through q. Throws an Error for views of images that do
+// not exist.
 std::vector<long> visibility_of_points(const Scene& scene);
 
 struct PointScale {
@@ -20,8 +22,8 @@ struct PointScale {
   float confidence = 0;  // sum of the confidences of its views; if all are 0, the number of views
 };
 
-// One PointScale per point of scene.points. Points that no calibrated image sees get 0 and 0.
-// Throws an Error for views of images that do not exist.
+// Returns one PointScale per point of scene.points. A point that no calibrated image sees gets
+// scale 0 and confidence 0. Throws an Error for views of images that do not exist.
 std::vector<PointScale> scales_of_points(const Scene& scene);
 
 }  // namespace axial::cloud

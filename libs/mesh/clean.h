@@ -24,12 +24,22 @@ struct CleanReport {
 };
 
 // Makes `mesh` edge- and vertex-manifold, oriented and free of self-intersections. The steps, in
-// this order: repair of edges and vertices at which more than two faces meet, spurious components,
-// simplification, spikes, holes, smoothing, remeshing, and again spikes and holes; at last faces
-// that intersect each other are smoothed, and removed if that does not help. Vertices at the same
-// place are moved apart, each by 1 % of the way to the mean of its neighbours. Vertices without
-// faces are removed. Colours are lost. The result does not depend on the number of threads. Error
-// if the mesh has no face, if no face is left, and if remeshing would make more than 2^28 faces.
+// this order:
+//
+//   1. repair of edges and vertices that are not manifold,
+//   2. removal of spurious components,
+//   3. simplification,
+//   4. removal of spikes, and closing of holes,
+//   5. smoothing,
+//   6. remeshing, and step 4 again,
+//   7. smoothing of faces that intersect each other, and removal of these faces if smoothing does
+//      not help.
+//
+// Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
+// neighbours. Vertices without faces are removed. Colours are lost. `report`: may be null. The
+// result does not depend on the number of threads. Throws an Error if the mesh has no face or only
+// faces that name a vertex twice, if no face is left, or if remeshing would make more than 2^28
+// faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 }  // namespace axial::mesh

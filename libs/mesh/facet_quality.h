@@ -9,11 +9,12 @@
 
 namespace axial::mesh {
 
-// The cost of a surface through the facet opposite of corner `facet` of `cell`: 1 - cos(phi), where
-// phi is the larger of the angles between the facet and the circumspheres of the two tetrahedra
-// beside it (Labatut, Pons and Keriven 2009, "beta-skeleton quality"). From 0, for a facet that
-// halves both spheres' surfaces, to 1. The cosine of an infinite tetrahedron is 1, that of a flat
-// tetrahedron 0.5.
+// The cost of a surface through a facet: the facet opposite of corner `facet` of `cell`. Two
+// tetrahedra share the facet. Let phi be the larger of the two angles between the facet and the
+// circumspheres of these tetrahedra. The cost is 1 - cos(phi) (Labatut, Pons and Keriven 2009,
+// "beta-skeleton quality"). The cost is near 0 for a facet that is small compared with both
+// spheres, and 1 if the plane of the facet contains the centre of one of the spheres. The cosine of
+// an infinite tetrahedron is 1, and the cosine of a flat tetrahedron is 0.5.
 double shape_cost(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
                   std::size_t cell, std::size_t facet);
 

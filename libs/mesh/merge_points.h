@@ -13,29 +13,34 @@
 namespace axial::mesh {
 
 struct MergeOptions {
-  // Points that are closer than this in all images that see the point [px] are merged. 0: none.
+  // Two points are merged if their distance is at most this in every image that sees the first
+  // [px]. 0: no points are merged.
   double min_distance = 2.5;
 };
 
-// Points that each stand for one or several points of a cloud. The views of point i are at
-// [view_begin[i], view_begin[i + 1]).
+// The result of merge_points(). Each point stands for one or several points of a cloud. The views
+// of point i have the indices [view_begin[i], view_begin[i + 1]).
 struct MergedPoints {
   std::vector<Eigen::Vector3f> positions;  // weighted means [m], in the frame of the cloud
-  std::vector<float> pixel_widths;         // a pixel of the sharpest view, seen at the point [m]
+  std::vector<float> pixel_widths;         // width of a pixel of the sharpest view at the point [m]
   std::vector<std::size_t> view_begin{0};
   std::vector<std::uint32_t> view_images;  // indices into Scene::images, ascending for each point
-  std::vector<float> view_weights;         // number of points of the cloud that the view sees
+  std::vector<float> view_weights;         // number of absorbed points that the view sees
 
   std::size_t size() const { return positions.size(); }
 };
 
-// Merges the points of `cloud`. The points with the most views are taken first. Each point that is
-// not merged yet absorbs its neighbours: the points that lie within min_distance in each of its
-// views and within two such distances in space, and whose normals differ by less than 60 degrees.
-// The position of the result is the mean of the absorbed points, weighted by their view_weights.
-// Points that no view sees are dropped. The result is in the order of a space-filling curve, which
-// depends only on the positions. Precondition: the cloud has views, and they are calibrated images
-// of the scene of `rays`.
+// Merges the points of `cloud`. The points with the most views are taken first. Let p be a point
+// that is taken and not absorbed yet. The point p absorbs itself and each point q that is not
+// absorbed yet, under three conditions. First, in each view of p the distance from p to q is at
+// most min_distance [px]. Second, the distance from p to q in space is at most 2 * min_distance
+// times the width of a pixel of the sharpest view at p. Third, if the cloud has normals, the
+// normals of p and q differ by at most 60 degrees.
+// The position of the result is the weighted mean of the absorbed points. The weight of a point is
+// the sum of its PointCloud::view_weights, or its number of views if the cloud has no weights.
+// Points that no view sees are dropped, unless another point absorbs them. The result is in the
+// order of a space-filling curve, which depends only on the positions. Preconditions: the cloud has
+// views, and the views are calibrated images of the scene of `rays`.
 MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
                           const MergeOptions& options = {});
 

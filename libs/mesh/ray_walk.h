@@ -12,12 +12,13 @@
 
 namespace axial::mesh {
 
-// The incident tetrahedra of every point, in one array.
+// For every point, the tetrahedra that have the point as a corner. All are in one array.
 class Stars {
  public:
   Stars(const Tetrahedra& tetrahedra, std::size_t points);
 
-  // The tetrahedra that have the point as a corner. Empty for a point that is no corner.
+  // The tetrahedra that have the point as a corner. Empty if the point is no corner of any
+  // tetrahedron.
   std::span<const std::uint32_t> of(std::size_t point) const {
     return std::span(cells_).subspan(begin_[point], begin_[point + 1] - begin_[point]);
   }
@@ -33,11 +34,17 @@ struct Crossing {
   double distance;         // along the ray [m]
 };
 
-// Walks from `start`, a corner of the tetrahedra, along the unit vector `direction`, at most
-// `length` [m]. Calls cross(Crossing) for every facet that the ray crosses. Returns the tetrahedron
-// in which the walk ends: one that contains the end of the ray, or an infinite one, or
-// Tetrahedra::kInfinity if `start` has no tetrahedron. Crossings are computed in double; where a
-// ray passes within rounding of an edge, the walk passes on one side of it.
+// Walks from the point `start` along the unit vector `direction`. `start` is a corner of the
+// tetrahedra. The walk ends after `length` [m], or when the ray leaves the hull. Calls
+// cross(Crossing) for every facet that the ray crosses. Returns the tetrahedron in which the walk
+// ends:
+//
+//   - Tetrahedra::kInfinity if `start` is no corner of any tetrahedron,
+//   - an infinite tetrahedron if the ray leaves the hull,
+//   - otherwise the tetrahedron that contains the end of the ray.
+//
+// Crossings are computed in double. Where the distance from a ray to an edge is within rounding,
+// the walk passes on either side of the edge.
 template <class Cross>
 std::uint32_t walk(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
                    const Stars& stars, std::uint32_t start, const Eigen::Vector3d& direction,
@@ -57,21 +64,21 @@ class RayWalker {
   RayWalker(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
             std::uint32_t start, const Eigen::Vector3d& direction);
 
-  // Finds the first tetrahedron: the tetrahedron of `star` whose cone from the start contains the
-  // direction. Returns false if the direction leaves the hull at once; then cell() is infinite, or
-  // kInfinity for an empty star.
+  // Finds the first tetrahedron of the walk: the tetrahedron of `star` whose cone from the start
+  // contains the direction. Returns false if the direction leaves the hull at once. Then cell() is
+  // infinite, or kInfinity for an empty star.
   bool begin(std::span<const std::uint32_t> star);
 
   std::uint32_t cell() const { return cell_; }
 
-  // The distance along the ray at which it leaves the tetrahedron.
+  // The distance from the start at which the ray leaves the tetrahedron.
   double exit_distance() const;
 
   // Enters the next tetrahedron. Returns false if it is infinite.
   bool step(Crossing& crossing);
 
  private:
-  // The infinite tetrahedron of the star whose facet of the hull faces the direction most.
+  // An infinite tetrahedron of `star`: the facet of the hull beside it faces the direction most.
   std::uint32_t facing_infinite(std::span<const std::uint32_t> star) const;
   Corner corner_at(std::uint32_t index) const;
 
@@ -80,8 +87,8 @@ class RayWalker {
   std::uint32_t start_, cell_ = Tetrahedra::kInfinity;
   Eigen::Vector3d origin_;
   Eigen::Matrix3d frame_;  // rows: two directions across the ray, and the ray; right-handed
-  // The facet through which the ray leaves, in counter-clockwise order seen along the ray, and the
-  // position of the opposite corner in the tetrahedron.
+  // The facet through which the ray leaves the tetrahedron. Its corners are in counter-clockwise
+  // order, seen along the ray.
   std::array<Corner, 3> facet_;
   int opposite_ = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entry of this library: from a cloud with views to a mesh. The steps are those of Labatut,
-// Pons and Keriven 2009 (votes.h), with rays that bend at the ports of the cameras.
+// The entry of this library: makes a mesh from a cloud with views. The steps are those of Labatut,
+// Pons and Keriven 2009 (votes.h). In addition, rays bend at the ports of the cameras.
 #pragma once
 
 #include <cstdint>
@@ -26,16 +26,21 @@ struct ReconstructOptions {
   SettingNames name_of = own_name;  // "max_memory", "merge.min_distance"
 };
 
-// The memory that reconstruct() needs besides the cloud, for this number of merged points [bytes].
+// The memory [bytes] that reconstruct() needs for this number of merged points. The memory of the
+// cloud is not included.
 std::uint64_t bytes_needed(std::size_t merged_points);
 
 // Reconstructs the surface that the images of `scene` see in `cloud`. The result is in the frame of
-// scene and cloud, oriented, manifold and free of self-intersections; parts of the surface without
-// points are left out. The cloud is freed when its points are merged. Logs each step.
-// Error for a cloud without views, for a view that is not a calibrated image of the scene, for a
-// position that is not finite, for a weight that is not from 0 to 1e6, for fewer than four points
-// that are not in a plane, and if bytes_needed() exceeds max_bytes. The same result for any number
-// of threads.
+// scene and cloud, oriented, manifold and free of self-intersections. Parts of the surface without
+// points are left out. The cloud is freed when its points are merged. Logs each step. The result is
+// the same for any number of threads. Throws an Error in these cases:
+//
+// * the cloud has no points or no views,
+// * a view is not a calibrated image of the scene,
+// * a position is not finite, or a weight is not from 0 to 1e6,
+// * fewer than four points remain after merging, or all points lie in a plane,
+// * bytes_needed() exceeds max_bytes,
+// * no surface is found, or clean() throws (clean.h).
 Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {});
 
 }  // namespace axial::mesh

@@ -8,9 +8,9 @@
 
 namespace axial::mesh {
 
-// Returns the indices of `points` in the order of a Morton curve through their bounding cube, so
-// that neighbours in space are near each other in memory. Points in the same of 2^63 cells stay in
-// their order. Precondition: the positions are finite.
+// Returns the indices of `points` in the order of a Morton curve through the bounding cube of the
+// points. So points that are near in space are near in the order. The cube is divided into 2^63
+// cells. Points in the same cell keep their order. Precondition: the positions are finite.
 std::vector<std::uint32_t> spatial_order(std::span<const Eigen::Vector3f> points);
 
 }  // namespace axial::mesh

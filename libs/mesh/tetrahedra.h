@@ -10,8 +10,8 @@
 
 namespace axial::mesh {
 
-// The tetrahedra fill the convex hull of the points. Every facet of the hull has one more, infinite
-// tetrahedron on its outside, with a corner at infinity.
+// The tetrahedra fill the convex hull of the points. In addition, an infinite tetrahedron lies
+// outside of each facet of the hull. It has a corner at infinity.
 struct Tetrahedra {
   static constexpr std::uint32_t kInfinity = 0xFFFFFFFFu;  // the corner at infinity
   using Four = std::array<std::uint32_t, 4>;
@@ -25,20 +25,21 @@ struct Tetrahedra {
       if (corner == kInfinity) return true;
     return false;
   }
-  // The position of `corner` in the tetrahedron. Precondition: it is one of its corners.
+  // The position of `corner` among the corners of `cell`. Precondition: `cell` has this corner.
   int place(std::size_t cell, std::uint32_t corner) const {
     const Four& all = corners[cell];
     return all[0] == corner ? 0 : all[1] == corner ? 1 : all[2] == corner ? 2 : 3;
   }
-  // The position of `neighbour` among the neighbours. Precondition: the two are neighbours.
+  // The position of `neighbour` among the neighbours of `cell`. Precondition: they are neighbours.
   int place_of_neighbour(std::size_t cell, std::uint32_t neighbour) const {
     const Four& all = neighbours[cell];
     return all[0] == neighbour ? 0 : all[1] == neighbour ? 1 : all[2] == neighbour ? 2 : 3;
   }
 };
 
-// The tetrahedra of `points`. Of points at the same place only one is a corner. The result depends
-// only on the points and their order. Error if the points all lie in a plane.
+// Returns the tetrahedra of `points`. If several points are at the same place, only one of them is
+// a corner. The result depends only on the points and their order. Throws an Error if all points
+// lie in a plane.
 Tetrahedra delaunay(std::span<const Eigen::Vector3f> points);
 
 }  // namespace axial::mesh

@@ -16,13 +16,14 @@ class ViewRays {
  public:
   explicit ViewRays(const Scene& scene);
 
-  // The derivative of the pixel in `image` by the position of `point` [px/m], both in the frame of
-  // the scene. Zero if the image does not see the point. Precondition: the image is calibrated.
+  // The derivative of the pixel in `image` by the position of `point` [px/m]. `point` and the
+  // derivative are in the frame of the scene. Zero if the image does not see the point.
+  // Precondition: the image is calibrated.
   Eigen::Matrix<float, 2, 3> pixel_motion(std::uint32_t image, const Eigen::Vector3f& point) const;
 
-  // The end of the straight ray from `point` towards the camera: the point where it enters the
-  // port, or in air the centre of projection. Empty if the image does not see the point. In the
-  // frame of the scene [m]. Precondition: the image is calibrated.
+  // The end of the straight part of the ray from `point` to the camera [m]: the place where the ray
+  // enters the port, or in air the centre of projection. `point` and the result are in the frame of
+  // the scene. Empty if the image does not see the point. Precondition: the image is calibrated.
   std::optional<Eigen::Vector3d> exit_point(std::uint32_t image,
                                             const Eigen::Vector3d& point) const;
 

@@ -16,8 +16,9 @@
 
 namespace axial::mesh {
 
-// All numbers are multiples of 1 / kVoteScale of a vote and at most kLargestVote. Sums of integers
-// do not depend on the order in which threads add.
+// Votes are stored as integers: the number n means n / kVoteScale votes. No number is above
+// kLargestVote; larger sums are reduced to this limit. Integers are used because their sums do not
+// depend on the order in which threads add.
 inline constexpr std::int32_t kVoteScale = 64;
 inline constexpr std::int32_t kLargestVote = 1 << 28;
 
@@ -36,15 +37,23 @@ struct VoteOptions {
   double quality_factor = 1;    // multiplies the cost of facets of badly shaped tetrahedra
 };
 
-// The expected error of point i along its rays [m]: the sigma of the weights.
+// The expected error of point i along its rays [m]. It is the sigma in the weights of cast_votes().
 double expected_error(const MergedPoints& points, std::size_t i, const VoteOptions& options);
 
-// Casts the votes of all rays between `points`, which are the corners of `tetrahedra`, and the
-// cameras of their views. Every facet that a ray crosses in front of its point gets the weight of
-// the view times 1 - exp(-d^2 / (2 sigma^2)), with the distance d [m] from the point; so do the
-// facets behind it, up to one sigma. The tetrahedron at the end of the ray is outside. The
-// tetrahedron one sigma behind the point gets a vote for inside. Each facet also gets a vote for
-// surfaces through well shaped tetrahedra.
+// Casts the votes of all rays between `points` and the cameras of their views. The points are the
+// corners of `tetrahedra`. Let d [m] be the distance along a ray from its point, sigma the
+// expected_error() of the point, and w the weight of the view (1 with constant_weight). Each ray
+// casts these votes:
+//
+// * The cost of each facet that the ray crosses in front of the point rises by w * (1 - exp(-d^2 /
+//   (2 sigma^2))). The same holds for the facets behind the point, up to d = sigma.
+// * The tetrahedron at the camera's end of the ray gets 100000 votes for outside, which make it
+//   outside with certainty.
+// * The tetrahedron one sigma behind the point gets w votes for inside.
+//
+// With `weak_support` further votes for inside follow (weak_support.h). At last the cost of each
+// facet rises by quality_factor times shape_cost() (facet_quality.h), so that surfaces through well
+// shaped tetrahedra are preferred.
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
                  const VoteOptions& options = {}, const ProgressSink& progress = {});
 

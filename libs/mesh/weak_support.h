@@ -19,15 +19,18 @@ struct Votes;
 
 class WeakSupport {
  public:
-  // Takes the support of free space from `votes`: the sum of the costs of a cell's four facets. The
-  // references must outlive the object; the votes need not.
+  // Takes the support of free space from `votes`. The support of a tetrahedron is the sum of the
+  // costs of its four facets. The other arguments must outlive the object, but `votes` need not.
   WeakSupport(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
               const Stars& stars, const Votes& votes);
 
-  // Compares the support in front of the point `start`, up to 3 sigma along the unit vector
-  // `direction` to a camera, with the support up to 4 sigma behind it. Returns the last tetrahedron
-  // behind the point and the votes for inside that it gains for a ray of weight 1; no votes if the
-  // support does not fall steeply.
+  // Compares the support of free space on both sides of the point `start`. The front is the largest
+  // support up to 3 `sigma` [m] along the unit vector `direction`, which points to a camera. The
+  // back is the mean of the smallest and the largest support up to 4 `sigma` in the opposite
+  // direction. Returns the last tetrahedron behind the point, and the votes for inside that this
+  // tetrahedron gains for a ray of weight 1. If the support falls steeply, the votes are the front
+  // minus the back. Otherwise there are 0 votes. The tetrahedron is Tetrahedra::kInfinity, without
+  // votes, if `start` is no corner of any tetrahedron.
   std::pair<std::uint32_t, double> gain(std::uint32_t start, const Eigen::Vector3d& direction,
                                         double sigma) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The half-edge mesh of CGAL, in which meshes are mended. Takes seconds to compile.
+// The half-edge mesh of CGAL, with which meshes are mended. This header takes seconds to compile.
 #pragma once
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -15,10 +15,11 @@ namespace axial::mesh {
 using HalfedgeKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using HalfedgeMesh = CGAL::Surface_mesh<HalfedgeKernel::Point_3>;
 
-// Faces that are degenerate in their indices are dropped. Where more than two faces meet at an
-// edge, or faces of different orientation, vertices are duplicated.
+// Converts a mesh. Faces that name a vertex twice are dropped. Vertices are duplicated at an edge
+// where more than two faces or faces of different orientation meet.
 HalfedgeMesh to_halfedges(const Mesh& mesh);
-// Renumbers the vertices in the order of the half-edge mesh, without removed ones.
+// Converts a mesh back. Removes vertices without faces from `mesh` first. The other vertices are
+// renumbered.
 Mesh from_halfedges(HalfedgeMesh& mesh);
 
 inline Eigen::Vector3d position(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex) {
@@ -26,8 +27,8 @@ inline Eigen::Vector3d position(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_i
   return {p.x(), p.y(), p.z()};
 }
 Eigen::Vector3d mean_of_neighbours(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex);
-// Positions stay representable as float, because a mesh is written as float: a check of the
-// half-edge mesh then holds for the file.
+// Moves `vertex` to `to`, rounded to float. A mesh is written as float. So a check of the half-edge
+// mesh holds for the file too.
 void move_to(HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex, const Eigen::Vector3d& to);
 
 // simplify.cpp
@@ -35,13 +36,16 @@ void decimate(HalfedgeMesh& mesh, std::size_t faces);
 void remesh(HalfedgeMesh& mesh, double edge_length);
 
 // untangle.cpp
-// Moves vertices at the same place apart, each by 1 % of the way to the mean of its neighbours.
+// Moves vertices at the same place apart: each moves by 1 % of the way to the mean of its
+// neighbours.
 void separate_copies(HalfedgeMesh& mesh);
 // Makes the mesh free of self-intersections. Faces that intersect others are smoothed up to 8
-// times, and then removed, with the spikes that this leaves. Returns the number of removed faces.
+// times. Faces that still intersect others are removed, and then spikes are removed. Returns the
+// number of all removed faces.
 std::size_t untangle(HalfedgeMesh& mesh);
-// Removes faces with two border edges, until there are none, and splits the vertices at which only
-// corners of faces meet. Returns the number of removed faces.
+// Removes faces with at least two border edges until no such face is left. Then splits the vertices
+// at which faces meet only in a corner, and moves the copies apart. Returns the number of removed
+// faces.
 std::size_t remove_spikes(HalfedgeMesh& mesh);
 
 }  // namespace axial::mesh
