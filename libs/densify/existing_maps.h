@@ -41,8 +41,8 @@ void check_overwriting(const Project& project, const Settings& settings, const E
 // - for a damaged map,
 // - for a foreign map of an image whose camera has a port or a distorted lens,
 // - for a map whose shape differs from the shape of the image's camera,
-// - for a map that was made with another pose or camera than those of the image: points at the
-//   map's depths project 1 px or more away from their pixels, at the map's resolution.
+// - for a map with another pose or camera than the image: a point in the middle of the map's
+//   depth range projects 1 px or more away from its pixel, at the map's resolution.
 void keep_images_with_maps(Project& project, const Settings& settings, const ExistingMaps& maps);
 
 }  // namespace axial::densify
