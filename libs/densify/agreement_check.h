@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks by the depth maps whether port, lens, poses and photographs belong together.
+// Uses the depth maps to check whether ports, lenses, poses and photographs belong together.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,20 @@
 
 namespace axial::densify {
 
-// The number of maps in one image's comparison: its own map and maps of source views.
+// The largest number of maps that are compared for one image: the image's own map and the maps of
+// up to three source views.
 inline constexpr std::size_t kMapsCompared = 4;
 
-// Compares the depth maps of up to 16 images, evenly spread over the scene, with the sparse points
-// and with the maps of up to three source views each. Logs a line with the numbers, as a warning if
-// they disagree (AgreementLimits), and writes Settings::report. `read_map` reads the map of a
-// reference image; it is called for several images at a time, as the plan allows. `photometric`:
-// the maps' confidences are scores of matching alone, and a warning tells if they are too low. The
-// result affects nothing else.
+// Checks whether the depth maps agree with the sparse points and with each other. Takes up to 16
+// reference images, evenly spread over the list of references. Compares the map of each of these
+// images with the image's sparse points, and with the maps of the first three source views that
+// have maps. Logs a line with the numbers. The line is a warning if the maps disagree
+// (AgreementLimits). Writes the numbers to Settings::report unless this path is empty. Changes
+// nothing else.
+// `read_map`: returns the map of a reference image. Up to plan.in_flight threads call `read_map`
+// at the same time.
+// `photometric`: whether the maps are results of the photometric stage. Only then are the maps'
+// confidences scores of matching alone, and a warning tells if the scores are too low.
 void check_agreement(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      bool photometric, const std::function<DepthMap(std::size_t image)>& read_map);
 

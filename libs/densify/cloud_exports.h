@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clouds that OpenMVS's program writes instead of densifying. They are derived from the scene's own
-// points, or from Settings::point_cloud.
+// The point exports: clouds that a run writes instead of densifying, as OpenMVS's program does.
+// Their points are the scene's own points, or the points of Settings::point_cloud.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,17 @@ struct WrittenCloud {
   std::size_t points = 0;
 };
 
-// Writes the first cloud that the settings ask for, beside the output and named after it:
+// Writes one cloud beside the output scene. Let <out> be the path of the output without its
+// extension. If the settings ask for several clouds, only the first in this list is written:
 //   filter_point_cloud T < 0   <out>_filtered.ply and .mvs: points whose visibility is above T
-//   export_number_views N      <out>_<N>views.ply: points seen by |N| images or more; N < 0: .mvs
-//   estimate_scale F > 0       <out>_scale.ply: every point's size, F pixels of its mean view
-// Clouds are in the frame of placement_of(). Ports, lenses and offset are written beside scenes.
-// `project` is the result of load_scene(). Error if its scene has no points, or if an output is a
-// file that was read.
+//   export_number_views N      <out>_<|N|>views.ply, for N < 0 also .mvs: points that |N| images
+//                              or more see
+//   estimate_scale F > 0       <out>_scale.ply: all points with their sizes; a size is F times the
+//                              mean width of a pixel at the point (cloud::PointScale)
+// The visibility of a point is its value of cloud::visibility_of_points(). Clouds are in the
+// frame of placement_of(). The ports, lenses and offset of a written .mvs file are written beside
+// this file. `project`: the result of load_scene(). Error if the scene has no points, or if an
+// output is a file that was read.
 WrittenCloud export_cloud(Project project, const Settings& settings);
 
 }  // namespace axial::densify

@@ -22,34 +22,39 @@ struct Report {
   std::filesystem::path cloud;  // the cloud that was written; empty: none
   std::size_t points = 0;       // of this cloud
   std::size_t depth_maps = 0;   // number of images whose depth map was made or used
-  // OpenMVS's programs read the depth maps and the scene correctly: no camera has a port or a
-  // distorted lens.
+  // Whether no camera has a port or a distorted lens. Only then do OpenMVS's programs read the
+  // depth maps and the scene correctly.
   bool only_pinholes = true;
 };
 
 // Makes the depth map of every suitable image of the scene, fuses the maps to a cloud, and writes
-// both, and the scene with its housing, lenses and offset. Settings that ask for less or for
-// something else are described at Settings.
+// the maps, the cloud, and the scene with its housing, lenses and offset. Some settings ask for
+// less or for something else: see Settings.
 //
 // * A run that was stopped continues where it ended: depth maps of an earlier run with the same
-//   input and settings are used again (map_stages.h). The result has the same bytes, for any number
-//   of threads and any max_memory.
+//   input and settings are used again (map_stages.h). The result has the same bytes for any
+//   number of threads and any max_memory.
 // * Inputs are never changed. Output files appear when they are complete.
-// * Memory stays below max_memory and does not grow with the number of images, except for the scene
-//   and one bit per pixel in fusion. A cloud whose colours or normals are estimated from the whole
-//   cloud (value 1) is kept in additional memory.
-// * Progress, results and warnings are logged (base/log.h). `observer` is called once, before views
-//   are selected; it is not called for a point export.
-// * From the call on, and after it, all threads of the process share one heap (share_one_heap() in
-//   base/memory.h), and large blocks come from the system. So call it before other threads start,
-//   and one run at a time.
+// * Memory stays below max_memory. Memory does not grow with the number of images, with three
+//   exceptions: the scene, one bit per pixel in fusion, and a cloud whose colours or normals are
+//   estimated from the whole cloud (estimate_colors or estimate_normals is 1). Such a cloud is
+//   kept in memory in addition to max_memory.
+// * Progress, results and warnings are logged (base/log.h). `observer` is called once, before
+//   views are selected. It is not called for a point export.
+// * From the call on, and after it, all threads of the process share one heap (share_one_heap()
+//   in base/memory.h), and large blocks come from the system. So call densify() before other
+//   threads start, and make only one run at a time.
 //
-// Error for a fault of the scene or of a file that belongs to it, for images that are missing,
-// truncated, damaged or of another shape than their camera, for an output that cannot be written or
-// that is an input, for depth maps of other programs in the working folder (unless overwrite_dmaps
-// or no maps are made), for too little memory, and for a scene without usable views. All this is
-// checked before the first depth map is made. Precondition: each setting is in the range that its
-// comment, or that of its type, names.
+// Throws an Error for
+// - a fault of the scene or of a file that belongs to the scene,
+// - an image that is missing, truncated, damaged or of another shape than its camera,
+// - an output that cannot be written, or that is an input,
+// - depth maps of other programs in the working folder, unless overwrite_dmaps is set or the run
+//   makes no maps,
+// - too little memory,
+// - a scene without usable views.
+// All this is checked before the first depth map is made. Precondition: each setting is in the
+// range that the setting's comment, or the comment of its type, names.
 Report densify(const Settings& settings, const SceneObserver& observer = {});
 
 }  // namespace axial::densify

@@ -17,24 +17,32 @@ using ExistingMaps = std::vector<io::DmapStatus>;
 
 ExistingMaps find_existing_maps(const Project& project, const Settings& settings);
 
-// How to read a map of this origin: a foreign map may lie beside an older side file of this
-// program, which is then ignored.
+// Whether the side file is used when a map of this origin is read. The side file of a foreign map
+// is ignored, because it may be an older file of this program.
 io::DmapSide side_to_read(io::DmapOrigin origin);
 
-// Reads the image's final map, without normals if its file has none. If no maps are made, the map
-// has no depth where `mask` is zero (same size as the map; empty: no mask); maps made by this run
-// are masked already. The file is not changed.
+// Reads the image's final map. The map has no normals if its file contains no normal other than
+// 0. `mask`: empty (no mask), or of the map's size. In a run that makes no maps
+// (Settings::make_maps), depth, normal and confidence are set to 0 where `mask` is zero. In a run
+// that makes maps, `mask` is not used, because these maps are masked already. The file is not
+// changed.
 DepthMap read_final_map(const Project& project, const Settings& settings, const ExistingMaps& maps,
                         std::size_t image, const cv::Mat1b& mask);
 
-// Warns of each damaged map. Error that names a foreign map and the possible remedies, unless
-// overwrite_dmaps is set.
+// For runs that make maps: checks whether existing maps may be overwritten. Warns of each damaged
+// map. Throws an Error if a map is foreign, unless overwrite_dmaps is set. The error names one
+// foreign map and the possible remedies.
 void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps);
 
-// For runs that make no maps: keeps only images with a map among the references, and sets their
-// cameras to the resolution of their maps. Error if there is no map, for a damaged map, for a map
-// with another pose or lens than its image, and for a foreign map of an image with a port or a
-// distorted lens.
+// For runs that make no maps: keeps only images with a map among the references, that is, removes
+// the other images from Project::references. Sets the cameras of the kept images in
+// Project::views to the resolution of their maps. Throws an Error
+// - if no reference has a map,
+// - for a damaged map,
+// - for a foreign map of an image whose camera has a port or a distorted lens,
+// - for a map whose shape differs from the shape of the image's camera,
+// - for a map with another pose or camera than the image: a point in the middle of the map's
+//   depth range projects 1 px or more away from its pixel, at the map's resolution.
 void keep_images_with_maps(Project& project, const Settings& settings, const ExistingMaps& maps);
 
 }  // namespace axial::densify

@@ -9,14 +9,15 @@
 
 namespace axial::densify {
 
-// The frame and precision of this run's clouds: the scene's frame as float, or world coordinates
-// with double_precision.
+// The frame and precision of this run's clouds: float positions in the scene's frame, or, with
+// Settings::double_precision, double positions in world coordinates.
 io::PlyPlacement placement_of(const Project& project, const Settings& settings);
 
-// Fuses the final depth maps to one cloud and writes it to `ply`, cropped to the region of
-// interest, with colours and normals as the settings ask. Returns its number of points. The cloud
-// is written as it grows, unless its colours or normals are estimated from the whole cloud (setting
-// value 1). A log line, and "fusion" in the report, tell how many points rest on only two depth
+// Fuses the final depth maps to one cloud and writes the cloud to the file `ply`. The cloud is
+// cropped to the region of interest and has colours and normals, each as the settings ask.
+// Returns the number of points of the cloud. The cloud is written as it grows, unless its colours
+// or normals are estimated from the whole cloud (setting value 1). A log line, and the entry
+// "fusion" in the file Settings::report, tell how many points are supported by only two depth
 // maps.
 std::size_t write_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
                         const ExistingMaps& existing, ImageStore& images,

@@ -15,7 +15,7 @@ namespace axial::densify {
 struct WorkImage {
   cv::Mat1b grey;
   cv::Mat3b color;  // B G R; empty if the settings need no colours
-  cv::Mat1b mask;   // empty, or non-zero where pixels are matched: from labels and alpha
+  cv::Mat1b mask;   // non-zero: match this pixel; empty: all. From labels and alpha
 };
 
 // The sizes on which the memory of a WorkImage depends.
@@ -27,13 +27,16 @@ struct WorkImageSize {
 // The memory [bytes] of a WorkImage.
 std::uint64_t bytes_needed(const WorkImageSize& size);
 
-// An upper bound of the memory [bytes] while ImageStore reads an image, without the WorkImage.
-// `decode`: of the photograph (io/images/image.h). `pixels`: of the WorkImage.
+// An upper bound of the memory [bytes] that ImageStore needs while it reads an image, besides the
+// resulting WorkImage. `decode`: the memory [bytes] for decoding the photograph
+// (io/images/image.h). `pixels`: the number of pixels of the WorkImage.
 std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels);
 
-// The WorkImage::mask of an image, at the size of `view.camera`. `opaque`: non-zero where pixels
-// are opaque (empty: no alpha). `check` collects the labels; it may be null. Error for a mask whose
-// shape differs from the photograph's.
+// Returns WorkImage::mask of an image, at the size of `view.camera`. A pixel is non-zero if its
+// label in the file `view.mask` is not `ignored_label` and if the pixel is fully opaque after
+// resampling. `opaque`: non-zero where pixels of the photograph are opaque; empty: the photograph
+// has no alpha. The result is empty if the view has neither a mask nor alpha. `check`: collects
+// the labels; may be null. Error for a mask whose shape differs from the photograph's.
 cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
                        LabelCheck* check = nullptr);
 
@@ -46,12 +49,13 @@ class ImageStore {
   // Error for files that cannot be decoded, and for masks whose shape differs from their image's.
   std::shared_ptr<const WorkImage> get(std::size_t image) { return cache_.get(image); }
 
-  // WorkImage::mask. Reads no file for an image without a mask.
+  // Returns WorkImage::mask of an image. Reads no file if the image has neither a mask nor alpha.
   cv::Mat1b mask(std::size_t image);
 
-  // Reads every calibrated image once, `at_once` at a time, so that errors show before hours of
-  // work. Reports the error of the first bad image in the scene's order. Reads in reverse order:
-  // the images that are needed first stay in the cache. Warns if no mask has the label to ignore.
+  // Reads every calibrated image once, up to `at_once` images at the same time, so that errors
+  // show before hours of work. Throws the error of the first bad image in the scene's order.
+  // Reads the images in reverse order, so that the images that are needed first stay in the
+  // cache. Warns if no mask has the label to ignore.
   void check_all(std::size_t at_once);
 
  private:

@@ -24,13 +24,15 @@ using ReadMap = std::function<DepthMap(std::size_t image)>;
 // memory, because a resumed run must see the same bytes. Thread-safe.
 class PreviousMaps {
  public:
-  // `capacity`: the number of maps in the cache.
+  // `read`: reads the map of an image from its file. `whole`: get() returns maps with normals and
+  // confidences. `capacity`: the number of maps in the cache.
   PreviousMaps(ReadMap read, bool whole, std::size_t capacity);
 
-  // The whole map, read now.
+  // Reads the whole map from its file. Does not use the cache.
   DepthMap read(std::size_t image) const { return read_(image); }
 
-  // The map from the cache; without normals and confidences unless the stage asks for whole maps.
+  // Returns the map from the cache, after reading it from its file if necessary. The map has no
+  // normals and confidences unless the stage asks for whole maps.
   std::shared_ptr<const DepthMap> get(std::size_t image) { return cache_.get(image); }
 
  private:
@@ -57,30 +59,32 @@ struct StageRun {
   // but with the stage's name before the extension.
   std::function<std::filesystem::path(std::size_t image)> final_file;
   std::string fingerprint;  // of all input of the maps
-  // The final files as they were before the run; indexed by image.
+  // The states of the final files before the run, indexed by image.
   std::span<const io::DmapStatus> existing;
   std::size_t in_flight = 1;      // images at the same time
   std::size_t cached_depths = 0;  // capacity of PreviousMaps
   std::size_t cached_maps = 0;    // the same for stages that ask for whole maps
   Pictures pictures = Pictures::none;
-  // Called once, with the maps of the first stage, or, in a run that continues after the first
-  // stage, with the latest maps that are complete. It is called early, because later stages may
-  // take hours. May be empty.
+  // Called once, to check maps early, because later stages may take hours. If the run makes maps
+  // of the first stage, `check` gets the maps of the first stage, after this stage. Otherwise it
+  // gets the maps of the latest complete stage, before the run makes a map. `first_stage`:
+  // whether `read_map` reads maps of the first stage. May be empty.
   std::function<void(bool first_stage, const ReadMap& read_map)> check;
 };
 
-// Runs the stages one after the other and leaves the maps of the last one.
+// Runs the stages one after the other. The maps of the last stage are the result.
 //
 // * A file is used again only if its depth map is complete and its side file has the run's
-//   fingerprint and the stage's name. All other files of these names, damaged ones and those of
-//   other programs too, are made again and overwritten.
-// * The run begins after the last stage whose files can all be used again; files of the stages
-//   before it are not needed. In a stage that is not complete, only the missing maps are made.
+//   fingerprint and the stage's name. Every other file with the name of a map is made again and
+//   overwritten, also a damaged file or a file of another program.
+// * The run begins after the last stage whose files can all be used again. The files of the
+//   stages before that stage are not needed. In a stage that is not complete, only the missing
+//   maps are made.
 // * Every stage reads only complete files of the previous stage. So a run that was stopped and
-//   continues gives the same bytes as one that was not.
+//   continues gives the same bytes as a run without a stop.
 // * The files of a stage are removed when the next stage is complete.
 //
-// Exceptions of make() end the run; the finished files stay.
+// Exceptions of make() end the run. The finished files stay.
 void run_stages(std::span<const Stage> stages, const StageRun& run);
 
 }  // namespace axial::densify

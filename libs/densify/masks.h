@@ -12,9 +12,11 @@
 
 namespace axial::densify {
 
-// Sets View::mask of all calibrated images, if masks are used. Warns, in the order of the scene, of
-// images without a mask and of images with two candidate files. Error if the mask folder has no
-// mask for an image.
+// Sets View::mask of all calibrated images. Does nothing but log if masks are not used
+// (Settings::ignore_mask_label is negative). If Settings::mask_folder is set, it is an error if
+// the folder has no mask for an image. Otherwise, an image without a mask is reported in a
+// warning, and its View::mask stays empty. A further warning tells how many images have two
+// different masks, of which only one is used.
 void choose_masks(Project& project, const Settings& settings);
 
 // Collects labels of masks to tell whether any mask has the label to ignore. Thread-safe.
@@ -25,8 +27,8 @@ class LabelCheck {
 
   void add(const cv::Mat1w& labels);
 
-  // Call after all masks were read: warns with the labels found if the label to ignore is not among
-  // them.
+  // Warns if masks were added and none has the label to ignore. The warning lists the first
+  // labels that were found. Call this function after all masks were read.
   void warn_if_absent(const Project& project) const;
 
  private:

@@ -11,11 +11,12 @@ namespace axial::densify {
 
 inline constexpr std::uint64_t kMegabyte = 1'000'000;
 
-// The program with its libraries, stacks, small blocks, and the portions of fusion [bytes].
+// The memory [bytes] of the program itself: code and libraries, stacks, small blocks, and the
+// portions of fusion.
 inline constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
 
-// The memory that a run may use [bytes]. Error if the settings do not name it and the system does
-// not tell how much memory is free.
+// The memory [bytes] that a run may use: Settings::max_memory, or 70 % of the free memory if
+// max_memory is 0. Error if max_memory is 0 and the system does not tell how much memory is free.
 inline std::uint64_t memory_limit(const Settings& settings) {
   if (settings.max_memory > 0) return settings.max_memory * kMegabyte;
   try {

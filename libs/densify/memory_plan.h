@@ -22,19 +22,23 @@ struct MemoryPlan {
   std::size_t exports = 1;        // images resampled at the same time by the pinhole export
 };
 
-// The plan for a project as load_project returns it. It fits the project's largest image and
-// longest lists of sources and neighbours. Caches have at most 48 entries: images are processed in
-// order, where more entries hardly help, and the memory of a run must not grow with the number of
-// images. Error that names max_memory, its value and the necessary value if not even one image at
-// a time fits, or if the scene does not fit while it is written (when no images are cached).
+// Returns the plan for the result of load_project(). The plan is sufficient for the project's
+// largest image and for its longest lists of sources and neighbours. A cache has at most 48
+// entries, unless the images in work need more. More entries would hardly help, because images
+// are processed in order, and the memory of a run must not grow with the number of images. Throws
+// an Error if the allowed memory is too little to process one image at a time, or to write the
+// scene while no images are cached. The error names max_memory, its value and the necessary
+// value.
 MemoryPlan plan_memory(const Project& project, const Settings& settings);
 
-// The memory [bytes] besides the scene of a run that works on `in_flight` images at a time and
-// caches nothing more than these need.
+// The least memory [bytes] of a run that processes `in_flight` images at a time, without the
+// scene and without kProgramBytes (memory_limit.h). Its caches hold only the images and maps in
+// work.
 std::uint64_t least_bytes(const StageBytes& bytes, const ListLengths& lists, std::size_t in_flight);
 
-// The plan for `room` bytes besides the scene, and for at most `threads` images at a time.
-// Precondition: `room` is at least least_bytes() of one image.
+// Returns the plan for at most `threads` images at a time. `room`: the allowed memory [bytes]
+// without the scene and without kProgramBytes. Precondition: `room` is at least least_bytes() for
+// one image in flight.
 MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uint64_t room,
                      std::size_t threads);
 

@@ -9,11 +9,14 @@
 
 namespace axial::densify {
 
-// Replaces the neighbours of the images that the file names by the file's neighbours, with the
-// scores that OpenMVS gives them (scale 1, 15 degrees, area 0.5, score 3). Other images keep their
-// neighbours. Returns for each image whether it was named. Warns of neighbours without a pose,
-// which are left out. Error that names file and line for an index that is no image, for an image
-// that occurs twice or is its own neighbour, and for an image without neighbours.
+// Reads the file and replaces the neighbours of each image that has a line in the file. The new
+// neighbours get the scores that OpenMVS gives them (scale 1, 15 degrees, area 0.5, score 3).
+// Images without a line keep their neighbours. Returns, for each image of the scene, whether it
+// has a line. Neighbours without a pose are left out with a warning. Throws an Error, which names
+// file and line,
+// - for an index that is no image of the scene,
+// - for an image that has two lines or is its own neighbour,
+// - for a line without neighbours.
 std::vector<bool> read_neighbour_lists(const std::filesystem::path& file, Scene& scene);
 
 // Writes the lists of all calibrated images that have neighbours.

@@ -6,18 +6,22 @@
 
 namespace axial::densify {
 
-// The files of the input scene: the scene, its housing, lenses and offset, the cloud and the lists
-// of neighbours that replace its own, and Settings::other_inputs.
+// The files from which the scene is read: the scene file, its housing, lenses and offset,
+// Settings::point_cloud, Settings::neighbour_lists and Settings::other_inputs. A path may be
+// empty, and a file need not exist.
 std::vector<std::filesystem::path> scene_files(const Settings& settings);
 
-// Called before the scene is read. Also removes unfinished files of runs that were stopped. Error
-// that names a file that cannot be written, or the setting and both files where an output is one of
-// scene_files().
+// Checks the outputs before the scene is read. Throws an Error if the scene, the cloud, the
+// report or a depth map cannot be written. Throws an Error, too, if an output is one of
+// scene_files(). This error names the setting and both files. Also removes unfinished files of
+// stopped runs from the working folder.
 void check_outputs(const Settings& settings);
 
-// The same for the photographs and masks of the scene, and for the depth maps and their pictures.
-// Maps of earlier runs are not inputs. But the report and the lists of neighbours must not name a
-// map or another output.
+// Checks the outputs when the scene is known. Throws an Error if the scene, its lenses, the
+// cloud, a depth map or a picture of a depth map would replace a photograph, a mask or one of
+// scene_files(). Maps of earlier runs may be replaced, because they are not inputs. Throws an
+// Error, too, if Settings::report or Settings::neighbour_lists_output is one of these inputs, the
+// file of a depth map or picture, or the output scene, its cloud, housing, lenses or offset.
 void check_outputs(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

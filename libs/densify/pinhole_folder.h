@@ -11,20 +11,25 @@ namespace axial::densify {
 // The file that marks a folder as an export and lists its other files.
 inline constexpr const char* kPinholeMarker = "pinhole_export.json";
 
-// The name of an exported image below images/: its path relative to `photographs`, the deepest
-// common folder of all photographs. Other formats than JPEG and PNG get the extension .png.
+// The path of an exported image below images/: the image's path relative to `photographs`. If
+// this path does not have an extension of JPEG or PNG, ".png" is appended to it: a.tif becomes
+// a.tif.png. `photographs`: the deepest common folder of all photographs.
 std::filesystem::path exported_name(const SceneImage& image,
                                     const std::filesystem::path& photographs);
 
-// Removes files of the earlier export in `folder` that `staging` does not replace and that have not
-// been changed since. Warns of files that were changed, and of an earlier export that lists no
-// files; these files stay.
+// Removes the files of an earlier export from `folder`. A file stays in two cases: `staging`
+// contains a file with the same relative path, or the file was changed after the earlier export.
+// Warns of changed files that stay. Warns, and removes nothing, if the earlier export has no list
+// of its files. Does nothing if `folder` contains no export.
 void remove_earlier_export(const std::filesystem::path& folder,
                            const std::filesystem::path& staging);
 
-// Called before the work. Error if all cameras are pinholes already, if the folder contains other
-// files or inputs of this run, if it cannot be written, or if two images would get the same name.
-// Does nothing without Settings::pinhole_export.
+// Checks, before the work, whether the export can be written. Does nothing if
+// Settings::pinhole_export is empty. Throws an Error
+// - if no camera has a port or a distorted lens,
+// - if the folder contains inputs of this run, or is not empty and not an earlier export,
+// - if the folder is a file or cannot be written,
+// - if two images would be exported to the same file.
 void check_pinhole_export(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

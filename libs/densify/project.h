@@ -42,29 +42,30 @@ struct Project : io::SceneWithCameras {  // the scene also has neighbour scores
   std::string fingerprint;
 };
 
-// Loads the scene with its ports and lenses, and the points of Settings::point_cloud. Needs no
-// image files. Error for any fault of these files.
+// Loads the scene with its ports and lenses, and the points of Settings::point_cloud. Reads no
+// image files. Error for any fault of the files that are read.
 Project load_scene(const Settings& settings);
 
 // Loads the scene and reads the headers of its images and masks. Selects no views. Errors as for
 // load_project.
 Project load_scene_and_headers(const Settings& settings);
 
-// Loads the scene, reads the headers and bytes of its images and masks (without keeping pixels),
-// and selects views. Error for a fault of the scene or its housing, for files that are missing or
-// truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds
-// other faults of images. `observer` is called before views are selected.
+// Loads the scene, reads its images and masks, and selects views. Image and mask files are read
+// for their headers and for the fingerprint. Their pixels are not kept. `observer` is called
+// before views are selected. Throws an Error for a fault of the scene or its housing, for files
+// that are missing or truncated, and for images whose shape differs from their camera's.
+// ImageStore::check_all finds other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
 
 // Whether no camera has a port or a distorted lens.
 bool all_pinholes(const Project& project);
 
-// The path of the housing file, which may not exist.
+// The path of the housing file. The file may not exist.
 std::filesystem::path housing_file(const Settings& settings);
 
 // Writes housing, lenses and offset beside the output scene, where later programs look for them.
-// Removes such a file of the same name if the scene has no ports, distorted lenses or offset. The
-// housing file that was read is never changed.
+// If the scene has no ports, no distorted lenses or no offset, an older file with the name of the
+// absent file is removed. The housing file that was read is never changed.
 void write_cameras_beside_output(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

@@ -9,7 +9,7 @@ namespace axial::densify {
 struct SceneFacts {
   bool behind_ports = false;  // an image is behind a port
   bool own_region = false;    // the scene file contains a region of interest
-  bool region = false;        // the run has a region of interest: this one, or an estimated one
+  bool region = false;        // the run has a region of interest: its own or an estimated one
 };
 using SceneObserver = std::function<void(const SceneFacts&)>;
 

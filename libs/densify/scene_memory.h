@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the allowed memory is enough to read a scene and to score its views.
+// Checks whether the allowed memory is enough to read a scene and to score its views.
 #pragma once
 
 #include "densify/settings.h"
@@ -7,13 +7,15 @@
 
 namespace axial::densify {
 
-// Error that names max_memory, its value and the least necessary value if the scene of
-// settings.input is too large to be read and its views scored. The estimate uses the scene's
-// counts, before the scene is read. Small scenes that need less than the program itself pass here;
-// plan_memory then reports the whole need.
+// Estimates, before the scene is read, the memory for reading the scene of settings.input and for
+// scoring its views. The estimate uses the counts of images and points in the files. Throws an
+// Error if the allowed memory is less. The error names max_memory, its value and the least
+// necessary value. A small scene that needs less memory than the program itself passes here. For
+// such a scene, plan_memory() reports the whole need.
 void require_memory_to_read(const Settings& settings);
 
-// The same for a scene that was read, including its lists of neighbours before they are made.
+// The same check for a scene that was read, before its views are scored. The estimate includes
+// the lists of neighbours that scoring makes.
 void require_memory_to_score(const Scene& scene, const Settings& settings);
 
 }  // namespace axial::densify

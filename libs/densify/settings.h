@@ -19,7 +19,7 @@ namespace axial::densify {
 
 enum class CameraChoice { automatic, pinhole, flat_port };
 
-// The depth maps of which pictures are written beside them.
+// Selects the depth maps of which pictures are written. The pictures lie beside the maps.
 enum class Pictures { none, final_maps, maps_of_every_stage };
 
 // Bits of Settings::postprocess.
@@ -34,7 +34,7 @@ struct Settings {
   std::filesystem::path point_cloud;     // empty: the scene's own points
   std::filesystem::path mask_folder;     // empty: the masks that the scene names
   std::filesystem::path neighbour_lists;
-  // The lists of neighbours are written to this file, and nothing else is made.
+  // If not empty, the run only writes the lists of neighbours to this file.
   std::filesystem::path neighbour_lists_output;
   std::filesystem::path report;                     // agreement of maps, points and cameras (.json)
   std::filesystem::path pinhole_export;             // folder; needs `fuse`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The memory of the stages for one project. The formulas are those of the stages: each stands
-// beside the memory that it counts.
+// The memory that the stages need for one project. Each formula is defined in the source file of
+// its stage, beside the code that allocates the memory.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace axial::densify {
 
-// Numbers of images. `references` get depth maps. The other numbers are the largest numbers of
-// images that a stage needs for one of them, including the image itself.
+// Numbers of images. `references`: the number of images that get depth maps. Each other number is
+// the largest number of images that a stage needs for one reference, including the reference.
 struct ListLengths {
   std::size_t references = 0;
-  std::size_t matched = 0;   // and its source views
-  std::size_t adjusted = 0;  // and the neighbours of the adjust filter; 0: no such filter
-  std::size_t fused = 0;     // and its neighbours that have maps
+  std::size_t matched = 0;   // the reference and its source views
+  std::size_t adjusted = 0;  // the reference and its neighbours in the adjust filter; 0: no filter
+  std::size_t fused = 0;     // the reference and its neighbours in fusion
 };
 
 ListLengths longest_lists(const Project& project, const Settings& settings);

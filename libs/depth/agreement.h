@@ -16,29 +16,34 @@ namespace axial::depth {
 // The image is divided into kCellsAcross x kCellsAcross cells.
 inline constexpr int kCellsAcross = 4;
 
-// The difference between a sparse point and the surface of the depth map at the point's pixel.
+// The difference between a sparse point P and the depth map of an image that sees P. Let S be the
+// point on the ray of P's image at the depth that the map has at the nearest pixel. Depths are
+// measured along this ray.
 struct PointDifference {
-  float share = 0;   // |map's depth - point's depth| / point's depth, along the pixel's ray
-  float pixels = 0;  // distance of their images in a neighbour; negative: the map is nearer
-  int cell = 0;      // cell of the image, 0 to kCellsAcross^2 - 1
+  float share = 0;  // |depth of S - depth of P| / depth of P
+  // Distance [px] between the images of P and S in the first neighbour that shows both. Negative: S
+  // is nearer to the camera than P.
+  float pixels = 0;
+  int cell = 0;  // cell of the image, 0 to kCellsAcross^2 - 1
 };
 
 struct MapAgreement {
   std::vector<PointDifference> points;
-  // asked: the number of pixels whose surface point projects to a depth in the maps of at least two
-  // neighbours. consistent: the number of these pixels for which the depth of at least one
-  // neighbour, projected back, is less than one pixel away.
+  // asked: the number of pixels whose surface point is compared, because it projects to a pixel
+  // with a depth in at least two neighbours. consistent: the number of these pixels that at least
+  // one neighbour confirms. A neighbour confirms a pixel if the point at the neighbour's depth
+  // projects into the map less than one pixel away from the pixel.
   std::size_t asked = 0, consistent = 0;
   std::vector<float> scores;  // the map's confidences at the points; empty if the map has none
 };
 
-// Compares a depth map with the sparse `points` of its image [world frame] and, at the points'
-// pixels, with the maps of `neighbours`, best first. These pixels represent the map because they
-// have texture. Of more than `most` points, `most` at equal steps are used. Points are skipped if
-// they are not finite or outside the image, or if the map has no depth at their pixel.
-// MapAgreement::points contains the remaining points that a neighbour shows. An empty `map` gives
-// an empty result; neighbours that are null or empty are ignored. The time is proportional to the
-// number of points times the number of neighbours.
+// Compares a depth map with the sparse `points` [world frame] of its image. Also compares the
+// map, at the points' pixels, with the maps of `neighbours`, best first. These pixels represent
+// the map, because they have texture. If there are more than `most` points, only `most` of them,
+// at equal steps, are used. A point is skipped if it is not finite, if it is outside the image,
+// or if the map has no depth at its pixel. MapAgreement::points contains the other points that a
+// neighbour shows. An empty `map` gives an empty result. Neighbours that are null or empty are
+// ignored. The time is proportional to the number of points times the number of neighbours.
 MapAgreement compare_map(const DepthMap& map, std::span<const DepthMap* const> neighbours,
                          std::span<const Eigen::Vector3f> points, std::size_t most = 1000);
 
@@ -47,9 +52,11 @@ struct Agreement {
   double share = 0;        // median of PointDifference::share
   double pixels = 0;       // median of |PointDifference::pixels|
   std::size_t cells = 0;   // number of cells with at least 8 points, in all images
-  // Median over cells of |median of PointDifference::pixels| [px]. Noise cancels in it.
+  // Median over cells of |median of PointDifference::pixels in the cell| [px]. Noise cancels in
+  // the median of a cell.
   double systematic = 0;
-  // Median over cells of |median of PointDifference::pixels| divided by its standard error.
+  // Median over cells of this quotient: |median of PointDifference::pixels in the cell| divided
+  // by the standard error of the median.
   double significance = 0;
   std::size_t asked = 0;   // sum of MapAgreement::asked
   double consistent = 0;   // share of `asked` that is consistent
@@ -68,7 +75,9 @@ struct AgreementLimits {
   // the scene, the maps can stay at the sparse points from which matching starts. They then agree
   // with the points and with each other, but their scores are low.
   double score = 0.65;
-  // With fewer points (also: scores), cells or pixels asked, a limit is not tested.
+  // A limit is not tested if there are too few values: fewer than min_points points (for
+  // `pixels`) or scores (for `score`), min_cells cells (for `systematic`), or min_asked pixels
+  // asked (for `consistent`).
   std::size_t min_points = 50, min_cells = 8, min_asked = 50;
 };
 
@@ -80,8 +89,10 @@ struct Disagreement {
   bool any() const { return cameras() || score; }
 };
 
-// Compares an Agreement with the limits. `systematic` needs both limits, systematic and
-// significance, to be exceeded.
+// Compares an Agreement with the limits. Agreement::pixels must not be above its limit.
+// Agreement::consistent and Agreement::score must not be below their limits.
+// Disagreement::systematic is true only if Agreement::systematic and Agreement::significance are
+// both above their limits.
 Disagreement judge(const Agreement& agreement, const AgreementLimits& limits = {});
 
 }  // namespace axial::depth

@@ -12,20 +12,22 @@
 
 namespace axial::depth {
 
-// [px]. With the radius of the window alone, a patch of wrong depths 14 pixels wide remained in the
-// test through a water surface (tests/apps/end_to_end_test.py).
+// The distance [px] from an image border below which a pixel is near the border. In the test
+// through a water surface (tests/apps/end_to_end_test.py), a distance of only kPatchRadius left a
+// patch of wrong depths 14 pixels wide.
 inline constexpr int kBorderWidth = 3 * kPatchRadius;
 
-// Pixels of a block of kBorderBlock x kBorderBlock pixels share one projection into the source
-// views, which takes most of the time.
+// The side [px] of a block. All pixels of a block share one projection into the source views,
+// because projections take most of the time.
 inline constexpr int kBorderBlock = 4;
 
-// Returns 255 for pixels near borders, 0 elsewhere. A pixel with a depth is near a border if it
-// lies less than kBorderWidth from the border of the reference image, or if no source view shows
-// the surface point of its block at least kBorderWidth from the border of the source image. The
-// surface point of a block is the point of its first pixel with a depth, row by row. `map`: the
-// depth map of input.reference. Throws an Error if input.projection does not support the cameras.
-// Precondition: the map has the size of its image.
+// Returns 255 for pixels near borders, 0 elsewhere. The result is 0 for a pixel without a depth.
+// A pixel with a depth is near a border in two cases. In the first case, it lies less than
+// kBorderWidth from the border of the reference image. In the second case, no source view shows
+// the surface point of the pixel's block at least kBorderWidth from the border of the source
+// image. The surface point of a block is the point of the first pixel with a depth in the block,
+// row by row. `map`: the depth map of input.reference. Throws an Error if input.projection does
+// not support the cameras. Precondition: the map has the size of its image.
 cv::Mat1b border_pixels(const MatchInput& input, const DepthMap& map);
 
 }  // namespace axial::depth

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Represents a camera or a projector as an array of numbers, the form in which SIMD lanes take it.
+// Represents a camera or a projector as an array of numbers. The SIMD code takes cameras in this
+// form.
 #pragma once
 
 #include <type_traits>
@@ -44,8 +45,8 @@ consteval lanes::CameraKind lane_kind(const refractive::LensDomePortCamera<float
 template <HasFields Camera>
 inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));
 
-// All numbers of a camera or projector in the order of each_field(). Precondition: at most
-// lanes::kMaxCameraFields floats.
+// Returns the float fields of a camera or projector, in the order of each_field(). An integer
+// field becomes CameraFields::steps. Precondition: at most lanes::kMaxCameraFields float fields.
 template <HasFields Fielded>
 lanes::CameraFields fields_of(Fielded from) {
   lanes::CameraFields fields;

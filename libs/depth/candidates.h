@@ -15,7 +15,8 @@ namespace axial::depth {
 
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
 
-// The mean of the two smallest costs; the smallest alone if the second is kOutsideCost or more.
+// Aggregates the costs of a plane in several views, of which `smallest` and `second` are the two
+// smallest costs. Returns their mean, or `smallest` alone if `second` is kOutsideCost or more.
 inline float aggregate(float smallest, float second) {
   return second < kOutsideCost ? 0.5f * (smallest + second) : smallest;
 }

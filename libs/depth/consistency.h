@@ -10,16 +10,19 @@
 
 namespace axial::depth {
 
-// The distance [px] by which the image of a point moves in the reference camera if the point moves
-// by `shift` [m]. Before, the point is at distance `depth` [m] on `ray`, the ray of a pixel;
-// `jacobian` has the ray's derivatives by the pixel. The result is |e| with
+// The distance [px] by which the image of a surface point moves in the reference camera if the
+// point moves by `shift` [m]. `ray`: the ray of the pixel p that shows the point, with origin o
+// and direction d. `jacobian`: the derivatives do/dp and dd/dp. `depth`: the distance [m] of the
+// point from o along the ray, before the shift. The result is |e|, where the pixel motion e [px]
+// and the distance mu [m] along the ray solve
 //
-//     F e + mu d = shift,    F = do/dp + lambda dd/dp,    lambda = depth + d . shift,
+//     F e + mu d = shift,    F = do/dp + lambda dd/dp,    lambda = depth + d . shift.
 //
-// which is the projection to first order in the shift across the ray, but saves the time of a
-// projection. The relative error is about half the result divided by the focal length: at a focal
-// length of 800 px, 0.2 % for the 3 px at which the term of the cost reaches its limit. The result
-// is not finite where neighbouring rays do not diverge.
+// The exact result would need a projection of the moved point, which takes more time. The result
+// |e| equals the exact result to first order in the component of the shift across the ray. The
+// relative error is about half of |e| divided by the focal length: at a focal length of 800 px,
+// 0.2 % for the 3 px at which the term of the cost reaches its limit. The result is not finite
+// where neighbouring rays do not diverge.
 template <class T>
 T shift_in_pixels(const refractive::AxialRay<T>& ray,
                   const refractive::AxialRayJacobian<T>& jacobian, const T& depth,
@@ -36,7 +39,8 @@ T shift_in_pixels(const refractive::AxialRay<T>& ray,
   return sqrt(u * u + v * v) / area;
 }
 
-// The term sqrt(e (e + 2)) of a forward-backward error e [px], at most `limit`.
+// The term sqrt(e (e + 2)) of the forward-backward error e = `error` [px]. A term above `limit`
+// is reduced to `limit`.
 template <class T>
 T inconsistency_term(const T& error, const T& limit) {
   using refractive::select;

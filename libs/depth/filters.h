@@ -27,41 +27,46 @@ struct GapOptions {
   float max_difference = 0.025f;  // of the two ends' depths, relative to the smaller one
 };
 
-// Fills runs of at most max_gap invalid pixels between two valid pixels of similar depth, first
-// along rows, then along columns. Inverse depth is interpolated linearly, so that a plane is
-// continued as a plane. Normals are interpolated linearly and normalised. Confidence is the smaller
-// one of the two ends. Pixels with mask != 0 stay invalid. Precondition: `mask` is empty (no such
-// pixels) or has the size of the map.
+// Fills gaps, first along rows, then along columns. A gap is a run of at most max_gap invalid
+// pixels between two valid pixels (the ends) whose depths differ by less than max_difference.
+// Inverse depth is interpolated linearly, so that a plane is continued as a plane. Normals are
+// interpolated linearly and normalised. The confidence is the smaller confidence of the two ends.
+// `mask`: pixels with a value other than 0 stay invalid. Precondition: `mask` is empty (all
+// pixels may be filled) or has the size of the map.
 DepthMap fill_gaps(const DepthMap& map, const GapOptions& options = {},
                    const cv::Mat1b& mask = cv::Mat1b());
 
 struct AdjustOptions {
   float max_difference = 0.012f;   // relative difference of depth below which two maps agree
   int min_agreeing = 1;            // neighbours that must agree
-  int min_seeing = 2;              // neighbours that must agree or disagree; capped by their number
+  int min_seeing = 2;              // neighbours that must have a depth; reduced to their number
   std::size_t max_neighbours = 8;  // only the first ones are used
 };
 
 // Adjusts the depths of `reference` to the depth maps of neighbouring views.
 //
-// * Each neighbour's points are projected exactly into the reference. A point gives a depth to each
-//   of the 4 pixels around its projection: lambda (eq. 4) at which the pixel's ray meets the
-//   point's tangent plane. A z-buffer keeps one depth per pixel and neighbour.
-// * A neighbour agrees with a pixel if its depth there differs by less than max_difference.
-//   Otherwise it contradicts. Each neighbour has the weight of its confidence (1 without
-//   confidences). If the neighbour sees through the pixel's point, the weight is the confidence of
-//   the neighbour's pixel onto which the point projects.
-// * The new depth is the weighted mean of the reference's depth and of the depths that agree. The
-//   new confidence is the reference's confidence, plus the weights that agree, minus those that
+// * Each neighbour's points are projected exactly into the reference. A point gives a depth to
+//   each of the 4 pixels around its projection: the distance lambda (eq. 4) at which the pixel's
+//   ray meets the point's tangent plane. A z-buffer keeps one depth per pixel and neighbour.
+// * A neighbour that has a depth at a pixel agrees with the pixel if the two depths differ by
+//   less than max_difference, relative to the reference's depth. Otherwise the neighbour
+//   contradicts.
+// * The weight of a neighbour is the confidence of its point, or 1 if its map has no confidences.
+//   There is one exception: a neighbour that contradicts with a larger depth sees through the
+//   pixel's point. The weight of this neighbour is the confidence of the neighbour's pixel onto
+//   which the pixel's point projects, if this pixel exists and has a depth.
+// * The new depth is the weighted mean of the reference's depth, weighted by its confidence, and
+//   of the neighbours' depths that agree. The new confidence is the reference's confidence, plus
+//   the weights of the neighbours that agree, minus the weights of the neighbours that
 //   contradict.
 // * A pixel is cleared if its new confidence is not positive, if too few neighbours agree
-//   (min_agreeing) or have a depth there (min_seeing), or if the new depth is outside [min_depth,
-//   max_depth] of `reference` (tested only if max_depth > 0). Without neighbours the result is
-//   empty.
+//   (min_agreeing), if too few neighbours have a depth there (min_seeing), or if the new depth is
+//   outside [min_depth, max_depth] of `reference` (tested only if max_depth > 0). Without
+//   neighbours, all pixels are cleared.
 //
 // To filter all maps of a scene, pass the unfiltered maps and replace them after the last call.
-// Throws an Error for a map that is empty, for a map whose camera, normals or confidences differ in
-// size from its depths, and for a `reference` whose depths are a part of a larger cv::Mat.
+// Throws an Error for a map that is empty, for a map whose camera, normals or confidences differ
+// in size from its depths, and for a `reference` whose depths are a part of a larger cv::Mat.
 DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const DepthMap> neighbours,
                                 const AdjustOptions& options = {});
 
@@ -71,8 +76,8 @@ struct AdjustSize {
   std::uint64_t neighbours = 0;  // that are used
 };
 
-// An upper bound of the memory [bytes] of adjust_with_neighbours(), with its result, without its
-// arguments.
+// An upper bound of the memory [bytes] of adjust_with_neighbours(). Includes the result, but not
+// the arguments.
 std::uint64_t bytes_needed(const AdjustSize& size);
 
 }  // namespace axial::depth

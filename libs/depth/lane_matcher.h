@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matcher with SIMD: exact projection and affine warp, for pinholes, flat ports and dome ports,
-// each with undistorted or distorted lenses. The source views of one register have the same kind of
-// camera. The reference view may have another kind, because the SIMD code only gets its rays.
+// The matcher with SIMD. Supports exact projection and the affine warp, for pinholes, flat ports
+// and dome ports, each with undistorted or distorted lenses. The source views that share a
+// register have the same kind of camera. The reference view may have another kind, because the
+// SIMD code gets only its rays.
 #pragma once
 
 #include <array>
@@ -20,10 +21,10 @@ namespace axial::depth {
 template <InLanes Camera>
 class LaneMatcher {
  public:
-  // Copies the images and depth maps of the sources. `image`, the reference image, must outlive the
-  // matcher. Throws an Error if a side of a source image is longer than lanes::kLargestSide, or if
-  // the images of one Group have 2^31 pixels or more together. Preconditions: at most kMaxSources
-  // sources; `set` is available.
+  // Copies the images and depth maps of the sources. `image`: the reference image, which must
+  // outlive the matcher. Throws an Error if a side of a source image is longer than
+  // lanes::kLargestSide. Throws an Error, too, if the source images of one Group have 2^31 pixels
+  // or more together. Preconditions: at most kMaxSources sources; `set` is available.
   LaneMatcher(const cv::Mat1b& image, Camera camera, std::span<const SourceView<Camera>> sources,
               const PatchMatchOptions& options,
               lanes::InstructionSet set = lanes::fastest_instruction_set());

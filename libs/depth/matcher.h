@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores plane hypotheses of one reference view against its source views, for any camera and any
-// warp. Scores one pair of plane and view at a time. LaneMatcher scores several pairs at once in
-// SIMD registers. Matcher is the reference for its tests, and runs the paper's own methods.
+// warp. Matcher scores one pair of plane and view at a time. LaneMatcher scores several pairs at
+// once in SIMD registers. Matcher is the reference in the tests of LaneMatcher, and runs the
+// paper's own methods.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,15 +31,18 @@ struct SourceView {
   const cv::Mat1f* depth = nullptr;  // the source view's depth map; null: photometric cost only
 };
 
-// Indices of a plane hypothesis and of a source view to score it in.
+// A plane hypothesis and a source view in which the plane is scored, both as indices.
 struct ScorePair {
   std::uint8_t plane, view;
 };
 
 // The score of one plane hypothesis in one source view.
 struct PlaneScore {
-  // 1 - ZNCC (kOutsideCost without a correlation), plus the geometric term, blended with the prior;
-  // 0 to kMaxCost.
+  // From 0 to kMaxCost, computed in four steps. First, the cost c is 1 - ZNCC, or kOutsideCost
+  // without a correlation. Second, if the source view has a depth map, geometric_weight times the
+  // geometric term (inconsistency() in geometric_check.h) is added to c. Third, c is blended with
+  // the prior: c += w (min(|depth - prior| / prior, 0.5) - c), where w is the prior's weight.
+  // Fourth, a cost above kMaxCost is reduced to kMaxCost.
   float cost;
   // Motion of the patch's centre in the source view per metre of depth [px/m]; 0: not visible.
   float motion;

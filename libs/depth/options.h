@@ -27,26 +27,28 @@ struct PatchMatchOptions {
 
   float sigma_color = 0.1f;  // of the bilateral weight, in intensities from 0 to 1
   float sigma_space = 3.0f;  // of the bilateral weight [px]
-  // A patch is textureless if its ReferencePatch::texture is below this value, which is a standard
-  // deviation of half a grey level. OpenMVS's value of 4e-4 is three times that deviation; with it,
-  // nearly three quarters of the pixels are lost on sand whose texture is as strong as the camera's
-  // noise. Depths of weak texture that are not confirmed by the pixels around them are removed
-  // later (weak_texture.h).
+  // A patch is textureless if its ReferencePatch::texture is below this value. The value
+  // corresponds to a standard deviation of half a grey level. OpenMVS's value of 4e-4 corresponds
+  // to three times that deviation. With OpenMVS's value, nearly three quarters of the pixels are
+  // lost on sand whose texture is as strong as the camera's noise. Depths of weak texture that
+  // the pixels around them do not confirm are removed later (weak_texture.h).
   float min_texture = 3.6e-5f;
 
   SmoothnessOptions smoothness;
 
-  // The cost of a plane is blended with the difference between its depth and a prior depth. The
-  // prior is the depth of the coarser level; in a geometric pass it is the current depth, for
-  // textureless pixels only. The prior's weight is exp(-texture / prior_texture). The value 0.002
-  // is a standard deviation of 3 grey levels, two or three times a camera's noise. With OpenMVS's
-  // value of 0.02, ground of low contrast takes over the errors of the coarser level
+  // The cost of a plane is blended with the difference between the plane's depth and a prior
+  // depth (PlaneScore::cost in matcher.h). Usually, the prior is the depth of the coarser level.
+  // In a geometric pass, the prior is the current depth, and only textureless pixels have a
+  // prior. The prior's weight is exp(-texture / prior_texture). The value 0.002 corresponds to a
+  // standard deviation of 3 grey levels, which is two or three times a camera's noise. With
+  // OpenMVS's value of 0.02, ground of low contrast takes over the errors of the coarser level
   // (docs/performance.md, "Coarser levels").
   float prior_texture = 0.002f;
 
-  // Trials are planes near a pixel's best plane. They come in pairs, one on either side of it. If
-  // the plane is good already, few trials are enough (their number and cost: docs/performance.md,
-  // "How much there is to do").
+  // Trials are planes near a pixel's best plane. Trials come in pairs, with one trial on either
+  // side of the best plane. More than 4 pairs are an error. If the best plane is good already,
+  // few trials are enough (their number and cost: docs/performance.md, "How much there is to
+  // do").
   int coarse_pairs = 4;                  // in the first sweep of a coarser level
   int first_pairs = 2;                   // in the first sweep of the working resolution
   int later_pairs = 2;                   // in later sweeps, and in geometric passes but the last
@@ -55,14 +57,16 @@ struct PatchMatchOptions {
   int restart_trials = 3;                // random planes for a pixel whose cost is bad
   float refinement_pixels = 2.0f;        // range of depth trials: motion in a source view [px]
   float refinement_angle = radians(28);  // range of normal trials
-  // The ranges are a quarter for costs up to good_cost and a half for costs up to fair_cost. At
-  // bad_cost or above, the pixel tries random planes first.
+  // The cost of a pixel's best plane scales the ranges of trials: by 1/4 if the cost is at most
+  // good_cost, otherwise by 1/2 if it is at most fair_cost, otherwise by 1. If the cost is
+  // bad_cost or more, the pixel tries random planes first.
   float good_cost = 0.594f, fair_cost = 0.81f, bad_cost = 0.99f;
 
-  // Number of random planes perpendicular to the ray, at most 5, that a pixel tries in a level's
-  // first sweep if its best plane so far costs more than `certain_cost`. Such a pixel has
-  // `search_pairs` pairs of trials. Thin structures need the random planes: their pixels match the
-  // background at a fair cost, and the coarser level does not resolve them.
+  // In a level's first sweep, a pixel tries `search_planes` random planes perpendicular to the
+  // ray if its best plane so far costs more than `certain_cost`. Such a pixel tries
+  // `search_pairs` pairs of trials. More than 5 search planes are an error. Thin structures need
+  // the random planes: their pixels match the background at a fair cost, and the coarser level
+  // does not resolve them.
   int search_planes = 4;
   int search_pairs = 2;
   float certain_cost = 0.15f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Correlation of a matching window that leaves the source image, over the texels inside. T: float,
-// or a pack of lanes.
+// Correlation of a matching window that leaves the source image, over the texels inside the
+// image. T: float, or a pack of lanes.
 #pragma once
 
 #include <cmath>
@@ -10,9 +10,10 @@
 
 namespace axial::depth {
 
-// The sums of ZNCC over the texels of a window, each multiplied by the texel's share s, which is 0
-// to 1 (see kLeastWeight). w: the weight in the reference patch. d: the grey level in the reference
-// patch minus its mean. v: the grey level in the source patch minus a constant of the window.
+// The sums of ZNCC over the texels of a window. In each sum, a texel's summand is multiplied by
+// the texel's share s, from 0 to 1 (see kLeastWeight). w: the weight in the reference patch. d:
+// the intensity (0 to 1) in the reference patch minus the patch's mean. v: the grey level (0 to
+// 255) in the source patch minus a constant of the window.
 template <class T>
 struct PartSums {
   T weights = T(0);           // s w
@@ -30,7 +31,8 @@ inline float reference_square(const ReferencePatch& patch, std::size_t k) {
   return patch.weight[k] > 0 ? patch.deviation[k] * patch.deviation[k] / patch.weight[k] : 0.0f;
 }
 
-// In [-1, 1], or kNoCorrelation.
+// Returns the correlation in [-1, 1]. Returns kNoCorrelation if the sum of weights is below
+// kLeastWeight, or if the source patch or the reference patch is flat in the part inside.
 template <class T>
 T part_correlation(const PartSums<T>& sums) {
   using refractive::greater;

@@ -28,38 +28,42 @@ struct MatchInput {
   std::span<const Eigen::Vector3f> sparse_points;  // world frame, seen by the reference view
   const cv::Mat1b* mask = nullptr;                 // non-zero: match this pixel; null: all pixels
   ProjectionMethod projection = ProjectionMethod::exact;
-  std::uint64_t* scores = nullptr;  // if given: increased by the number of planes scored, per view
+  // Null, or increased by the number of scores, of which each is for one plane in one view.
+  std::uint64_t* scores = nullptr;
 };
 
-// Computes the photometric depth map of the reference view: first on the sub-resolution levels,
-// then at the working resolution. The depth range is the range of the visible sparse points, from
-// 0.9 times the smallest to 1.1 times the largest depth. The mask is resized to the image if
-// necessary. Confidence is 1 - cost, at least 0. Throws an Error if
+// Computes the photometric depth map of the reference view, first on the sub-resolution levels,
+// then at the working resolution. The depth range is 0.9 times the smallest to 1.1 times the
+// largest depth of the sparse points that are visible in the reference view. The mask is resized
+// to the image if necessary. The confidence is 1 - cost, or 0 if the cost is above 1. Throws an
+// Error if
 //   - no sparse point is visible in the reference view,
 //   - there is no source view, or more than 32,
-//   - the options ask for more planes of a pixel at once than kMaxCandidates (candidates.h),
+//   - the options need more planes of a pixel at once than kMaxCandidates (candidates.h),
 //   - the source images are too large for LaneMatcher,
 //   - the paper's homography or line search is asked for and does not support the cameras.
 DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& options);
 
 // Improves the depth map `current` of the reference view by one sweep with the
-// geometric-consistency term (eq. 7). `source_maps`: the depth maps of the source views, in the
-// order of input.sources; a null or missing entry means that the view has none. `pass` counts from
-// 0. The `last` pass uses options.last_pairs trials. Precondition: `current` has the reference
-// image's size, normals and confidences. Throws an Error as estimate_depth_map() does, except for
-// sparse points, which are not used.
+// geometric-consistency term (eq. 7). Planes stay in the depth range of `current`. `source_maps`:
+// the depth maps of the source views, in the order of input.sources. A null or missing entry
+// means that the view has no depth map. `pass`: the number of the pass, from 0. `last`: whether
+// this pass is the last one. The last pass uses options.last_pairs pairs of trials, the other
+// passes use options.later_pairs. Precondition: `current` has the reference image's size, normals
+// and confidences. Throws an Error as estimate_depth_map() does, except for sparse points, which
+// are not used.
 DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
                           std::span<const DepthMap* const> source_maps, int pass, bool last,
                           const PatchMatchOptions& options);
 
 // The sizes on which the memory of matching depends.
 struct MatchSize {
-  std::uint64_t pixels = 0;  // of the reference, and at most of each source
+  std::uint64_t pixels = 0;  // of the largest image of reference and sources
   std::uint64_t sources = 0;
 };
 
-// An upper bound of the memory [bytes] of estimate_depth_map() and refine_depth_map(), with their
-// result and two copies of it in which filters work, without their input.
+// An upper bound of the memory [bytes] that estimate_depth_map() or refine_depth_map() needs.
+// Includes the result and two copies of the result in which filters work, but not the input.
 std::uint64_t bytes_needed(const MatchSize& size);
 
 }  // namespace axial::depth

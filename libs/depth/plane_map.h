@@ -21,8 +21,9 @@ struct PlaneHypothesis {
 
 inline constexpr std::uint8_t kNoView = 255;
 
-// The two source views in which a plane has the lowest costs, best first. The same view twice if
-// the plane was scored in one view only; kNoView if the best views are not known.
+// The two source views in which a plane has the lowest costs, best first. Both entries are the
+// same view if the plane was scored in one view only. Both are kNoView if the best views are not
+// known.
 using BestViews = std::array<std::uint8_t, 2>;
 
 struct PlanePixel {

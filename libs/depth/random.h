@@ -11,8 +11,9 @@
 
 namespace axial::depth {
 
-// Random numbers with a key of image, pixel and sweep. The n-th number of a key is always the same.
-// So results do not depend on the number of threads and on the order of pixels.
+// Random numbers for one key, which consists of image, pixel and sweep. The n-th number of a key
+// is always the same. So results do not depend on the number of threads or on the order of
+// pixels.
 class KeyedRandom {
  public:
   KeyedRandom(std::uint64_t image, std::uint64_t pixel, std::uint64_t sweep)

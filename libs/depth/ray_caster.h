@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the rays of a camera's pixels, kRayTile pixels of a row at a time: with SIMD for camera
-// types that the SIMD code supports, otherwise one ray after the other.
+// Computes the rays of a camera's pixels, for kRayTile pixels of a row at a time. Uses SIMD for
+// the camera types that the SIMD code supports. Computes one ray after the other for other types.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ class RayCaster {
   Camera camera_;
 };
 
-// The version with SIMD. Its rays are bit-identical to those of the camera's ray().
+// The ray caster with SIMD. Its rays are bit-identical to the results of the camera's ray().
 class LaneRayCaster {
  public:
   // Precondition: `set` is available.
@@ -43,7 +43,8 @@ class LaneRayCaster {
   std::unique_ptr<const lanes::Scorer> scorer_;
 };
 
-// The numbers of `camera` as the SIMD code takes them.
+// Returns tables for Scorer::rays(), with `camera` as the reference camera and without source
+// views.
 template <InLanes Camera>
 std::unique_ptr<const lanes::SceneTables> ray_tables(const Camera& camera);
 

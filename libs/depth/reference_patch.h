@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The matching window: every second pixel of 9x9 pixels, which are 25 texels around the reference
-// pixel. Also the constants that all scorers share. Plain data only, because translation units for
-// all instruction sets include this file.
+// The matching window around a reference pixel, and the constants that all scorers share. The
+// window has 25 texels: every second pixel, in both directions, of 9x9 pixels. This file contains
+// only plain data, because translation units for all instruction sets include it.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the padding 
 struct ReferencePatch {
   alignas(32) std::array<float, kPaddedTexels> weight;     // bilateral, sums to 1
   alignas(32) std::array<float, kPaddedTexels> deviation;  // weight * (intensity - mean)
-  // Weighted mean of the intensities, 0 to 255. It is subtracted from the source's grey levels,
-  // too, to keep their sums small.
+  // Weighted mean of the intensities, 0 to 255. The same mean is also subtracted from the
+  // source's grey levels, so that the sums over them stay small.
   float mean;
   float variance;  // sum of weight * (intensity - mean)^2 with intensities from 0 to 1
   float texture;   // the same sum with the weights before normalisation, which are at most 1
@@ -29,24 +29,27 @@ struct ReferencePatch {
 inline constexpr float kOutsideCost = 1.2f;  // cost of a patch without a correlation
 inline constexpr float kMaxCost = 2.0f;
 
-// The result for a patch that has no correlation: its centre lies outside the source image or is
-// NaN, too little of it lies inside, or it is flat. Less than every correlation.
+// The result for a patch without a correlation. A patch has no correlation if its centre lies
+// outside the source image or is NaN, if too little of the patch lies inside the image
+// (kLeastWeight), or if the source patch or the reference patch is flat. The value is less than
+// every correlation.
 inline constexpr float kNoCorrelation = -2.0f;
 
-// The weight of a texel is multiplied by the texel's share: its distance to the edge of the source
-// image [px], from 0 at the edge to 1 at one pixel or more. So the correlation is a continuous
-// function of the hypothesis. A patch has a correlation if the sum of these products is at least
-// kLeastWeight (for a patch inside the image, the sum is 1).
+// The smallest sum of weights with which a patch has a correlation. In this sum, each texel's
+// weight is multiplied by the texel's share. The share is the distance of the texel to the edge
+// of the source image [px], reduced to 1 if larger, and 0 outside the image. So the correlation
+// is a continuous function of the hypothesis. For a patch inside the image, the sum is 1.
 inline constexpr float kLeastWeight = 0.3f;
 
 // A source patch is flat if its variance [grey levels^2] is not above this value.
 inline constexpr float kFlatVariance = 0.25f;
-// The part of a reference patch that a source image shows is flat if its variance, of intensities
-// from 0 to 1, is not above this value.
+// A reference patch is flat if its variance is not above this value, for intensities from 0 to 1.
+// This limit applies only if the source patch lies partly outside its image. The variance is then
+// computed over the part inside.
 inline constexpr float kFlatReference = kFlatVariance / (255 * 255);
 
-// Largest relative difference of depth at which the depth map of a source view still shows the same
-// surface.
+// A relative difference of depth. If the depth map of a source view differs from a hypothesis by
+// less than this, both count as the same surface.
 inline constexpr float kSameSurface = 0.03f;
 
 }  // namespace axial::depth

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The smoothness factor of a hypothesis: the paper's eq. (6) with d_v = n . (X_n - X). T is float
-// or a SIMD pack.
+// The smoothness factor of a hypothesis, eq. (6) of the paper. Its distance d_v is n . (X_n - X),
+// where n is the normal and X the point of the hypothesis, and X_n is the point of a neighbour. T
+// is float or a SIMD pack.
 #pragma once
 
 #include <array>
@@ -37,9 +38,9 @@ T fading(const T& x) {
   return y * y;
 }
 
-// The factor of the cost, at most 1, of the plane through `point` [m] with the unit normal
-// `normal`. It is smaller the better the neighbours' points lie on the plane and the better their
-// normals agree, and 1 without neighbours.
+// Returns the factor of the cost of the plane through `point` [m] with the unit normal `normal`.
+// The factor is at most 1. It is smaller the closer the neighbours' points lie to the plane, and
+// the better the neighbours' normals agree with `normal`. It is 1 without neighbours.
 template <class T>
 T smoothness(const refractive::Vector3<T>& point, const refractive::Vector3<T>& normal,
              std::span<const SurfacePoint> neighbours, const SmoothnessOptions& options) {

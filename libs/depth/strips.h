@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strips of rows into which a sweep divides a map. Pixels next to a strip are read as they were
-// before the sweep, so that strips are independent.
+// The strips of rows into which a sweep divides a map. While a strip is processed, pixels outside
+// it are read as they were before the sweep, so that strips are independent.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ namespace axial::depth {
 
 inline constexpr int kStripHeight = 32;
 
-// The surface at the pixels around a pixel that have a plane.
+// The surface at the four pixels next to a pixel, without the pixels that have no plane.
 struct Neighbourhood {
   std::array<SurfacePoint, 4> points;
   std::size_t count = 0;
@@ -35,7 +35,8 @@ class Strips {
   int top(int strip) const { return strip * kStripHeight; }
   int bottom(int strip) const { return std::min(top(strip) + kStripHeight, map_.height); }
 
-  // Copies the rows at the edges. Call this before the sweep changes a pixel.
+  // Copies the two rows at each edge between strips. Call this function before the sweep changes
+  // a pixel.
   void copy_edges() {
     const auto width = static_cast<std::ptrdiff_t>(map_.width);
     edges_.clear();
@@ -45,7 +46,8 @@ class Strips {
     }
   }
 
-  // A pixel of the strip or next to it. Outside the strip, its state when copy_edges() was called.
+  // Returns pixel (x, y). If it belongs to the strip, its current state is returned. If it is in
+  // the row above or below the strip, its state at the call of copy_edges() is returned.
   const PlanePixel& neighbour(int strip, int x, int y) const {
     const int first = top(strip);
     if (y >= first && y < first + kStripHeight) return map_.at(x, y);
@@ -54,7 +56,8 @@ class Strips {
     return edges_[static_cast<std::size_t>((edge * 2 + row) * map_.width + x)];
   }
 
-  // The surface at the four pixels next to a pixel of the strip, with the states of neighbour().
+  // Returns the surface at the pixels next to pixel (x, y) of the strip, with the states that
+  // neighbour() returns.
   Neighbourhood neighbourhood(int strip, int x, int y) const {
     Neighbourhood around;
     const auto add = [&](int nx, int ny) {

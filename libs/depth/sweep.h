@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One PatchMatch sweep. The image is divided into strips of rows. The pixels of a strip are visited
-// row by row, forwards or backwards, so that a good hypothesis propagates through the whole strip.
-// Across the edge of a strip, pixels read the state before the sweep. So strips are independent,
-// and the results are bit-identical for any number of threads.
+// One PatchMatch sweep. The image is divided into strips of rows. The pixels of a strip are
+// visited row by row, forwards or backwards, so that a good hypothesis propagates through the
+// whole strip. Across the edge of a strip, pixels read the state before the sweep. So strips are
+// independent, and the results are bit-identical for any number of threads.
 //
-// A visit scores the pixel's own plane in at most four views, and the planes of the two neighbours
-// visited before in the two best views of each plane. These are at most eight scores (one AVX2
-// register), whatever the number of views. Trials around the best plane follow. Few trials are
-// scored together with these planes (one AVX-512 register), around the plane with the lowest
-// earlier cost. In a level's first sweep, a pixel whose plane is not certain also tries random
-// planes (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
+// A visit scores the pixel's own plane in at most four views. It scores the planes of the two
+// neighbours visited before, each in the two best views of the plane. These are at most eight
+// scores (one AVX2 register), whatever the number of views. Then the visit scores trials around
+// the best plane. If there are few trials, they are scored together with the other planes (one
+// AVX-512 register). In this case, the trials lie around the plane with the lowest earlier cost,
+// because the best plane is not known yet.
+//
+// In a level's first sweep, a pixel whose plane is not certain also tries random planes
+// (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
 // because the best views are not known yet and these levels have few pixels.
 #pragma once
 
@@ -196,8 +199,9 @@ class Sweep {
     current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views, best.motion};
   }
 
-  // The views for the pixel's own plane: all, or the best views of the pixel and its neighbours and
-  // some others. These take turns, so that a view that was occluded can be chosen again.
+  // The views for the pixel's own plane. These are all views if there are few. Otherwise they are
+  // the best views of the pixel, the best view of each neighbour visited before, and some other
+  // views. The other views take turns, so that a view that was occluded can be chosen again.
   ViewList own_views(int x, int y, const PlanePixel& current,
                      std::span<const PlanePixel* const> before) const {
     ViewList own;
@@ -220,8 +224,9 @@ class Sweep {
     for (; own.count < wanted; ++turn) own.add(all_views_[turn % of]);
   }
 
-  // The neighbour's plane where this pixel's ray meets it (eq. 8). No value without a plane of good
-  // cost (below keep_cost), at grazing incidence, or if the depth is out of range.
+  // Returns the neighbour's plane with the depth at which this pixel's ray meets it (eq. 8).
+  // Returns no value if the neighbour has no plane, if the plane's cost is keep_cost or more, at
+  // grazing incidence, or if the depth is out of range.
   std::optional<PlaneHypothesis> carried(const ReferencePixel& pixel,
                                          const PlanePixel& from) const {
     if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return {};
@@ -261,9 +266,10 @@ class Sweep {
     }
   }
 
-  // Sets `likely`, the expected best plane of a pixel, to `plane` if its cost at pixel `from` is
-  // lower. Only planes that this level or pass has scored count (their motion is known). At the
-  // start of a geometric pass, these are only the planes of the neighbours visited before.
+  // Sets `likely`, the expected best plane of a pixel, to `plane` if the cost of `plane` at pixel
+  // `from` is lower than the cost of `likely`. Only planes that this level or pass has scored
+  // count (their motion is known). At the start of a geometric pass, these are only the planes of
+  // the neighbours visited before.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
              std::optional<BestPlane>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))
@@ -275,7 +281,7 @@ class Sweep {
            candidates.count + 2 * static_cast<std::size_t>(pairs) <= kMaxCandidates;
   }
 
-  // Scores the candidates. Sets `best` to the best candidate if its cost is lower.
+  // Scores the candidates. Sets `best` to the best candidate if that costs less than `best`.
   void keep_best(const Visit& at, const Candidates& candidates, BestPlane& best) const {
     std::array<PlaneScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
@@ -355,8 +361,8 @@ class Sweep {
     }
   }
 
-  // For a pixel with a bad cost: tries random planes in many views, without the smoothness factors.
-  // False if the cost stays bad.
+  // For a pixel with a bad cost: tries random planes in many views, without the smoothness
+  // factors. Returns false if the cost stays bad.
   bool restart(const Visit& at, KeyedRandom& random, BestPlane& best) const {
     Candidates candidates;
     const std::size_t views = matcher_.views();

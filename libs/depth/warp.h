@@ -41,9 +41,9 @@ inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
           refractive::plane_point_derivative(ray, jacobian, plane.depth, plane.normal)};
 }
 
-// A warp policy has two functions. `between` computes the Map of a hypothesis and a source view;
-// `texels` computes the positions of the texels in the source view from this Map. They are separate
-// so that the projections into several views can run in parallel in the processor.
+// A warp policy has two functions. `between` computes the Map of a hypothesis and a source view.
+// `texels` computes the positions of the texels in the source view from this Map. The functions
+// are separate, so that the projections into several views can run in parallel in the processor.
 
 // The exact projection of the centre and the exact first derivative (docs/refraction.md, "The
 // warp"). Needs no division per texel.
@@ -73,9 +73,9 @@ struct AffineWarp {
   }
 };
 
-// The paper's warp (eqs. 1-3): the homography between the virtual camera of the reference pixel and
-// the virtual camera of the source pixel, which is rounded to integers. For a pinhole camera it is
-// the usual homography of a plane.
+// The paper's warp (eqs. 1-3). It is the homography between two virtual cameras: the virtual
+// camera of the reference pixel, and the virtual camera of the source pixel after rounding that
+// pixel to integers. For a pinhole camera it is the usual homography of a plane.
 struct HomographyWarp {
   struct Map {
     Eigen::Vector2f centre;  // image of the surface point in the source view [px], not rounded

@@ -12,9 +12,10 @@ namespace axial::depth {
 struct WeakTextureOptions {
   // Texture is weak if the standard deviation of the grey levels in a 9x9 window is below this.
   float deviation = 1.5f;
-  // Smallest mean confidence of the pixels with weak texture in a 9x9 window. On the preset `sand`
-  // of SimulateUnderwater, the mean is at least 0.68 in 95 % of the windows. With a twentieth of
-  // that texture, it is below 0.62 in half of the windows.
+  // An unsure depth is kept if the mean confidence of the unsure depths in the 9x9 window around
+  // it is at least this value. On the preset `sand` of SimulateUnderwater, the mean is at least
+  // 0.68 in 95 % of the windows. With a twentieth of that texture, it is below 0.62 in half of
+  // the windows.
   float least_confidence = 0.6f;
 };
 

@@ -37,8 +37,9 @@ struct TexelPositions {
   alignas(32) std::array<float, kPaddedTexels> y;
 };
 
-// Returns the correlation in [-1, 1], or kNoCorrelation. All implementations add in the same order
-// and use no fused multiply-add, so their results are bit-identical.
+// Returns the correlation in [-1, 1] of the reference patch with the source image at the texel
+// positions, or kNoCorrelation. All implementations add in the same order and use no fused
+// multiply-add. So their results are bit-identical.
 using ZnccFunction = float (*)(const ReferencePatch&, const QuadImage&, const TexelPositions&);
 
 // The reference implementation, in plain C++.
@@ -48,8 +49,8 @@ float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const Te
 ZnccFunction fastest_zncc();
 
 namespace detail {
-// For a patch that lies partly outside the source image. Computes all sums, also those of the
-// reference patch, over the texels inside the source image.
+// The correlation of a patch that lies partly outside the source image. Computes all sums, also
+// those of the reference patch, over the texels inside the source image.
 float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 }  // namespace detail

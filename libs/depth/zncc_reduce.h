@@ -9,8 +9,9 @@
 namespace axial::depth {
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// Weighted sums over the texels, with one partial sum for each of eight SIMD lanes. Source grey
-// levels are from 0 to 255, less ReferencePatch::mean.
+// Weighted sums over the texels, with one partial sum for each of eight SIMD lanes. v is the grey
+// level (0 to 255) in the source image minus ReferencePatch::mean. The sums are of weight * v
+// (mean), weight * v^2 (square) and deviation * v (cross).
 struct ZnccSums {
   alignas(32) std::array<float, 8> mean{};
   alignas(32) std::array<float, 8> square{};

@@ -30,8 +30,9 @@ auto gather_floats(const float* base, const typename Pack<Abi>::Ints& at) {
 }  // namespace detail
 
 // depth_near() of geometric_check.h in SIMD lanes, with the tolerance kSameSurface. `depths`: the
-// depth maps of all views; `image`: where each lane's map begins, and its size; `at`: the positions
-// (depth 0 if not visible).
+// depth maps of all views [m]. `image`: where each lane's map begins in `depths`, and the size of
+// the map. `at`: the position in each lane's map [px]. `expected`: the expected depths [m]. The
+// result is 0 in lanes whose position is not visible.
 template <class Abi>
 Pack<Abi> lane_depth_near(const float* depths, const LaneImages<Abi>& image,
                           const refractive::Projection<Pack<Abi>>& at, const Pack<Abi>& expected) {

@@ -13,7 +13,8 @@ struct LaneImages {
   Pack<Abi> width, height;
 };
 
-// The images of as many views as a pack has lanes. `view`: the aligned indices of these views.
+// Returns the images of one view per lane. `view`: the indices of these views, aligned to the
+// size of the register.
 template <class Abi>
 LaneImages<Abi> lane_images(const SceneTables& tables, const std::int32_t* view) {
   using Ints = typename Pack<Abi>::Ints;

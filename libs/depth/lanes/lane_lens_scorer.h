@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scorer for cameras with distorted lenses. Each instruction set has a translation unit for it.
-// These are separate from the translation units for undistorted lenses, so that the machine code
-// for undistorted lenses does not depend on distorted ones.
+// The scorer for cameras with distorted lenses. Each instruction set has a translation unit for
+// this scorer. This translation unit is separate from the translation unit for undistorted
+// lenses, so that the machine code for undistorted lenses does not depend on distorted lenses.
 #pragma once
 
 #include "depth/lanes/lane_scorer.h"
@@ -9,7 +9,7 @@
 
 namespace axial::depth::lanes {
 
-// nullptr if the kind of camera in `tables` has no distorted lens.
+// Makes a scorer. Returns nullptr if the kind of camera in `tables` has no distorted lens.
 template <class Narrow, class Wide = Narrow>
 std::unique_ptr<Scorer> make_lane_lens_scorer(const SceneTables& tables) {
   switch (tables.kind) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scorer as a template for all instruction sets. Only the scorers' translation units include
-// it; each of them is compiled for one instruction set.
+// this file. Each of these translation units is compiled for one instruction set.
 #pragma once
 
 #include "depth/lanes/lane_view.h"
@@ -20,9 +20,9 @@
 namespace axial::depth::lanes {
 
 // Projects in registers of `Wide` and correlates in registers of `Narrow`. A projection is a long
-// chain of dependent operations. One wide register passes this chain once where two narrow
-// registers need two passes, and it is no slower if half of it is unused. Correlation does not gain
-// from wide registers, because texels are loaded one by one.
+// chain of dependent operations. Two narrow registers need two passes through this chain, but one
+// wide register needs only one pass. The pass takes no longer if half of the register is unused.
+// Correlation does not gain from wide registers, because texels are loaded one by one.
 template <template <class> class Camera, class Narrow, class Wide>
 class LaneScorer final : public Scorer {
   using T = Pack<Narrow>;
@@ -73,7 +73,7 @@ class LaneScorer final : public Scorer {
   View view_;
 };
 
-// nullptr if the kind of camera in `tables` has a distorted lens.
+// Makes a scorer. Returns nullptr if the kind of camera in `tables` has a distorted lens.
 template <class Narrow, class Wide = Narrow>
 std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
   switch (tables.kind) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bilinear grey levels in integer arithmetic, with one position per SIMD lane. Positions are 16.16
-// fixed-point numbers; weights have 15 bits. The 16-bit halves of a 32-bit lane hold the upper and
-// the lower row of the 2x2 neighbourhood. This needs half the work of floats, is exact to 0.01 grey
-// levels, and is bit-identical on all instruction sets.
+// Bilinear grey levels in integer arithmetic, with one position per SIMD lane. Positions are
+// 16.16 fixed-point numbers. Weights have 15 bits. The 16-bit halves of a 32-bit lane hold the
+// upper and the lower row of the 2x2 neighbourhood. Integer arithmetic needs half the work of
+// floats. Its results are exact to 0.01 grey levels, and are bit-identical on all instruction
+// sets.
 #pragma once
 
 #include "depth/lanes/pack.h"
@@ -55,9 +56,10 @@ inline __m128i lower_half_twice() {
 #endif
 
 // Operations on the 16-bit halves of 32-bit lanes.
-//   upper_halves: the upper half of `upper`, and as the lower half the upper half of `lower`.
+//   upper_halves: the upper half of `upper` as the upper half, and the upper half of `lower` as the
+//                 lower half.
 //   dot_halves:   the sum of the products of the upper halves and of the lower halves.
-//   fractions:    the fraction of a 16.16 number with 15 bits, in both halves.
+//   fractions:    the upper 15 bits of the fraction of a 16.16 number, in both halves.
 #ifdef __AVX2__
 inline __m256i upper_bytes(__m256i a) {
   return _mm256_srli_epi16(a, 8);
@@ -95,13 +97,13 @@ class LaneSampler {
   using Part = typename Pack<Abi>::Part;
   using Ints = typename Pack<Abi>::Ints;
 
-  // `words`: SceneTables::words. `begin`, `width`: the first index and the width of each lane's
-  // image.
+  // `words`: SceneTables::words. `begin`: the index of the first word of each lane's image.
+  // `width`: the width of each lane's image [px].
   LaneSampler(const std::uint32_t* words, const Ints& begin, const Ints& width)
       : words_(words), begin_(begin), width_(kHalves ? (width << 16) | Ints(1) : width) {}
 
-  // The grey level times kGreyUnit at (x, y), in units of 1/kPositionUnit px. Precondition:
-  // 0 <= x < width - 1 and 0 <= y < height - 1 in pixels.
+  // Returns the grey level at (x, y), times kGreyUnit. x and y are in units of 1/kPositionUnit
+  // px. Precondition: 0 <= x < width - 1 and 0 <= y < height - 1, in pixels.
   Part operator()(const Ints& x, const Ints& y) const {
     if constexpr (kHalves)
       return by_halves(x, y);

@@ -23,10 +23,10 @@ struct LaneWindow {
 
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// Computes the sums over one window per lane, with grey levels in units of kGreyUnit. kPart:
-// windows may leave their images. Then, texels outside have a share of 0; their samples are taken
-// at the edge of the image. A whole window gets the same bytes as without kPart. Without kPart, the
-// first three sums stay 0.
+// Computes the sums over one window per lane, with grey levels in units of kGreyUnit. With kPart,
+// windows may leave their images. A texel outside its image then has a share of 0, and its sample
+// is taken at the edge of the image. A whole window gets the same bytes with and without kPart.
+// Without kPart, no window may leave its image, and the first three sums stay 0.
 template <bool kPart, class Abi>
 PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<Abi>& sample,
                                 const LaneWindow<Abi>& window) {
@@ -66,8 +66,8 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
   return sums;
 }
 
-// The correlation of the lanes in `whole`, whose whole window lies inside the image, and
-// kNoCorrelation in the other lanes.
+// Returns the correlation in the lanes of `whole`, whose windows lie completely inside their
+// images, and kNoCorrelation in the other lanes.
 template <class Abi>
 Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi>>& sums,
                             const PackMask<Abi>& whole) {
@@ -79,8 +79,10 @@ Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi
   return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
 }
 
-// The correlation if the windows of the lanes in `partly` leave their images. A separate function,
-// because this case is rare and its code would slow down the usual case.
+// Returns the correlation of each lane if some windows leave their images. The windows of the
+// lanes in `whole` lie completely inside their images. The windows of the lanes in `partly` leave
+// their images. The other lanes get kNoCorrelation. This is a separate function, because the case
+// is rare and its code would slow down the usual case.
 template <class Abi>
 [[gnu::noinline]] Pack<Abi> lane_zncc_of_parts(const ReferencePatch& patch,
                                                const LaneSampler<Abi>& sample,
@@ -98,12 +100,14 @@ template <class Abi>
 
 }  // namespace
 
-// The correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as ZnccFunction. The
-// result of a lane does not depend on the other lanes. Whether the whole window is inside the image
-// is tested at its corners, because the warp is affine. Centre and steps are rounded to 1/65536 px,
-// which moves samples by at most 1e-3 px. A whole window keeps one pixel of distance to the
-// image's edge, so its samples meet the precondition of LaneSampler. `words`: SceneTables::words.
-// `warp`: d(source pixel)/d(reference pixel).
+// Returns the correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as
+// ZnccFunction. `words`: SceneTables::words. `centre`: the patch's centre in each lane's source
+// image [px]. `warp`: d(source pixel)/d(reference pixel).
+//
+// The result of a lane does not depend on the other lanes. The warp is affine, so a test of the
+// window's corners tells whether the whole window is inside the image. Centre and steps are
+// rounded to 1/65536 px, which moves samples by at most 1e-3 px. A whole window keeps one pixel
+// of distance to the image's edge, so that its samples meet the precondition of LaneSampler.
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A SIMD register of floats with the operators of a number, based on std::experimental::simd. The
-// type contains the ABI and so the instruction set. Therefore functions that are compiled for
-// different instruction sets have different names for the linker.
+// ABI, and with it the instruction set, is a part of the type. Therefore functions that are
+// compiled for different instruction sets have different names for the linker.
 #pragma once
 
 #include <array>
@@ -82,8 +82,9 @@ struct Pack {
   friend PackMask<Abi> operator>=(const Pack& a, const Pack& b) { return {a.part >= b.part}; }
 };
 
-// Always inlined, because translation units for one instruction set must not share a copy either
-// (tests/depth/shared_names_test.py).
+// Returns `yes` in the lanes where `mask` is true and `no` in the other lanes. Always inlined, so
+// that no two translation units share a compiled copy, not even if they are for the same
+// instruction set (tests/depth/shared_names_test.py).
 template <class Abi>
 [[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
                                                Pack<Abi> no) {
@@ -103,8 +104,9 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
-// The smaller and the larger number. Both functions return b if a or b is NaN, as the minimum and
-// maximum instructions do. These instructions take one step; comparison and selection take two.
+// lesser() returns the smaller number of each lane, and greater() the larger number. Both return
+// b if a or b is NaN, as the minimum and maximum instructions do. These instructions take one
+// step. A comparison and a selection, as in min() and max(), take two.
 template <class Abi>
 Pack<Abi> lesser(const Pack<Abi>& a, const Pack<Abi>& b) {
   using Part [[maybe_unused]] = typename Pack<Abi>::Part;

@@ -29,17 +29,18 @@ struct LanePlanes {
   LaneFloats nz;
 };
 
-// The plane (index into LanePlanes) and the source view of each lane. Lanes from `count` on are
-// unused. Their indices must be valid, too, so they repeat another lane; their scores have no
-// meaning.
+// The plane and the source view of each lane, as indices into LanePlanes and SceneTables. Lanes
+// from `count` on are unused. The indices of unused lanes must be valid, too, so they repeat
+// another lane. The scores of unused lanes have no meaning.
 struct LanePairs {
   std::size_t count;
   alignas(64) std::array<std::int32_t, kLanes> plane;
   alignas(64) std::array<std::int32_t, kLanes> view;
 };
 
-// The reference pixel: its ray and the ray's derivatives by the pixel (u, v), in the reference
-// camera's frame; its prior (ReferencePixel) and its window.
+// The reference pixel. Its ray and the ray's derivatives by the pixel (u, v) are in the reference
+// camera's frame. `prior_depth` and `prior_weight` are explained at ReferencePixel. `patch` is
+// the pixel's window.
 struct LanePixel {
   std::array<float, 3> origin, direction;
   std::array<float, 3> origin_u, origin_v, direction_u, direction_v;
@@ -47,8 +48,9 @@ struct LanePixel {
   const ReferencePatch* patch;
 };
 
-// The rays of kLanes pixels of a row and their derivatives: the 18 components in the order of
-// LanePixel, each for all pixels.
+// The rays of kLanes pixels of a row, with their derivatives. Each of the 18 entries holds one
+// component for all pixels. The components have the order of LanePixel: origin, direction,
+// origin_u, origin_v, direction_u, direction_v.
 struct LaneRays : std::array<LaneFloats, 18> {};
 
 struct LaneScores {

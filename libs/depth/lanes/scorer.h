@@ -36,16 +36,17 @@ struct CameraFields {
   bool operator==(const CameraFields&) const = default;
 };
 
-// The data of the reference camera and of up to kLanes source views. A LaneFloats has one entry per
-// view. The entries beyond the last view are not used.
+// The data of the reference camera and of up to kLanes source views. A LaneFloats has one entry
+// per source view. The entries beyond the last view are not used.
 struct SceneTables {
-  CameraKind kind = CameraKind::pinhole;  // of all these cameras
+  CameraKind kind = CameraKind::pinhole;  // of the source cameras; for rays(): of `reference`
   CameraFields reference;                 // used by rays() only
   // The projectors' fields: projector[field][view].
   std::array<LaneFloats, kMaxCameraFields> projector{};
   int steps = 0;                // largest number of projection steps of all projectors
   bool same_projector = false;  // the projectors of all source views are equal
-  // x_projector = rotation * x_reference + translation, in the source projector's frame; row-major.
+  // From the reference camera's frame to the frame of each source view's projector: x_projector =
+  // rotation * x_reference + translation. The rotation is row-major.
   std::array<LaneFloats, 9> rotation{};
   std::array<LaneFloats, 3> translation{};
   // The words of all source images (QuadImage, zncc.h), one image after the other, and the index of
