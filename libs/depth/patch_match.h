@@ -39,7 +39,8 @@ struct MatchInput {
 // Error if
 //   - no sparse point is visible in the reference view,
 //   - there is no source view, or more than 32,
-//   - the options need more planes of a pixel at once than kMaxCandidates (candidates.h),
+//   - the options ask for more than kMaxCandidates (candidates.h) planes of a pixel to be scored
+//     together,
 //   - the source images are too large for LaneMatcher,
 //   - the paper's homography or line search is asked for and does not support the cameras.
 DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& options);

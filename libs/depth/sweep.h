@@ -267,9 +267,9 @@ class Sweep {
   }
 
   // Sets `likely`, the expected best plane of a pixel, to `plane` if the cost of `plane` at pixel
-  // `from` is lower than the cost of `likely`. Only planes that this level or pass has scored
-  // count (their motion is known). At the start of a geometric pass, these are only the planes of
-  // the neighbours visited before.
+  // `from` is lower than the cost of `likely`, or lower than options_.bad_cost if `likely` is
+  // empty. Ignores a plane that this level or pass has not scored yet; its motion is 0. In the
+  // first sweep of a geometric pass, only the neighbours visited before have scored planes.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
              std::optional<BestPlane>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))

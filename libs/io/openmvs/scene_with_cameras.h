@@ -52,9 +52,9 @@ std::filesystem::path housing_file(const SceneFiles& files);
 SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
 
 // Writes the files of the housing, the lenses and the offset beside the scene `output`, where later
-// programs look for them. An existing housing file is removed if the scene has no housing. An
-// existing offset file is removed if the scene is in the world and `output` is not the scene that
-// was read. The file of lenses is written or removed as in write_lenses_beside. The housing file of
+// programs look for them. An existing housing file is removed if the scene has no housing. The
+// offset file is written if scene.frame is not the world. If scene.frame is the world, an existing
+// offset file is removed, except if `output` is the scene that was read. The file of lenses is written or removed as in write_lenses_beside. The housing file of
 // `files`, from which the scene was read, is never changed or removed. `lenses` is the result of
 // lenses_of() for the scene and `output`.
 void write_cameras_beside(const std::filesystem::path& output, const SceneWithCameras& scene,
