@@ -23,8 +23,9 @@ inline constexpr std::size_t kPointGrain = 1024;
 
 // Calls body(i) for every i in [0, count), on any thread, and returns when all calls have returned.
 // An exception that a body throws is rethrown here; items that have not begun may then be left out.
-// This loop is for items that need much memory. The items begin in the order of i. No more than `in_flight` items run at the same time; 0 is raised to 1.
-// The items may use parallel loops themselves.
+// This loop is for items that need much memory. The items begin in the order of i. No more than
+// `in_flight` items run at the same time; 0 is raised to 1. The items may use parallel loops
+// themselves.
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 

@@ -23,8 +23,8 @@ bool is_calibmar(const std::filesystem::path& path);
 ColmapCamera read_calibmar(const std::filesystem::path& path);
 
 // True if the file states that the camera has no port: its key "non_svp_model" is NONE or empty.
-// False if the key "non_svp_model" is missing or has another value. Error if the file cannot be read
-// or is malformed. The values of other keys are not checked.
+// False if the key "non_svp_model" is missing or has another value. Error if the file cannot be
+// read or is malformed. The values of other keys are not checked.
 bool says_no_port(const std::filesystem::path& path);
 
 // Writes `camera` with its port, if it has one. `comments` are written at the top of the file, one

@@ -54,9 +54,10 @@ SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
 // Writes the files of the housing, the lenses and the offset beside the scene `output`, where later
 // programs look for them. An existing housing file is removed if the scene has no housing. The
 // offset file is written if scene.frame is not the world. If scene.frame is the world, an existing
-// offset file is removed, except if `output` is the scene that was read. The file of lenses is written or removed as in write_lenses_beside. The housing file of
-// `files`, from which the scene was read, is never changed or removed. `lenses` is the result of
-// lenses_of() for the scene and `output`.
+// offset file is removed, except if `output` is the scene that was read. The file of lenses is
+// written or removed as in write_lenses_beside. The housing file of `files`, from which the scene
+// was read, is never changed or removed. `lenses` is the result of lenses_of() for the scene and
+// `output`.
 void write_cameras_beside(const std::filesystem::path& output, const SceneWithCameras& scene,
                           const SceneLenses& lenses, const SceneFiles& files);
 
