@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/first_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
@@ -28,13 +29,6 @@ struct Job {
   fs::path target;
   cv::Size size;
 };
-
-bool is_jpeg(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  return extension == ".jpg" || extension == ".jpeg";
-}
 
 cv::Size shrunk(const cv::Size& size, unsigned max_resolution) {
   const double factor =
@@ -56,7 +50,8 @@ std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::
       continue;
     if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
     fs::path target = folder / fs::path(image.path).lexically_normal().lexically_relative(common);
-    if (!(is_jpeg(target) && header.bits == 8) && target.extension() != ".png") target += ".png";
+    if (!(is_jpeg_name(target) && header.bits == 8) && target.extension() != ".png")
+      target += ".png";
     jobs.push_back({i, target, shrunk(header.size, max_resolution)});
     targets.push_back(target);
   }
@@ -71,7 +66,7 @@ void shrink(const Job& job, const std::string& source) {
   const cv::Mat pixels = io::read_photograph(source).pixels;
   cv::Mat small;
   cv::resize(pixels, small, job.size, 0, 0, cv::INTER_AREA);
-  if (is_jpeg(job.target))
+  if (is_jpeg_name(job.target))
     io::write_jpeg(job.target, small, kQuality);
   else
     io::write_png(job.target, small);

@@ -16,6 +16,7 @@
 #include "refine/split.h"
 #include "refine/system.h"
 #include "refine/visible_area.h"
+#include "scene/check_mesh.h"
 
 namespace axial::refine {
 namespace {
@@ -24,16 +25,6 @@ constexpr unsigned kLeastSteps = 2, kMostSteps = 6;  // at each resolution
 // Steps end when they become smaller than this part of the first step at the resolution.
 constexpr double kLastStep = 0.3;
 constexpr unsigned kMostSplits = 6;  // each divides the area of a face by four
-
-void check(const Mesh& mesh) {
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    for (const std::uint32_t v : mesh.faces[f])
-      if (v >= mesh.vertices.size())
-        fail("face {} has the vertex {}, but there are {} vertices", f, v, mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!mesh.vertices[v].allFinite()) fail("vertex {} is not finite", v);
-}
 
 double median_of(std::vector<float> values) {
   if (values.empty()) return 0;
@@ -197,7 +188,7 @@ class Refinement {
 
 Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
               const Options& options, const ProgressSink& progress) {
-  check(mesh);
+  check_mesh(mesh);
   return Refinement(mesh, views, pictures, options, progress).run();
 }
 

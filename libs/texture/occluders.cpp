@@ -8,23 +8,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/check_mesh.h"
 
 namespace axial::texture {
-namespace {
-
-void check(const Mesh& mesh) {
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  for (const auto& face : mesh.faces)
-    for (const std::uint32_t corner : face)
-      if (corner >= mesh.vertices.size())
-        fail("a face of the mesh refers to vertex {}, but there are {}", corner,
-             mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex : mesh.vertices)
-    if (!vertex.allFinite()) fail("the mesh has a vertex that is not finite");
-}
-
-}  // namespace
-
 struct Occluders::State {
   struct Release {
     void operator()(RTCDevice held) const { rtcReleaseDevice(held); }
@@ -36,7 +22,7 @@ struct Occluders::State {
 };
 
 Occluders::Occluders(const Mesh& mesh) : state_(std::make_unique<State>()) {
-  check(mesh);
+  check_mesh(mesh);
   State& s = *state_;
   s.vertices.reserve(mesh.vertices.size() + 1);
   s.vertices = mesh.vertices;

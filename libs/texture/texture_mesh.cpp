@@ -6,22 +6,12 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "scene/check_mesh.h"
 #include "texture/atlas.h"
 #include "texture/outliers.h"
 
 namespace axial::texture {
 namespace {
-
-void check(const Mesh& mesh) {
-  if (mesh.faces.empty()) fail("the mesh has no faces");
-  for (const auto& face : mesh.faces)
-    for (const std::uint32_t corner : face)
-      if (corner >= mesh.vertices.size())
-        fail("a face of the mesh refers to vertex {}, but there are {}", corner,
-             mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex : mesh.vertices)
-    if (!vertex.allFinite()) fail("the mesh has a vertex that is not finite");
-}
 
 std::vector<std::uint32_t> label_faces(const Mesh& mesh, std::span<const View> views,
                                        const ImageSource& images, const Options& options,
@@ -56,7 +46,7 @@ TexturedMesh assemble(Mesh mesh, const Charts& charts, Atlas atlas) {
 
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options, Report* report, const StageProgress& progress) {
-  check(mesh);
+  check_mesh(mesh);
   Report own;
   Report& facts = report ? *report : own;
   facts = {};

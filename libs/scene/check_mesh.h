@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "scene/mesh.h"
+
+namespace axial {
+
+// Error that names the face or the vertex if `mesh` has no faces, if a face refers to a vertex that
+// does not exist, if a coordinate is not finite, or if there are colours but not one for each
+// vertex.
+void check_mesh(const Mesh& mesh);
+
+}  // namespace axial
