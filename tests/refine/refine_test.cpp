@@ -156,6 +156,8 @@ TEST(Refine, RefusesWrongMeshes) {
   EXPECT_EQ(error_of([](Mesh& mesh) { mesh.faces.clear(); }), "the mesh has no faces");
   EXPECT_THAT(error_of([](Mesh& mesh) { mesh.faces[3][1] = 1'000'000; }),
               HasSubstr("face 3 refers to vertex 1000000, but there are 5476"));
+  EXPECT_THAT(error_of([](Mesh& mesh) { mesh.colors.resize(5); }),
+              HasSubstr("5 colours, but 5476 vertices"));
   EXPECT_THAT(
       error_of([](Mesh& mesh) { mesh.vertices[7].y() = std::numeric_limits<float>::infinity(); }),
       HasSubstr("vertex 7 is not finite"));
