@@ -26,6 +26,9 @@ from .steps import Step, run_all
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
             "TextureMesh")
+# Options whose values are options for a program, and this program.
+MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
+                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh"}
 
 
 def options(script_folder):
@@ -47,11 +50,10 @@ def options(script_folder):
     parser.add_argument("--lens-model", default="OPENCV",
                         help="lens model that COLMAP calibrates; it absorbs the refraction "
                         "(default: %(default)s)")
-    parser.add_argument("--refine-poses", default="",
-                        help="more options for RefinePoses, in one word: "
-                        "--refine-poses='--scale-sigma 0.1'")
-    parser.add_argument("--densify", default="",
-                        help="more options for DensifyPointCloud, in one word")
+    for name, program in MORE_OPTIONS.items():
+        parser.add_argument(f"--{name}", default="",
+                            help=f"more options for {program}, in one word" +
+                            (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
     parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
@@ -88,7 +90,7 @@ def check(given):
     for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
             raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
-    for name in ("refine-poses", "densify"):
+    for name in MORE_OPTIONS:
         words_of(name, given)
     colmap.check_installed()
     given.output = str(pathlib.Path(given.output).resolve())
@@ -133,14 +135,19 @@ def mesh_steps(given, out):
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
     textured = out / "scene_textured"
+    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture")}
+    reads = {name: existing_files(words) for name, words in options.items()}
     if given.until == "cloud":
         return
-    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive), makes=mesh)
-    yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive), makes=refined)
+    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive, *options["mesh"]),
+               makes=mesh, reads=reads["mesh"])
+    yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
+                                                   *options["refine-mesh"]),
+               makes=refined, reads=reads["refine-mesh"])
     if given.until == "texture":
         yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
-                                                    "glb,ply", *refractive),
-                   makes=textured.with_suffix(".glb"))
+                                                    "glb,ply", *refractive, *options["texture"]),
+                   makes=textured.with_suffix(".glb"), reads=reads["texture"])
 
 
 def steps(given, out):
