@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's virtual cameras. The virtual camera of a pixel of an axial camera is a pinhole. Its
-// centre is the C_v of the pixel. It looks along the axis and has the focal lengths of the real
-// lens (f_v = f). Its principal point is chosen so that it images the pixel's ray at the same
+// centre is C_v, the origin of the pixel's ray in water. It looks along the port's normal, or
+// behind a dome along the optical axis of the lens. It has the focal lengths of the real lens (f_v
+// = f). Its principal point is chosen so that the virtual camera images the pixel's ray at the same
 // pixel (eq. 3, with the correction of the second component in docs/refraction.md).
 //
 // Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference -
@@ -45,8 +46,9 @@ VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& ro
   return {ray.origin, rotation, {lens.fx, lens.fy, c.x(), c.y()}};
 }
 
-// The virtual camera of `pixel` of any camera. The pixel is not rounded. A camera without
-// rotation_to_axis(), such as PinholeCamera, is its own virtual camera.
+// The virtual camera of `pixel` of `camera`, which may be of any type with lens(). The pixel is not
+// rounded. The result for a camera without rotation_to_axis(), such as PinholeCamera, is the camera
+// itself.
 template <class Camera, class T = typename Camera::Scalar>
 VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   if constexpr (requires { camera.rotation_to_axis(); }) {
@@ -102,10 +104,10 @@ Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   return {image.x() / image.z(), image.y() / image.z()};
 }
 
-// The reprojection of the consistency check, which compares the result with the reference pixel
-// (eq. 7, corrected: docs/refraction.md). Let X be the point at `distance` [m] on `source_ray`
-// [frame of the real source camera]. The result is the pixel at which the virtual camera
-// `reference` images X. R, C: x_source = R (x_reference - C), in the frames of the real cameras.
+// Let X be the point at `distance` [m] on `source_ray` [frame of the real source camera]. Returns
+// the pixel at which the virtual camera `reference` images X. The consistency check compares this
+// pixel with the reference pixel (eq. 7, corrected: docs/refraction.md). R, C: x_source = R
+// (x_reference - C), in the frames of the real cameras.
 template <class T>
 Vector2<T> virtual_reprojection(const VirtualCamera<T>& reference, const AxialRay<T>& source_ray,
                                 const T& distance, const Matrix3<T>& R, const Vector3<T>& C) {
