@@ -6,19 +6,19 @@
 // refractive index and the ray's distance from C is constant (Bouguer's law). Let r be the unit
 // direction in air, k = |r x C| the distance of the ray in air from C, and mu_g and mu_w the
 // indices of glass and water relative to air. At a sphere of radius R, let mu be the index on one
-// side of the sphere. The sine of the angle between ray and normal on this side is k i with i =
-// 1/(mu R). At each sphere the ray turns by the difference of the two angles. With the radii r_in
-// and r_out of the inner and the outer sphere, the ray turns away from the axis through the camera
-// centre and C by the angle
+// side of the sphere. The sine of the angle between ray and normal on this side is k i with
+// i = 1/(mu R). At each sphere the ray turns by the difference of the two angles. With the radii
+// r_in and r_out of the inner and the outer sphere, the ray turns away from the axis through the
+// camera centre and C by the angle
 //
 //     delta = asin(k i_1) - asin(k i_2) + asin(k i_3) - asin(k i_4)
 //
 //     i_1 = 1/r_in   i_2 = 1/(mu_g r_in)   i_3 = 1/(mu_g r_out)   i_4 = 1/(mu_w r_out).
 //
-// Let S = sin(delta)/k and Q = cos(delta) + (r.C) S. The ray in water has the unit direction D = Q
-// r - S C. The origin of the ray on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta) are
-// smooth functions of k^2, and their computation needs only square roots. So the formulas have no
-// singularity at k = 0: on the axis, and for a dome whose centre is the camera centre.
+// Let S = sin(delta)/k and Q = cos(delta) + (r.C) S. The unit direction of the ray in water is
+// D = Q r - S C. The origin of the ray on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta)
+// are smooth functions of k^2, and their computation needs only square roots. So the formulas have
+// no singularity at k = 0: on the axis, and for a dome whose centre is the camera centre.
 #pragma once
 
 #include <cmath>
@@ -27,9 +27,9 @@
 
 namespace axial::refractive {
 
-// The measured parameters of the port, in the camera frame. Preconditions: |centre| <
-// inner_radius; thickness >= 0; n_glass and n_water >= n_air > 0. This type does not check its
-// preconditions. They are checked when a housing is read.
+// The measured parameters of the port, in the camera frame. Preconditions: |centre| < inner_radius;
+// thickness >= 0; n_glass and n_water >= n_air > 0. This type does not check its preconditions.
+// They are checked when a housing is read.
 template <class T>
 struct DomePort {
   Vector3<T> centre{T(0), T(0), T(0)};  // of the spheres [m]

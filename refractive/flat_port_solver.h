@@ -32,8 +32,8 @@ struct FlatPortField {
   T offset, slope;  // offset [m]; slope [m/m]
   // At a fixed tangent t, the secant radius / t is a linear function of z_water. `known_...`: the
   // coefficients of this function at t = `promised` (see the constructor), where the first guess of
-  // the solver is exact. `paraxial_...`: the coefficients for t -> 0, on the axis. inv_known2 is 1
-  // / promised^2.
+  // the solver is exact. `paraxial_...`: the coefficients for t -> 0, on the axis. inv_known2 is
+  // 1 / promised^2.
   T known_offset, known_slope, inv_known2;
   T paraxial_offset, paraxial_slope;
   int steps;  // of the solver in single precision; all other scalars ignore it

@@ -4,8 +4,8 @@
 //
 // The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho, where z is z_water and the symbols are
 // those of flat_port_solver.h. Let t0 be the paraxial root of the equation and t = t0/u. With
-// rho/t0 as the unit of length, let a = d_a, g = d_g/mu_g and w = z/mu_w. Let e = t0^2 (mu^2 -
-// 1)/mu^2 for glass (e_g) and for water (e_w). Then
+// rho/t0 as the unit of length, let a = d_a, g = d_g/mu_g and w = z/mu_w. Let e = t0^2
+// (mu^2 - 1)/mu^2 for glass (e_g) and for water (e_w). Then
 //
 //     a + g + w = 1,    p = q_g^2/mu_g^2 = 1 + e_g/u^2,    q = q_w^2/mu_w^2 = 1 + e_w/u^2
 //     u - a = g/sqrt(p) + w/sqrt(q)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's virtual cameras. The virtual camera of a pixel of an axial camera is a pinhole. Its
 // centre is C_v, the origin of the pixel's ray in water. It looks along the port's normal, or
-// behind a dome along the optical axis of the lens. It has the focal lengths of the real lens (f_v
-// = f). Its principal point is chosen so that the virtual camera images the pixel's ray at the same
-// pixel (eq. 3, with the correction of the second component in docs/refraction.md).
+// behind a dome along the optical axis of the lens. It has the focal lengths of the real lens
+// (f_v = f). Its principal point is chosen so that the virtual camera images the pixel's ray at the
+// same pixel (eq. 3, with the correction of the second component in docs/refraction.md).
 //
-// Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference -
-// C), in the frames of the real cameras. Units: metres and pixels. Equation numbers are those of
-// the paper that docs/refraction.md names.
+// Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference - C),
+// in the frames of the real cameras. Units: metres and pixels. Equation numbers are those of the
+// paper that docs/refraction.md names.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -59,8 +59,8 @@ VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   }
 }
 
-// The pose of the virtual source camera relative to the virtual reference camera (eq. 1): x_source
-// = rotation * (x_reference - centre), in the frames of the virtual cameras.
+// The pose of the virtual source camera relative to the virtual reference camera (eq. 1):
+// x_source = rotation * (x_reference - centre), in the frames of the virtual cameras.
 template <class T>
 struct RelativePose {
   Matrix3<T> rotation;
@@ -76,9 +76,9 @@ RelativePose<T> relative_pose(const VirtualCamera<T>& reference, const VirtualCa
 
 // The homography [px to px] from the image of the virtual camera `reference` to the image of the
 // virtual camera `source` (eq. 2). The plane through X with the normal n induces the homography. X
-// [m] and n are in the frame of the real reference camera. n may have any length. R, C: x_source =
-// R (x_reference - C), in the frames of the real cameras. A plane through the centre C_v of
-// `reference` gives infinities or NaN.
+// [m] and n are in the frame of the real reference camera. n may have any length. R, C:
+// x_source = R (x_reference - C), in the frames of the real cameras. A plane through the centre C_v
+// of `reference` gives infinities or NaN.
 template <class T>
 Matrix3<T> virtual_homography(const VirtualCamera<T>& reference, const VirtualCamera<T>& source,
                               const Matrix3<T>& R, const Vector3<T>& C, const Vector3<T>& X,
