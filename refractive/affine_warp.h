@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The warp of a plane between two axial cameras: the mapping from pixels of the reference image to
-// pixels of the source image for points of the plane. This file computes the exact value and the
-// exact first derivative of the warp at a pixel p (docs/refraction.md, "The warp"). The formula is
-// the same for all cameras.
+// The warp of a plane between two axial cameras maps the pixel of a point of the plane in the
+// reference image to the pixel of the same point in the source image. This file computes the exact
+// value and the exact first derivative of the warp at a pixel p (docs/refraction.md, "The warp").
+// The formula is the same for all cameras.
 //
 //     warp(q) = project_j(X_j(p)) + A (q - p),    A = Jproj_j(X_j) * R_ij * dX/dp
 //

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The axial camera, the camera model of the whole project. The scene medium is the medium of the
-// points to be imaged: water behind a port. In the scene medium, the rays of all pixels meet one
-// axis through the camera centre. A camera is any type with
+// The axial camera, the camera model of the whole project. The scene medium is the medium that
+// contains the imaged points: water for a camera behind a port, air for a camera without a port.
+// The lines of all pixels' rays in the scene medium meet one axis through the camera centre. A
+// camera is any type with
 //
 //     AxialRay<T>   ray(pixel)                      back-projection
 //     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with the derivatives by the pixel
@@ -13,7 +14,8 @@
 //
 //     void               each_field(visit)          calls visit(number) for every number of the
 //                                                   camera in a fixed order
-//     Projector          projector()                has each_field(visit), too
+//     Projector          projector()                the part of the camera that projects points;
+//                                                   it also has each_field(visit)
 //     RigidTransform<T>  projector_frame()          from the camera frame to the projector's frame
 //     Image              projector().image(X)       for a point X in the projector's frame: the
 //                                                   projection of X, the derivative of the pixel
@@ -52,14 +54,15 @@ struct AxialRay {
   Vector3<T> at(const T& lambda) const { return origin + lambda * direction; }
 };
 
-// Derivatives of the ray by the pixel (u, v): column 0 by u, column 1 by v.
+// Derivatives of the ray by the pixel (u, v): column 0 by u, column 1 by v. `origin` is in m/px,
+// `direction` in 1/px.
 template <class T>
 struct AxialRayJacobian {
   Matrix32<T> origin;
   Matrix32<T> direction;
 };
 
-// x' = rotation * x + translation.
+// Maps a point x to rotation * x + translation.
 template <class T>
 struct RigidTransform {
   Matrix3<T> rotation;

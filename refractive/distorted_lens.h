@@ -41,7 +41,7 @@ struct DistortedLens {
     return all;
   }
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(pinhole.fx), visit(pinhole.fy), visit(pinhole.cx), visit(pinhole.cy);
@@ -60,7 +60,8 @@ struct DistortedLens {
   Image project(const Vector2<T>& tangents) const {
     const PlanePoint<T> e = distortion.spread_out(tangents);
     const Mask<T> defined = e.point.x() * e.point.x() + e.point.y() * e.point.y() <= field * field;
-    // Far outside the field the polynomials exceed the range of single precision.
+    // Points outside the field are moved to its edge, because far outside the field the polynomials
+    // exceed the range of single precision.
     const PlanePoint<T> d = distortion.bent(detail::within(e.point, field));
     Image at;
     at.projection.pixel = {pinhole.fx * d.point.x() + pinhole.cx,

@@ -7,17 +7,18 @@
 // direction in air, k = |r x C| the distance of the ray in air from C, and mu_g and mu_w the
 // indices of glass and water relative to air. At a sphere of radius R, let mu be the index on one
 // side of the sphere. The sine of the angle between ray and normal on this side is k i with
-// i = 1/(mu R). At each sphere the ray turns by the difference of the two angles. Altogether the
-// ray turns away from the axis through the camera centre and C by
+// i = 1/(mu R). At each sphere the ray turns by the difference of the two angles. With the radii
+// r_in and r_out of the inner and the outer sphere, the ray turns away from the axis through the
+// camera centre and C by the angle
 //
 //     delta = asin(k i_1) - asin(k i_2) + asin(k i_3) - asin(k i_4)
 //
 //     i_1 = 1/r_in   i_2 = 1/(mu_g r_in)   i_3 = 1/(mu_g r_out)   i_4 = 1/(mu_w r_out).
 //
-// Let S = sin(delta)/k and Q = cos(delta) + (r.C) S. The ray in water has the unit direction
+// Let S = sin(delta)/k and Q = cos(delta) + (r.C) S. The unit direction of the ray in water is
 // D = Q r - S C. The origin of the ray on the axis is C_v = (1 - 1/(mu_w Q)) C. S and cos(delta)
 // are smooth functions of k^2, and their computation needs only square roots. So the formulas have
-// no singularity on the axis or for a centred dome.
+// no singularity at k = 0: on the axis, and for a dome whose centre is the camera centre.
 #pragma once
 
 #include <cmath>
@@ -26,9 +27,9 @@
 
 namespace axial::refractive {
 
-// The measured parameters of the port, in the camera frame. Preconditions: |centre| <
-// inner_radius; thickness >= 0; n_glass and n_water >= n_air > 0. This type does not check its
-// preconditions. They are checked when a housing is read.
+// The measured parameters of the port, in the camera frame. Preconditions: |centre| < inner_radius;
+// thickness >= 0; n_glass and n_water >= n_air > 0. This type does not check its preconditions.
+// They are checked when a housing is read.
 template <class T>
 struct DomePort {
   Vector3<T> centre{T(0), T(0), T(0)};  // of the spheres [m]
@@ -51,7 +52,7 @@ template <class T>
 struct DomeTurn {
   T sine;                      // S = sin(delta) / k
   T cosine;                    // cos(delta)
-  T sine_slope, cosine_slope;  // their derivatives by k^2
+  T sine_slope, cosine_slope;  // derivatives of `sine` and `cosine` by k^2
 };
 
 // The port's geometry and media, in the symbols of the formulas above.
@@ -75,7 +76,7 @@ struct DomePortOptics {
         out_water(port.n_air / (port.n_water * outer_radius)),
         inv_mu(port.n_air / port.n_water) {}
 
-  // See DomePortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(centre.x()), visit(centre.y()), visit(centre.z());
@@ -87,7 +88,7 @@ struct DomePortOptics {
   // The value of S on the axis, where k is 0.
   T axial_sine() const { return in_air - in_glass + out_glass - out_water; }
 
-  // The turn of a ray. `k2`: squared distance of the ray in air from C [m^2].
+  // The functions of delta for one ray. `k2`: squared distance of the ray in air from C [m^2].
   DomeTurn<T> turn(const T& k2) const {
     const DomeTurn<T> inner = difference(in_air, in_glass, k2);
     const DomeTurn<T> outer = difference(out_glass, out_water, k2);

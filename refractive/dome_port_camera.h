@@ -13,9 +13,9 @@
 
 namespace axial::refractive {
 
-// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. Single
-// precision takes a fixed number of steps without branches. All other scalars iterate to
-// convergence.
+// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. In single
+// precision, project() takes a fixed number of solver steps without branches. With all other
+// scalars, project() iterates to convergence.
 template <class T>
 class DomePortCamera {
  public:
@@ -31,8 +31,8 @@ class DomePortCamera {
                                        WidenedImage<T>::margin_or_default(width, height, margin))) {
   }
 
-  // The camera with a given image rectangle: a point is visible only if `image` [px] contains its
-  // pixel.
+  // The camera with a given image rectangle. A point is visible only if `image` [px] contains the
+  // pixel of the point.
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, const WidenedImage<T>& image)
       : lens_(lens),
         inv_fx_(T(1) / lens.fx),
@@ -41,7 +41,7 @@ class DomePortCamera {
 
   DomePortCamera() = default;  // invalid until each_field() has filled it
 
-  // As FlatPortCamera::each_field.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -52,8 +52,9 @@ class DomePortCamera {
   const PinholeLens<T>& lens() const { return lens_; }
   const DomePortOptics<T>& optics() const { return projector_.optics(); }
 
-  // The orientation of virtual cameras (virtual_camera.h): the orientation of the lens. Virtual
-  // cameras behind a dome do not look along the axis, because the axis may have any direction.
+  // The rotation from the camera frame to the frame of virtual cameras (virtual_camera.h): the
+  // identity. Virtual cameras behind a dome look along the optical axis of the lens and not along
+  // the axis of the dome, because the axis of the dome may have any direction.
   Matrix3<T> rotation_to_axis() const { return Matrix3<T>::Identity(); }
 
   // The ray of `pixel` in water, in the camera frame. The origin of the ray is the virtual centre
@@ -108,9 +109,10 @@ class DomePortCamera {
   // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
   // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
   //
-  // X is not visible in each of these cases:
+  // X is not visible in any of these cases:
   //   - X lies inside the outer sphere of the dome.
-  //   - The image of X lies outside the widened image, or behind the lens.
+  //   - The image of X lies outside the widened image, or the light from X comes from behind the
+  //     lens.
   //   - X is a million kilometres or more away from the centre of the dome.
   //   - X is NaN.
   // The pixel, the Jacobian and the origin of a point that is not visible are finite but

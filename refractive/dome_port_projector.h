@@ -2,8 +2,8 @@
 // The exact forward projection through a dome port. Camera frame, metres. The symbols are those of
 // dome_port.h.
 //
-// Let r be the direction in air of the image of X. r lies in the plane through X and the axis. So
-// r is a function of one unknown, zeta:
+// Let r be the unit direction in air of the pixel that images X. r lies in the plane through X and
+// the axis. So r is a function of one unknown, zeta:
 //
 //     r = (d - zeta C) / N         with d = X/|X| and N = |d - zeta C|
 //
@@ -11,8 +11,7 @@
 //
 //     h(zeta) = zeta - (1 - 1/(mu_w Q)) / |X| + S N / Q = 0.
 //
-// zeta is small, and nearly the same for all points at the same range |X|. Therefore h is nearly
-// linear.
+// zeta is small. Therefore h is nearly linear in zeta.
 #pragma once
 
 #include <cmath>
@@ -23,7 +22,8 @@
 
 namespace axial::refractive {
 
-// The image of a point, and the derivative of the pixel by the point. Camera frame.
+// The image of a point, and the derivative of the pixel by the point. Points are in the camera
+// frame.
 template <class T>
 struct DomePortImage {
   Projection<T> projection;
@@ -58,7 +58,7 @@ class DomePortProjector {
                     const WidenedImage<T>& image)
       : optics_(port), in_air_(lens), image_(image), steps_(steps_for(optics_)) {}
 
-  // See DomePortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     optics_.each_field(visit);
@@ -154,14 +154,15 @@ class DomePortProjector {
         if (still) break;
       }
     }
-    // The last step also gives automatic-differentiation scalars their derivatives.
+    // This last step is needed by automatic-differentiation scalars: it sets their derivatives.
     const Slopes at(optics_, zeta, c, inv_range);
     const T inv = T(1) / at.by_zeta;
     return {zeta - at.h * inv, -at.by_cosine * inv, (T(1) - optics_.inv_mu * at.inv_q) * inv,
             T(1) - optics_.inv_mu * at.inv_q};
   }
 
-  // The solution for a ray near the axis, where k is 0 and N is 1.
+  // The first guess of zeta: the solution of h(zeta) = 0 with k = 0 and N = 1, as for a ray near
+  // the axis.
   T guess(const T& c, const T& inv_range) const {
     const T sine = optics_.axial_sine();
     const T inv_q = T(1) / (T(1) + c * sine);

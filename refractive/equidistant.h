@@ -22,9 +22,9 @@ T power_series(const std::array<A, N>& a, const T& x) {
   return sum;
 }
 
-// theta / tan(theta) for tan^2(theta) = r2. The angle is halved twice by atan(r) = 2 atan(r / (1 +
-// sqrt(1 + r^2))). The tangent of the quarter angle is below 0.42, where nine terms of the series
-// of the arc tangent have an error of 1e-8.
+// theta / tan(theta) for tan^2(theta) = r2. The angle is halved twice by atan(r) = 2
+// atan(r / (1 + sqrt(1 + r^2))). The tangent of the quarter angle is below 0.42, where nine terms
+// of the series of the arc tangent have an error of 1e-8.
 template <class T>
 T arc_over_tangent_in_fixed_steps(const T& r2) {
   using std::sqrt;

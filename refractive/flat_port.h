@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A flat port: two parallel planes between the lens and the water. docs/refraction.md derives the
-// formulas.
+// A flat port: a plate of glass with parallel faces between the lens and the water.
+// docs/refraction.md derives the formulas.
 //
 // Axis frame: origin at the camera centre, z along the port's normal, metres. In this frame a
 // direction in air is (x, y, 1). Let s = x^2 + y^2, the squared tangent of the angle between the
@@ -9,7 +9,8 @@
 //
 //     q_g = sqrt(mu_g^2 + (mu_g^2 - 1) s)        q_w = sqrt(mu_w^2 + (mu_w^2 - 1) s)
 //
-// Snell's law reads tan(theta_glass) = sqrt(s)/q_g and tan(theta_water) = sqrt(s)/q_w.
+// Snell's law reads tan(theta_glass) = sqrt(s)/q_g and tan(theta_water) = sqrt(s)/q_w. Here theta
+// is the angle between the ray and the normal in the named medium.
 #pragma once
 
 #include <cmath>
@@ -37,7 +38,8 @@ struct FlatPort {
   }
 };
 
-// q(s) = sqrt(b + c s) of a medium with the index mu relative to air: b = mu^2, c = mu^2 - 1.
+// A medium with the refractive index mu relative to air. Its q(s), defined above, is sqrt(b + c s)
+// with b = mu^2 and c = mu^2 - 1.
 template <class T>
 struct Medium {
   T b, c, inv_mu;
@@ -65,7 +67,7 @@ struct FlatPortOptics {
         glass(port.n_glass / port.n_air),
         water(port.n_water / port.n_air) {}
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(distance), visit(thickness);
@@ -73,7 +75,7 @@ struct FlatPortOptics {
       visit(medium->b), visit(medium->c), visit(medium->inv_mu);
   }
 
-  // Height of the outer (glass/water) plane on the axis [m].
+  // The z [m] of the outer (glass/water) plane.
   T outer() const { return distance + thickness; }
 
   // The limit [m] of radius(t, z_water) / t for t -> 0.
@@ -82,14 +84,15 @@ struct FlatPortOptics {
   }
 
   // The distance [m] from the axis at which a ray reaches the height `z_water` [m] above the outer
-  // plane. `t`: tangent of the ray in air. The result is strictly increasing in t.
+  // plane. `t`: tangent of the angle between the ray in air and the axis. The result is strictly
+  // increasing in t.
   T radius(const T& t, const T& z_water) const {
     const T s = t * t;
     return t * (distance + thickness / glass.q(s) + z_water / water.q(s));
   }
 
-  // The height [m] of the virtual camera centre C_v on the axis, for the rays with s =
-  // tan^2(theta_air).
+  // The z [m] of the virtual centre C_v: the point at which the line of the ray in water meets the
+  // axis. `s`: squared tangent of the angle between the ray in air and the axis.
   T virtual_centre(const T& s) const {
     const T q_w = water.q(s);
     return outer() - (distance + thickness / glass.q(s)) * q_w;

@@ -3,9 +3,10 @@
 // The projection of a point is the root of one scalar equation (flat_port_solver.h). The
 // derivatives of rays and projections have closed forms.
 //
-// Let n be the unit normal of the port. Rays are computed in the camera frame. Where a formula in
-// the axis frame (flat_port.h) uses the x and y of a vector v, the code uses the component v -
-// (n.v) n. Projections are computed in the port's frame (flat_port_projector.h).
+// Let n be the unit normal of the port. Rays are computed in the camera frame. Where formulas in
+// the axis frame (flat_port.h) use the x and y of a vector v, the code uses v - (n.v) n, the
+// component of v perpendicular to n. Projections are computed in the port's frame
+// (flat_port_projector.h).
 #pragma once
 
 #include <cmath>
@@ -16,9 +17,9 @@
 
 namespace axial::refractive {
 
-// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. Single
-// precision takes a fixed number of steps without branches. All other scalars iterate to
-// convergence.
+// `T` is float, a SIMD pack of floats, double or an automatic-differentiation scalar. In single
+// precision, project() takes a fixed number of solver steps without branches. With all other
+// scalars, project() iterates to convergence.
 template <class T>
 class FlatPortCamera {
  public:
@@ -55,8 +56,8 @@ class FlatPortCamera {
 
   // Calls visit(number) for every number of the camera, in a fixed order. The SIMD code uses this
   // function to copy several cameras into the lanes of one camera. All numbers have the type T,
-  // except the number of projection steps, which is an int. All lanes together take the largest of
-  // their step counts.
+  // except the number of solver steps of the projection, which is an int. If the cameras in the
+  // lanes have different numbers of steps, all lanes take the largest of these numbers.
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -83,7 +84,7 @@ class FlatPortCamera {
     const Vector3<T> across = air_direction(pixel).across;
     const T s = across.squaredNorm();
     const T inv_qw = T(1) / optics_.water.q(s);
-    // |(across / q_w, 1)| in the axis frame
+    // The inverse of the length of (across / q_w, 1), the direction in the axis frame.
     const T inv_norm = T(1) / sqrt(s * inv_qw * inv_qw + T(1));
     return {port_.normal * optics_.virtual_centre(s),
             (inv_qw * inv_norm) * across + inv_norm * port_.normal};
@@ -110,9 +111,10 @@ class FlatPortCamera {
   // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
   // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
   //
-  // X is not visible in each of these cases:
+  // X is not visible in any of these cases:
   //   - X lies on the lens's side of the outer plane.
-  //   - The image of X lies outside the widened image, or behind the lens.
+  //   - The image of X lies outside the widened image, or the light from X comes from behind the
+  //     lens.
   //   - No ray of the camera's field reaches X, for example because of total reflection.
   //   - X is NaN.
   //   - The distance of X to the outer plane is 0.1 mm or less, or 100 km or more, in single
@@ -123,7 +125,8 @@ class FlatPortCamera {
                         Vector3<T>* origin = nullptr) const;
 
  private:
-  // A pixel's direction in air is n + across, with `across` perpendicular to the normal n.
+  // A pixel's direction in air, scaled to n + across, where `across` is perpendicular to the normal
+  // n.
   struct AirDirection {
     Vector3<T> across;
     T inv_along;  // n + across = inv_along * bearing, where the bearing has z = 1

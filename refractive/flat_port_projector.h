@@ -24,11 +24,11 @@ Matrix3<T> axis_from_camera(const Vector3<T>& n) {
   return rotation;
 }
 
-// The largest incidence on the port in air: the result is the tangent of this angle. The incidence
-// is taken over the image rectangle of width x height pixels, widened by `margin` pixels on every
-// side. The four corners are sufficient, because the pixels below a given incidence form a convex
-// set. A larger tangent than kGrazing is reduced to kGrazing. The result is also kGrazing if a
-// corner looks parallel to the port or away from the port.
+// Returns the tangent of the largest angle of incidence on the port in air, over the image
+// rectangle of width x height pixels, widened by `margin` pixels on every side. Testing the four
+// corners is sufficient, because the pixels below a given incidence form a convex set. A larger
+// tangent than kGrazing is reduced to kGrazing. The result is also kGrazing if a corner looks
+// parallel to the port or away from the port.
 template <class T>
 T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port, int width,
                             int height, const T& margin) {
@@ -48,7 +48,8 @@ T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port,
   return largest < kGrazing ? largest : kGrazing;
 }
 
-// The image of a point, and the derivative of the pixel by the point. Port's frame.
+// The image of a point, and the derivative of the pixel by the point. Points are in the port's
+// frame.
 template <class T>
 struct FlatPortImage {
   Projection<T> projection;
@@ -57,11 +58,12 @@ struct FlatPortImage {
   // The origin of the ray through the point: the virtual centre C_v [port's frame, m].
   Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [port's frame, m]. The
-  // in-air direction is (x t/rho, y t/rho, 1). A motion of the point perpendicular to the radius
-  // changes the direction by t/rho times the motion. A motion along the radius changes the
-  // direction by dt/d(rho) times the motion. A motion upwards turns the direction towards the
-  // axis.
+  // First-order motion of the pixel [px] when the point moves by `step` [port's frame, m]. Let (x,
+  // y, z) be the point, rho its distance from the axis, and t its in-air tangent
+  // (flat_port_solver.h). The in-air direction is (x t/rho, y t/rho, 1). A motion of the point
+  // perpendicular to the axis and to the radius changes the direction by t/rho times the motion. A
+  // motion along the radius changes the direction by dt/d(rho) times the motion. A motion in +z
+  // turns the direction towards the axis.
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();
     const T outwards = stretch * radial - sink * step.z();
@@ -70,7 +72,7 @@ struct FlatPortImage {
   }
 
   Vector2<T> across;  // the point's x and y
-  // Let depth be the z of the in-air direction in the camera frame. m = t / (rho depth),
+  // Let depth be the z of the in-air direction in the camera frame. Then m = t / (rho depth),
   // stretch = (dt/d(rho) - t/rho) / (rho^2 depth), sink = -(dt/dz) / (rho depth).
   T m, stretch, sink;
   Matrix2<T> lens;  // d(pixel)/d(x and y of the in-air direction), times depth
@@ -82,10 +84,9 @@ class FlatPortProjector {
   FlatPortProjector() = default;  // invalid until each_field() has filled it
 
   // `lens`: the lens in air. `width`, `height`: size of the image [px]. `margin` [px], >= 0: the
-  // projector serves the image widened by this margin on every side: u from -margin to width - 1 +
-  // margin, v from -margin to height - 1 + margin. For a point whose image lies outside the
-  // widened image, image() returns a projection with `visible` false and finite but meaningless
-  // numbers. image() takes points in the port's frame [m].
+  // image is widened by this margin on every side: u from -margin to width - 1 + margin, v from
+  // -margin to height - 1 + margin. For a point whose image lies outside the widened image, image()
+  // returns a projection with `visible` false and finite but meaningless numbers.
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
       : FlatPortProjector(
@@ -107,7 +108,7 @@ class FlatPortProjector {
     row_z_ = axis.col(2);
   }
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     optics_.each_field(visit);
@@ -130,7 +131,7 @@ class FlatPortProjector {
     const T rho2 = field_.nearest_rho2(radius2, z_water);
     image.across = {select(in_field, X.x(), T(0)), select(in_field, X.y(), T(0))};
     const FlatPortRoot<T> at = solve_projection(optics_, field_, rho2, z_water);
-    // In water the ray rises by q_w/t metres for every metre of distance from the axis.
+    // In water, the z of the ray grows by q_w/t metres for every metre of distance from the axis.
     image.origin_height = z_water - T(1) / (at.m * at.inv_qw);
 
     // Scalar product of a row with the in-air direction.
@@ -157,7 +158,8 @@ class FlatPortProjector {
  private:
   FlatPortOptics<T> optics_;
   FlatPortField<T> field_;
-  // The axes of the camera frame in the axis frame. The first two are multiplied by fx and fy.
+  // The x, y and z axes of the camera frame in the axis frame. The x axis is multiplied by fx, the
+  // y axis by fy.
   Vector3<T> row_u_, row_v_, row_z_;
   T cx_, cy_;
   WidenedImage<T> image_;

@@ -5,8 +5,9 @@
 //
 //     t (d_a + d_g/q_g(t^2) + z_water/q_w(t^2)) - rho = 0
 //
-// where d_a is the port's distance and d_g is its thickness. The equation is solved for
-// m = t / rho, because m is finite on the axis and depends on rho only through rho^2:
+// where d_a is the port's distance and d_g is its thickness. flat_port.h defines q_g and q_w. The
+// equation is solved for m = t / rho, because m is finite on the axis and depends on rho only
+// through rho^2:
 //
 //     F(m) = m (d_a + d_g/q_g(s) + z_water/q_w(s)) - 1 = 0              with s = m^2 rho^2
 //
@@ -22,15 +23,17 @@ namespace axial::refractive {
 
 // The points that a camera can see: points in water whose in-air tangent is at most the largest
 // tangent of the image. At the height z_water above the outer plane, these points fill a disc
-// around the axis. The radius of the disc is offset + slope * z_water. This radius is exact,
-// because radius(t, z_water) of FlatPortOptics increases with t. Points outside the field must not
-// reach the fixed-step solver, because the solver could return a pixel inside the image for them.
+// around the axis. The radius of the disc is offset + slope * z_water, which is
+// FlatPortOptics::radius() at the largest tangent. The disc contains exactly these points, because
+// FlatPortOptics::radius() increases with the tangent. Points outside the field must not reach the
+// fixed-step solver, because the solver could return a pixel inside the image for them.
 template <class T>
 struct FlatPortField {
   T offset, slope;  // offset [m]; slope [m/m]
-  // The secant radius / t is a linear function of z_water at a fixed tangent t. `known_...`: its
-  // coefficients at the tangent `promised` of the constructor, where the first guess of the solver
-  // is exact. `paraxial_...`: its coefficients on the axis. inv_known2 is 1 / promised^2.
+  // At a fixed tangent t, the secant radius / t is a linear function of z_water. `known_...`: the
+  // coefficients of this function at t = `promised` (see the constructor), where the first guess of
+  // the solver is exact. `paraxial_...`: the coefficients for t -> 0, on the axis. inv_known2 is
+  // 1 / promised^2.
   T known_offset, known_slope, inv_known2;
   T paraxial_offset, paraxial_slope;
   int steps;  // of the solver in single precision; all other scalars ignore it
@@ -66,7 +69,7 @@ struct FlatPortField {
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
   // True if the field contains the point. rho2: squared distance of the point to the axis [m^2].
-  // z_water: its height above the outer plane [m]. False for NaN.
+  // z_water: height of the point above the outer plane [m]. False for NaN.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;
@@ -91,8 +94,8 @@ struct FlatPortField {
   static constexpr float kHighest = kFixedSteps<T> ? 1e5f : 1e9f;
 };
 
-// m = 1 / secant, stored as numerator and denominator. Terms in m^2 are computed from both, so
-// that they do not wait for the division.
+// m = t / rho as a fraction, the inverse of the secant rho / t. Terms in m^2 are computed from
+// numerator and denominator, so that they do not wait for the division.
 template <class T>
 struct InverseSecant {
   T numerator, denominator;
@@ -101,12 +104,12 @@ struct InverseSecant {
 };
 
 // F and its derivatives at m. The code minimises the length of the chain of dependent operations,
-// not the number of operations. Terms without a square root are computed while the square roots
-// are under way.
+// not the number of operations. Terms without a square root are computed while the processor
+// computes the square roots.
 template <class T>
 struct FlatPortSlopes {
-  T inv_qw;
-  T inv_qw_slope;       // its derivative by m
+  T inv_qw;             // 1/q_w
+  T inv_qw_slope;       // derivative of inv_qw by m
   T secant;             // (F + 1) / m, which is radius / t
   T tangent;            // dF/dm, which is d(radius)/dt
   T half_curvature;     // half of the second derivative d^2F/dm^2
@@ -144,11 +147,12 @@ struct FlatPortSlopes {
       : FlatPortSlopes(optics, {m, T(1)}, rho2, z_water) {}
 };
 
-// The first guess of m: m = 1 / secant with an interpolated secant radius / t. The interpolation
-// is linear in the squared radius. It is exact on the axis and at the known tangent of the field.
-// It saves more than one step compared with the paraxial guess. Far beyond the known tangent the
-// interpolated secant would become zero or negative, and no step could correct such a guess.
-// Therefore a secant below half the secant at the known tangent is raised to this half.
+// The first guess of m: 1 / secant, with an interpolated secant radius / t. The interpolation is
+// linear in the squared radius. The interpolated secant is exact on the axis and at the known
+// tangent, `promised` of FlatPortField. Compared with the paraxial guess, this guess saves more
+// than one step. Far beyond the known tangent, the interpolated secant would become zero or
+// negative, and no step could correct such a guess. Therefore a secant below half the secant at the
+// known tangent is raised to this half.
 template <class T>
 struct FirstGuess {
   InverseSecant<T> m;
@@ -165,7 +169,7 @@ struct FirstGuess {
   }
 };
 
-// The decrement of m in a step of Halley's method. `at`: F and its derivatives at m.
+// The number that a step of Halley's method subtracts from m. `at`: F and its derivatives at m.
 template <class T>
 T halley_step(const FlatPortSlopes<T>& at, const T& m) {
   const T f = m * at.secant - T(1);
@@ -178,7 +182,7 @@ struct FlatPortRoot {
   T m;       // t / rho, in-air tangent over radius
   T slope;   // dt/d(rho)
   T spread;  // (1/m - 1/slope) / t^2
-  T inv_qw;
+  T inv_qw;  // 1/q_w
 };
 
 namespace detail {
@@ -194,7 +198,8 @@ FlatPortRoot<T> solve_in_fixed_steps(const FlatPortOptics<T>& optics, const Flat
   const FirstGuess<T> guess(field, rho2, z_water);
   FlatPortSlopes<T> at(optics, guess.m, rho2, z_water);
   T m = guess.m.value();
-  // Far outside the image the steps may be inaccurate, but they must not lead back into the image.
+  // Far outside the image the steps may be inaccurate. The lower bound prevents that they lead back
+  // into the image.
   const T lowest = select(guess.beyond, T(0.5) * m, T(0));
   for (int step = 1; step < field.steps; ++step) {
     m -= halley_step(at, m);
@@ -217,9 +222,9 @@ FlatPortRoot<T> solve_to_convergence(const FlatPortOptics<T>& optics, const Flat
   T m = FirstGuess<T>(field, rho2, z_water).m.value();
   for (int step = 0; step < 2; ++step)
     m -= halley_step(FlatPortSlopes<T>(optics, m, rho2, z_water), m);
-  // F is concave, so that a Newton step ends left of the root. From a point left of the root,
-  // Newton's method rises monotonically. The paraxial solution lies left of the root and bounds
-  // the steps from below. A step that does not rise shows that only rounding errors are left.
+  // F is increasing and concave, so a Newton step ends at or below the root. From a point below the
+  // root, Newton's method rises monotonically. The paraxial solution lies below the root and is a
+  // lower bound of all steps. If a step does not rise, only rounding errors are left.
   const T lowest = T(1) / optics.paraxial_secant(z_water);
   for (int step = 0; step < 60; ++step) {
     const FlatPortSlopes<T> at(optics, m, rho2, z_water);

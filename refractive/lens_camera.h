@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera whose lens has distortion. The camera is without a port, or behind a flat port or a
-// dome. It combines two parts. A DistortedLens maps tangents in air to pixels. An inner camera of
-// this folder, whose lens has no distortion, maps points to tangents: the "pixels" of the inner
-// camera are tangents in air. The chain rule gives the derivatives.
+// A camera whose lens has distortion, without a port, or behind a flat port or a dome. The camera
+// combines two parts. A DistortedLens maps tangents in air to pixels. An inner camera of this
+// folder, whose lens has no distortion, maps points to tangents: the "pixels" of the inner camera
+// are tangents in air. The chain rule gives the derivatives.
 #pragma once
 
 #include <utility>
@@ -13,8 +13,8 @@
 
 namespace axial::refractive {
 
-// The image of a point, and the derivative of the pixel by the point. Frame of the inner
-// projector.
+// The image of a point, and the derivative of the pixel by the point. Points are in the frame of
+// the inner projector.
 template <class T, class InnerImage>
 struct LensImage {
   Projection<T> projection;
@@ -38,7 +38,7 @@ class LensProjector {
   LensProjector(const DistortedLens<T>& lens, const InnerProjector& inner)
       : lens_(lens), inner_(inner) {}
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     lens_.each_field(visit);
@@ -61,14 +61,14 @@ class LensProjector {
   InnerProjector inner_;
 };
 
-// The lens of the inner camera: its pixels are tangents.
+// The lens of the inner camera: it maps the direction (u, v, 1) to the pixel (u, v).
 template <class T>
 PinholeLens<T> tangent_lens() {
   return {T(1), T(1), T(0), T(0)};
 }
 
-// The image rectangle of the inner camera, in tangents. It is so large that it excludes no image.
-// The DistortedLens tests against the real image rectangle.
+// The image rectangle of the inner camera, in tangents. It is so large that it excludes no
+// direction. The DistortedLens tests whether a pixel lies in the real image rectangle.
 template <class T>
 WidenedImage<T> all_tangents() {
   return {1, 1, T(1e6)};
@@ -76,15 +76,15 @@ WidenedImage<T> all_tangents() {
 
 namespace detail {
 
-// The largest incidence on the port in air over `image` [px]: the result is the tangent of this
-// angle. A larger tangent than kGrazing is reduced to kGrazing. Only the border of `image` is
-// sampled, because the incidence grows towards the border.
+// Returns the tangent of the largest angle of incidence on the port in air, over `image` [px]. A
+// larger tangent than kGrazing is reduced to kGrazing. Only the border of `image` is sampled,
+// because the incidence grows towards the border.
 template <class T>
 T largest_incidence_tangent(const DistortedLens<T>& lens, const FlatPort<T>& port,
                             const WidenedImage<T>& image) {
   using std::sqrt;
   constexpr int kSamples = 64;
-  constexpr float kBetween = 1.002f;  // more than the incidence can grow between samples
+  constexpr float kBetween = 1.002f;  // bound of the tangent's growth between two samples
   const T kGrazing(50);
   T largest = T(1e-3);
   const auto look = [&](const T& u, const T& v) {
@@ -139,15 +139,15 @@ class LensCamera {
 
   LensCamera() = default;  // invalid until each_field() has filled it
 
-  // Without a port if Inner is PinholeCamera. Otherwise behind `port`: a FlatPort for
-  // FlatPortCamera, a DomePort for DomePortCamera.
+  // The camera is without a port if Inner is PinholeCamera. Otherwise it is behind `port`: a
+  // FlatPort for FlatPortCamera, a DomePort for DomePortCamera.
   explicit LensCamera(const DistortedLens<T>& lens)
       : lens_(lens), inner_(detail::inner_camera(lens)) {}
   template <class Port>
   LensCamera(const DistortedLens<T>& lens, const Port& port)
       : lens_(lens), inner_(detail::inner_camera(lens, port)) {}
 
-  // As FlatPortCamera::each_field.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     lens_.each_field(visit);
@@ -178,9 +178,9 @@ class LensCamera {
   Projector projector() const { return {lens_, inner_.projector()}; }
   RigidTransform<T> projector_frame() const { return inner_.projector_frame(); }
 
-  // As project() of the inner camera, with the pixel and the Jacobian of the distorted lens. A
-  // point is also not visible if its direction lies beyond the lens's field, or if its pixel lies
-  // outside the widened image of the lens.
+  // As project() of the inner camera, but with the pixel and the Jacobian of the distorted lens. A
+  // point that the inner camera sees is not visible if its direction lies beyond the lens's field,
+  // or if its pixel lies outside the widened image of the lens.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     Matrix23<T> by_point;

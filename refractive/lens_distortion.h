@@ -32,7 +32,7 @@ struct PlanePoint {
 // The parameters of the formula above. Their defaults describe a lens without distortion.
 template <class T>
 struct LensDistortion {
-  T fisheye = T(0);  // 1: fisheye, 0: perspective; a number, because SIMD lanes may differ in it
+  T fisheye = T(0);  // 1: fisheye, 0: perspective; a T, so that each SIMD lane has its own value
   T spread = T(1);
   std::array<T, 5> above{T(1), T(0), T(0), T(0), T(0)};
   std::array<T, 3> below{T(0), T(0), T(0)};
@@ -44,7 +44,7 @@ struct LensDistortion {
   template <class U>
   LensDistortion<U> cast() const;
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(fisheye), visit(spread);
@@ -61,10 +61,9 @@ struct LensDistortion {
   // Maps e to d.
   PlanePoint<T> bent(const Vector2<T>& e) const;
 
-  // The inverse of bent() by Newton's method: maps d to e. `by` is d(e)/d(d). The result is
-  // limited to |e| <= radius. If d is not the image of a point of this circular disc, the result
-  // is a point of the circle |e| = radius, roughly in the direction of d. A NaN argument gives
-  // NaN.
+  // The inverse of bent() by Newton's method: maps d to e. `by` is d(e)/d(d). The result is limited
+  // to |e| <= radius. If no e with |e| <= radius is mapped to d, the result is a point of the
+  // circle |e| = radius, roughly in the direction of d. A NaN argument gives NaN.
   PlanePoint<T> straightened(const Vector2<T>& d, const T& radius) const;
 };
 
@@ -87,7 +86,8 @@ namespace detail {
 // of p and by `across` perpendicular to p. p2: |p|^2.
 template <class T>
 Matrix2<T> stretch(const Vector2<T>& p, const T& p2, const T& along, const T& across) {
-  // At the centre `along` and `across` differ by rounding only.
+  // The lower bound avoids a division by zero at the centre, where `along` - `across` is a rounding
+  // error.
   const T turn = (along - across) / greater(p2, T(1e-12));
   Matrix2<T> matrix;
   matrix << across + turn * p.x() * p.x(), turn * p.x() * p.y(),  //

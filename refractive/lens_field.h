@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field of a lens: how far from the optical axis its distortion model is valid. A polynomial
-// may turn back beyond the field to which it was fitted. Directions beyond the field would then
-// have images inside the image, where other directions are already imaged.
+// The field of a lens: how far from the optical axis its distortion model is valid. The polynomial
+// of a lens may stop growing beyond the field to which it was fitted. The polynomial then maps
+// directions beyond the field to pixels at which the lens images other directions.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace axial::refractive {
 
-// The widest field of a lens [rad]. A lens behind a port images no directions farther from the
-// optical axis. At 90 degrees a direction has no finite tangents.
+// The widest field of a lens [rad], as the angle from the optical axis. The angle is limited
+// because the tangents (x/z, y/z) of a direction grow to infinity at 90 degrees.
 inline constexpr double kWidestAngle = 85 * std::numbers::pi / 180;
 
 namespace detail {
@@ -30,14 +30,14 @@ struct FieldCircle {
   // True if each sampled point of the curve moves outwards when the angle from the optical axis
   // grows, and if the distortion does not mirror the image.
   bool grows = true;
-  double reaches = 1e9;  // smallest distance of the image from the centre [focal lengths]
+  double reaches = 1e9;  // smallest distance of the curve from the image's centre [focal lengths]
 };
 
 // Samples the circle |e| = radius at 16 points. `by_angle`: d|e|/d(angle) at this radius.
 inline FieldCircle field_circle(const LensDistortion<double>& distortion, double radius,
                                 double by_angle) {
-  // Least growth of the distance from the image's centre [focal lengths per radian]. Below it, the
-  // inverse of the distortion is not accurate in single precision.
+  // Least growth of the distance from the image's centre [focal lengths per radian]. If the growth
+  // is smaller, the inverse of the distortion is not accurate in single precision.
   constexpr double kLeastGrowth = 0.02;
   constexpr int kDirections = 16;
   FieldCircle circle;

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's forward projection (Algorithm 1; docs/refraction.md names the paper). It bisects the
-// line in which the plane of refraction meets the image. It uses only a table of the pixels' rays.
-// Its error is about a quarter of a pixel. It serves comparisons, and cameras of which only a
-// table is known. The exact projection (FlatPortCamera::project) is faster.
+// The paper's forward projection (Algorithm 1; docs/refraction.md names the paper). The algorithm
+// bisects the line in which the plane of refraction meets the image. It uses only a table of the
+// pixels' rays. Its error is about a quarter of a pixel. It is here for comparisons, and for
+// cameras of which only a table of rays is known. The exact projection (FlatPortCamera::project) is
+// faster.
 //
-// The printed algorithm leaves some cases open and treats others wrongly. This implementation
-// differs as follows:
+// The symbols of the paper: x_p is the pinhole image of X, and x_n is the pixel at which the axis
+// meets the image. The printed algorithm leaves some cases open and treats others wrongly. This
+// implementation differs as follows:
 //   - The table is one pixel larger than the image on every side, and the line is clipped half a
 //     pixel outside the image's area. So rounding never leaves the table. A point is outside the
 //     image if and only if the search ends outside the image's area. The printed algorithm also
 //     drops points whose search ends within half a pixel of the line's end, although many of these
 //     points are inside.
-//   - The search tests at least once, also on a line that is too short to bisect. There the
-//     printed variable `forward` has no value.
-//   - The result is x_p for a point on the axis, where the line has no direction.
+//   - The search tests at least one pixel, even if the line is too short to bisect. In the printed
+//     algorithm, the variable `forward` has no value for such a line.
+//   - For a point on the axis the line has no direction, and the result is x_p.
 //   - The direction of the line is computed from X and n without x_n, because x_n does not exist
 //     if the port's normal is perpendicular to the optical axis.
 //   - Points on the lens's side of the outer plane, and NaN, are rejected.
-//   - alpha and beta are cosines: a larger angle has a smaller cosine.
-// The search rounds positions to pixels. Therefore the comparison is not monotone within 0.7 px,
-// and this rounding causes most of the error.
-// of the error comes from there.
+//   - alpha and beta are the cosines of the angles that the paper's text compares, because the
+//     printed algorithm computes cosines. The comparison is therefore the reverse of the comparison
+//     of angles.
+// The search rounds positions on the line to pixels. Therefore the result of the comparison is not
+// monotone along the line within 0.7 px. This rounding causes most of the error.
 #pragma once
 
 #include <cmath>
@@ -64,8 +67,7 @@ std::optional<Segment<T>> clip_ray(const Vector2<T>& start, const Vector2<T>& st
 // The direction [px] of the line in which the plane of refraction of X meets the image, pointing
 // away from the axis. Let J be the lens's Jacobian d(pixel)/dX at X, and e the component of X
 // perpendicular to the axis. The result is J e. It is parallel to x_p - x_n and about |x_p - x_n|
-// pixels long, where x_p is the pinhole image of X. `n`: the port's normal. X and n are in the
-// camera frame. Precondition: X.z > 0.
+// pixels long. `n`: the port's normal. X and n are in the camera frame. Precondition: X.z > 0.
 template <class T>
 Vector2<T> refraction_line(const PinholeLens<T>& lens, const Vector3<T>& n, const Vector3<T>& X) {
   const T inv_z = T(1) / X.z();
@@ -96,9 +98,9 @@ Vector2<T> bisect_line(const PixelLookup<T>& lookup, Segment<T> line, const Vect
   return x;
 }
 
-// A flat port camera that projects by Algorithm 1. It has the functions of FlatPortCamera that the
-// paper's method needs, so that the camera's type selects the method. Rays and Jacobians are those
-// of the exact camera. `T` is float or double.
+// A flat port camera that projects by Algorithm 1. It has those functions of FlatPortCamera that
+// the paper's method needs, so that the type of the camera selects the method of projection. Rays
+// and Jacobians are those of the exact camera. `T` is float or double.
 template <class T>
 class LineSearchCamera {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pinhole lens and the camera without a port.
+// A pinhole lens, and the camera that has this lens and no port.
 #pragma once
 
 #include <cmath>
@@ -44,7 +44,7 @@ struct PinholeImage {
     return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
 
-  T x, y;              // the point divided by its z
+  T x, y;              // x and y of the point, divided by z
   T scale_u, scale_v;  // focal lengths divided by z
 };
 
@@ -58,7 +58,7 @@ class PinholeCamera {
   PinholeCamera() = default;  // invalid until each_field() has filled it
   explicit PinholeCamera(const PinholeLens<T>& lens) : lens_(lens) {}
 
-  // See FlatPortCamera.
+  // See FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);

@@ -2,9 +2,10 @@
 // The forward projection through a flat port as a root of a polynomial of degree 12. It is a
 // reference for tests, slower and less accurate than FlatPortCamera::project().
 //
-// The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho. Let t0 be the paraxial root of the
-// equation and t = t0/u. With rho/t0 as the unit of length, let a = d_a, g = d_g/mu_g and w =
-// z/mu_w. Let e = t0^2 (mu^2 - 1)/mu^2 for glass (e_g) and for water (e_w). Then
+// The equation to solve is t (d_a + d_g/q_g + z/q_w) = rho, where z is z_water and the symbols are
+// those of flat_port_solver.h. Let t0 be the paraxial root of the equation and t = t0/u. With
+// rho/t0 as the unit of length, let a = d_a, g = d_g/mu_g and w = z/mu_w. Let e = t0^2
+// (mu^2 - 1)/mu^2 for glass (e_g) and for water (e_w). Then
 //
 //     a + g + w = 1,    p = q_g^2/mu_g^2 = 1 + e_g/u^2,    q = q_w^2/mu_w^2 = 1 + e_w/u^2
 //     u - a = g/sqrt(p) + w/sqrt(q)
@@ -73,8 +74,8 @@ auto roots(std::span<const T> monic) {
 }  // namespace polynomial
 
 // The in-air tangent t of the ray that reaches the distance `rho` [m] from the axis at the height
-// `z_water` [m] above the outer plane (axis frame). t is computed from the eigenvalues without
-// further iterations. Empty if no such t exists: total reflection, z_water <= 0, rho < 0, or an
+// `z_water` [m] above the outer plane (axis frame). t is computed directly from an eigenvalue of
+// the companion matrix. Empty if no such t exists: total reflection, z_water <= 0, rho < 0, or an
 // argument that is not finite. `T` is float or double.
 template <class T>  // NOLINTNEXTLINE(readability-function-size): one derivation, half of it names
 std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T& rho,
@@ -122,7 +123,8 @@ std::optional<T> tangent_by_polynomial(const FlatPortOptics<T>& optics, const T&
     const auto monic = plus<4>(product(inner, inner), T(T(-4) * g * g * w * w), PQ);
     consider(roots<T>(monic));
   }
-  // A spurious root solves the equation with the opposite sign of a term.
+  // Squaring adds roots that solve the equation with the opposite sign of a term. Such a root is no
+  // solution.
   if (best && least > T(1e-3)) return std::nullopt;
   return best;
 }

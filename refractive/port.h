@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A port of any kind, for code that passes ports on without looking into them.
+// A port of either kind, for code that passes on ports but does not use their parameters.
 #pragma once
 
 #include <variant>

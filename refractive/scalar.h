@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The operations that the cameras need from a scalar type besides arithmetic. With these
 // operations, one implementation serves float, double, automatic-differentiation scalars and SIMD
-// packs. A SIMD pack has to define the mask type that its comparisons return, with the operators
-// &&, || and !. It also has to overload `select`, `lesser`, `greater` and `sqrt` in its own
+// packs. A SIMD pack has to define the mask type that its comparisons return, with the operator &&.
+// The pack also has to overload `select`, `lesser`, `greater`, `sqrt` and `abs` in its own
 // namespace.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace axial::refractive {
 
-// The type of a comparison: bool for plain scalars.
+// The type of the result of a comparison: bool for plain scalars, a mask for SIMD packs.
 template <class T>
 using Mask = std::decay_t<decltype(std::declval<const T&>() < std::declval<const T&>())>;
 
@@ -30,9 +30,9 @@ T greater(const T& a, const T& b) {
   return a > b ? a : b;
 }
 
-// True for float: projections then take a fixed number of steps and do not branch. A SIMD pack of
-// floats specialises this constant to true. With all other scalars, projections iterate to
-// convergence.
+// True if projections take a fixed number of solver steps and do not branch. True for float; a SIMD
+// pack of floats must specialise this constant to true. False for all other scalars: their
+// projections iterate to convergence.
 template <class T>
 inline constexpr bool kFixedSteps = std::is_same_v<T, float>;
 

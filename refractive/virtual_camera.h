@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's virtual cameras. The virtual camera of a pixel of an axial camera is a pinhole. Its
-// centre is the C_v of the pixel. It looks along the axis and has the focal lengths of the real
-// lens (f_v = f). Its principal point is chosen so that it images the pixel's ray at the same
-// pixel (eq. 3, with the correction of the second component in docs/refraction.md).
+// centre is C_v, the origin of the pixel's ray in water. It looks along the port's normal, or
+// behind a dome along the optical axis of the lens. It has the focal lengths of the real lens
+// (f_v = f). Its principal point is chosen so that the virtual camera images the pixel's ray at the
+// same pixel (eq. 3, with the correction of the second component in docs/refraction.md).
 //
-// Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference -
-// C), in the frames of the real cameras. Units: metres and pixels. Equation numbers are those of
-// the paper that docs/refraction.md names.
+// Poses: x_virtual = rotation * (x_camera - centre). For two views, x_source = R (x_reference - C),
+// in the frames of the real cameras. Units: metres and pixels. Equation numbers are those of the
+// paper that docs/refraction.md names.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -45,8 +46,9 @@ VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& ro
   return {ray.origin, rotation, {lens.fx, lens.fy, c.x(), c.y()}};
 }
 
-// The virtual camera of `pixel` of any camera. The pixel is not rounded. A camera without
-// rotation_to_axis(), such as PinholeCamera, is its own virtual camera.
+// The virtual camera of `pixel` of `camera`, which may be of any type with lens(). The pixel is not
+// rounded. The result for a camera without rotation_to_axis(), such as PinholeCamera, is the camera
+// itself.
 template <class Camera, class T = typename Camera::Scalar>
 VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   if constexpr (requires { camera.rotation_to_axis(); }) {
@@ -57,8 +59,8 @@ VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   }
 }
 
-// The pose of the virtual source camera relative to the virtual reference camera (eq. 1): x_source
-// = rotation * (x_reference - centre), in the frames of the virtual cameras.
+// The pose of the virtual source camera relative to the virtual reference camera (eq. 1):
+// x_source = rotation * (x_reference - centre), in the frames of the virtual cameras.
 template <class T>
 struct RelativePose {
   Matrix3<T> rotation;
@@ -74,9 +76,9 @@ RelativePose<T> relative_pose(const VirtualCamera<T>& reference, const VirtualCa
 
 // The homography [px to px] from the image of the virtual camera `reference` to the image of the
 // virtual camera `source` (eq. 2). The plane through X with the normal n induces the homography. X
-// [m] and n are in the frame of the real reference camera. n may have any length. R, C: x_source =
-// R (x_reference - C), in the frames of the real cameras. A plane through the centre C_v of
-// `reference` gives infinities or NaN.
+// [m] and n are in the frame of the real reference camera. n may have any length. R, C:
+// x_source = R (x_reference - C), in the frames of the real cameras. A plane through the centre C_v
+// of `reference` gives infinities or NaN.
 template <class T>
 Matrix3<T> virtual_homography(const VirtualCamera<T>& reference, const VirtualCamera<T>& source,
                               const Matrix3<T>& R, const Vector3<T>& C, const Vector3<T>& X,
@@ -102,10 +104,10 @@ Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   return {image.x() / image.z(), image.y() / image.z()};
 }
 
-// The reprojection of the consistency check, which compares the result with the reference pixel
-// (eq. 7, corrected: docs/refraction.md). Let X be the point at `distance` [m] on `source_ray`
-// [frame of the real source camera]. The result is the pixel at which the virtual camera
-// `reference` images X. R, C: x_source = R (x_reference - C), in the frames of the real cameras.
+// Let X be the point at `distance` [m] on `source_ray` [frame of the real source camera]. Returns
+// the pixel at which the virtual camera `reference` images X. The consistency check compares this
+// pixel with the reference pixel (eq. 7, corrected: docs/refraction.md). R, C: x_source = R
+// (x_reference - C), in the frames of the real cameras.
 template <class T>
 Vector2<T> virtual_reprojection(const VirtualCamera<T>& reference, const AxialRay<T>& source_ray,
                                 const T& distance, const Matrix3<T>& R, const Vector3<T>& C) {

@@ -38,7 +38,7 @@ class AtomicFile {
 // file and must close the file before it returns. Then the temporary file is flushed to the disk
 // and renamed to `path`. On any failure (unwritable folder, full disk, exception from `write`) the
 // temporary file is removed, `path` keeps its old content, and an Error that names `path` is
-// thrown. Exception: a std::bad_alloc from `write` is thrown on unchanged.
+// thrown. Exception: a std::bad_alloc from `write` reaches the caller unchanged.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
@@ -46,7 +46,7 @@ void write_atomically(const std::filesystem::path& path,
 // the order of `paths`, and must close the files before it returns. First all temporary files are
 // flushed to the disk, then they are renamed one after the other. If `write` or a flush fails, all
 // files of `paths` keep their old content. In the message of an Error from `write`, each name of a
-// temporary file is replaced by the final name. Other exceptions from `write` are thrown on
+// temporary file is replaced by the final name. Other exceptions from `write` reach the caller
 // unchanged.
 void write_together(
     const std::vector<std::filesystem::path>& paths,
@@ -57,23 +57,24 @@ void write_together(
 // `staging` is renamed to `folder`, so that `folder` appears at once with all its files. If
 // `folder` exists, the new files are moved into it one by one, and its other files stay. Files with
 // the names of new files are removed before the first new file is moved. If the process is killed
-// in between, some of these files are missing, but none of the old ones is left among the new ones.
-// A failed file operation throws an Error that names `folder` or the file. In the message of an
-// Error from `write`, the name of `staging` is replaced by the name of `folder`.
+// between the removal and the last move, some new files are missing, but no old file remains in
+// place of a new file. A failed file operation throws an Error that names `folder` or the file. In
+// the message of an Error from `write`, the name of `staging` is replaced by the name of `folder`.
 void write_folder(const std::filesystem::path& folder,
                   const std::function<void(const std::filesystem::path& staging)>& write);
 
 // Writes `bytes` to `path`, with the guarantees of write_atomically() above.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// Throws the Error of write_atomically() if `path` cannot be written. A program can call it before
-// hours of work. The test creates a temporary file in the same folder and removes it again. If an
-// earlier process was killed while it wrote `path`, its temporary file is still in the folder.
-// require_writable() removes such files.
+// Throws the Error of write_atomically() if `path` cannot be written. A program can call this
+// function before it computes for hours. The test creates a temporary file in the same folder and
+// removes it again. If an earlier process was killed while it wrote `path`, its temporary file is
+// still in the folder. require_writable() removes such files.
 void require_writable(const std::filesystem::path& path);
 
-// The same test for write_folder(). `folder` and its parents need not exist, because write_folder()
-// creates them. The test creates its temporary file in the deepest existing folder of the path.
+// As require_writable(), but for write_folder(). `folder` and its parents need not exist, because
+// write_folder() creates them. The test creates its temporary file in the deepest existing folder
+// of the path.
 void require_writable_folder(const std::filesystem::path& folder);
 
 // Creates `folder` and its parents where they are missing. Throws an Error that names `folder` if

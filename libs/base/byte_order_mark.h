@@ -5,10 +5,10 @@
 
 namespace axial {
 
-// Some editors put these bytes before the first character of a UTF-8 file.
+// The byte order mark. Some editors put these bytes before the first character of a UTF-8 file.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-// `text` without a byte order mark at its start.
+// Returns `text` without the byte order mark, if it starts with one.
 inline std::string_view without_byte_order_mark(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   return text;

@@ -9,8 +9,8 @@
 
 namespace axial {
 
-// The message names the file, the field and the value, in that order where they apply:
-// "scene.mvs: images[3].poseID is 17, but the platform has 4 poses".
+// An error that a user can cause. The message names, in this order and as far as they apply, the
+// file, the field and the value: "scene.mvs: images[3].poseID is 17, but the platform has 4 poses".
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

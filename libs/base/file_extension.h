@@ -16,7 +16,7 @@ inline std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-// Whether the extension is that of a JPEG.
+// True if the extension is .jpg or .jpeg, in upper or lower case.
 inline bool is_jpeg_name(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
   return extension == ".jpg" || extension == ".jpeg";

@@ -6,9 +6,9 @@
 
 namespace axial {
 
-// The regular files in the folder `path`, without those of its subfolders, in any order. If `path`
-// is itself a file, the result is that file. If `path` is empty or does not exist, the result is
-// empty.
+// Returns the regular files in the folder `path`, without the files in its subfolders, in any
+// order. If `path` is itself a file, the result is that file. If `path` is empty or does not exist,
+// the result is empty.
 inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;

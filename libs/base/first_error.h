@@ -10,8 +10,8 @@
 namespace axial {
 
 // Runs the items of a parallel loop and keeps the exception of the failed item with the smallest
-// number. Items with larger numbers than a failed item are skipped; items with smaller numbers are
-// run. Thread-safe.
+// number. After a failure, items with larger numbers than the failed item are skipped, and items
+// with smaller numbers are still run. Thread-safe.
 class FirstError {
  public:
   template <class Body>
@@ -27,7 +27,7 @@ class FirstError {
     }
   }
 
-  // Rethrows the kept exception, if there is one. Call it after the loop.
+  // Rethrows the kept exception, if there is one. Call this function after the loop.
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }

@@ -13,13 +13,13 @@ namespace axial {
 
 // Collects bytes into a 128-bit XXH3 fingerprint, printed as 32 hex digits. The fingerprint
 // identifies the inputs from which a file was made. XXH3 was chosen for speed, because whole files
-// are read. It is not secure against intended collisions.
+// are hashed. XXH3 does not protect against collisions that are made on purpose.
 class Fingerprint {
  public:
   Fingerprint();
   ~Fingerprint();
 
-  Fingerprint& add(std::string_view bytes);  // length-prefixed, so that "ab"+"c" is not "a"+"bc"
+  Fingerprint& add(std::string_view bytes);  // and their number: "ab" + "c" is not "a" + "bc"
   Fingerprint& add(std::uint64_t value);
   Fingerprint& add(double value);
   std::string hex() const;
@@ -39,7 +39,8 @@ constexpr std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// A number in [0, 1) from the upper 24 bits. The number is uniformly distributed if the bits are.
+// Returns the upper 24 bits as a number in [0, 1). If `bits` is uniformly distributed, so is the
+// result.
 constexpr float unit_float(std::uint64_t bits) {
   return static_cast<float>(bits >> 40) * (1.0f / 16777216.0f);
 }

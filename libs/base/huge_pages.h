@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory in pages of 2 MiB, where the system grants them. A matching window in a dozen source
-// images touches a hundred rows. With pages of 4 KiB each row lies in another page, which is more
-// than the processor's first-level page table cache (TLB) holds.
+// Memory in pages of 2 MiB, where the system grants them. To match one window in a dozen source
+// images, about a hundred image rows are read. With pages of 4 KiB, each of these rows lies in
+// another page, and the processor's first-level translation cache (TLB) holds fewer pages.
 #pragma once
 
 #include <sys/mman.h>
@@ -23,7 +23,7 @@ struct HugePageAllocator {
   template <class U>
   explicit HugePageAllocator(const HugePageAllocator<U>&) {}
 
-  // Small blocks come from the heap.
+  // Blocks below kSmall bytes come from the heap, larger blocks directly from the system.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall) return static_cast<T*>(::operator new(bytes));
@@ -57,7 +57,7 @@ struct HugePageAllocator {
     const std::size_t before = past > 0 ? kPage - past : 0;
     if (before > 0) ::munmap(begin, before);
     if (before < kPage) ::munmap(begin + before + bytes, kPage - before);
-    // If the system refuses, the result is the same, only slower.
+    // If the system does not grant huge pages, the memory has pages of 4 KiB and is slower.
     ::madvise(begin + before, bytes, MADV_HUGEPAGE);
     return begin + before;
   }

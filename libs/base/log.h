@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's log. Only log.cpp includes the logging library, because its headers take seconds to
-// compile.
+// The program's log. Only log.cpp includes the logging library, because the library's headers take
+// seconds to compile.
 #pragma once
 
 #include <fmt/core.h>
@@ -19,18 +19,18 @@ void set_log_level(LogLevel level);
 // The lowest level that is written.
 LogLevel log_level();
 
-// Whether lines of `level` are written.
+// True if lines of `level` are written.
 bool logs(LogLevel level);
 
 // Starts the log. Lines go to standard output as "HH:MM:SS [name] text". `line_start` is written
-// before each line.
+// before each line: on a terminal, the control characters that erase a line of progress.
 void start_log(const std::string& name, const std::string& line_start);
 
 // Writes one line, unless `level` is below the log's level.
 void log_line(LogLevel level, std::string_view line);
 
-// The same for a format and its arguments. The line is formatted only if it is written. A warning
-// is shortened by as_message() (base/message.h).
+// Formats one line and writes it, unless `level` is below the log's level. The line is formatted
+// only if it is written. A warning is shortened by as_message() (base/message.h).
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
 template <class... Args>

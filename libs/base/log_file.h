@@ -9,8 +9,8 @@ namespace axial {
 
 // From now on the log's lines are also appended to `file`, with date and time. Creates `file` if it
 // does not exist. Throws an Error that names `file` in two cases: `file` cannot be written, or it
-// has content that does not begin with a date and time. Such a file is not a log, but perhaps a
-// scene or a photograph given by mistake.
+// has content that does not begin with a date and time. A file with such content is not a log, but
+// perhaps a scene or a photograph that the user named by mistake.
 void log_to_file_too(const std::filesystem::path& file);
 
 // Writes a line only to the file of log_to_file_too(). Does nothing if there is no such file.

@@ -9,7 +9,8 @@ namespace axial {
 
 // The bytes that can be allocated without swapping: the smaller of the system's MemAvailable and
 // the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains the folders
-// proc and sys; tests give another one. Throws an Error if the system does not report MemAvailable.
+// proc and sys. Tests pass another folder than "/". Throws an Error if the system does not report
+// MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
 // The bytes of this process that are in memory now, including its code and its libraries. The
@@ -23,19 +24,19 @@ std::uint64_t allocated_memory();
 
 // From now on all threads share one heap, so that a thread can reuse memory that another thread has
 // freed. With a heap per thread, the total size of the heaps would depend on how the work of the
-// threads interleaves. Call it before the first thread starts.
+// threads interleaves. Call this function before the first thread starts.
 void share_one_heap();
 
 // From now on every block of 1 MiB or more comes directly from the system and is returned to the
-// system when it is freed. By default the C library raises this limit: after it has freed a block
-// that came directly from the system, it takes blocks of up to that size from its heaps. Freed
-// blocks then leave holes in the heaps. The size of the holes depends on how the work of the
-// threads interleaves.
+// system when it is freed. By default, the C library changes the smallest size of such blocks:
+// after it has freed a block that came directly from the system, it takes blocks of up to the size
+// of this block from its heaps. Freed blocks then leave holes in the heaps. The size of the holes
+// depends on how the work of the threads interleaves.
 void map_large_blocks();
 
 // Returns to the system the memory that this process has freed and that the C library keeps for
-// reuse, in the heaps of all threads. Call it at the end of a stage if the next stage needs blocks
-// of other sizes.
+// reuse, in the heaps of all threads. Call this function at the end of a stage if the next stage
+// needs blocks of other sizes.
 void return_freed_memory();
 
 }  // namespace axial

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns text of any origin into one line of bounded length. fail(), log_warning() and run_program()
-// use it, because their messages quote file contents.
+// Turns any text into one line of bounded length. fail(), log_warning() and run_program() use
+// as_message(), because their messages quote the contents of files.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace axial {
 
-// Longest line, and longest word in it [bytes]. Words are separated by blanks.
+// The longest line and the longest word of a message [bytes]. Words are separated by blanks.
 inline constexpr std::size_t kLongestMessage = 500;
 inline constexpr std::size_t kLongestWord = 200;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of OpenMVS's programs whose function is not built here, but which scripts pass. Each of
-// these options is declared and accepts only its default. So scripts that pass the default work,
-// and every other value is refused.
+// Options of OpenMVS's programs whose function AxialMVS does not have. Each of these options is
+// declared and accepts only its default. So scripts for OpenMVS that pass the default work here
+// too, and every other value is refused.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ namespace axial {
 
 struct NotBuilt {
   const char* name;
-  std::string value;                  // the default; afterwards the value that the user gave
-  std::vector<std::string> accepted;  // spellings of the default
+  std::string value;                  // the default; after parsing, the value that the user gave
+  std::vector<std::string> accepted;  // all spellings of the default
 };
 
 // Declares `options`, which must exist until parse_options() has returned.

@@ -18,7 +18,7 @@ struct Option {
   std::string name;  // "resolution-level", or "input-file,i" with a short name
   OptionTarget target;
   std::string help;
-  bool shows_default = false;  // --help shows the value that the target has at declaration
+  bool shows_default = false;  // --help shows the value of the target at declaration
   bool is_switch = false;      // bool only: the name without a value means true
 };
 

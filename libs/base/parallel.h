@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parallel loops. Only this part of the project starts threads. The result of a loop must not
-// depend on the number of threads: its items are independent, and each item writes only data of its
-// own.
+// Parallel loops. No other part of the project starts threads. The result of a loop must not depend
+// on the number of threads: the items of a loop must be independent, and each item may write only
+// its own data.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,22 @@
 namespace axial {
 
 // Calls body(i) for every i in [0, count), in any order, on any thread. Returns when all calls have
-// returned. If calls throw, the first exception is rethrown here, and items that have not begun may
-// be left out. `grain`: the largest number of consecutive items that a thread takes at once. If
-// loops are nested, a thread that waits for the end of the inner loop does not begin another item
-// of the outer loop. So no thread holds the memory of two items of the outer loop.
+// returned. If calls throw, one of the exceptions is rethrown to the caller, and items that have
+// not begun may be left out (FirstError always rethrows the same exception). `grain`: the largest
+// number of consecutive items that a thread takes at once. If loops are nested, a thread that waits
+// for the end of the inner loop does not begin another item of the outer loop. So no thread holds
+// the memory of two items of the outer loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
-// `grain` for items as short as the work on one point or one pixel.
+// The `grain` of a loop whose items are short, for example the work on one point or one pixel.
 inline constexpr std::size_t kPointGrain = 1024;
 
 // Calls body(i) for every i in [0, count), on any thread, and returns when all calls have returned.
-// An exception that a body throws is rethrown here; items that have not begun may then be left out.
-// This loop is for items that need much memory. The items begin in the order of i. No more than
-// `in_flight` items run at the same time; 0 is raised to 1. The items may use parallel loops
-// themselves.
+// If a call throws, the exception is rethrown to the caller, and items that have not begun may be
+// left out. This loop is for items that need much memory. The items begin in the order of i. No
+// more than `in_flight` items run at the same time. An `in_flight` of 0 counts as 1. The items may
+// use parallel loops themselves.
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 

@@ -22,7 +22,7 @@ std::optional<T> parse_number(std::string_view token) {
   return value;
 }
 
-// The same, but empty also for infinities and NaN.
+// As parse_number(), but also empty for infinities and NaN.
 template <class T>
 std::optional<T> parse_finite(std::string_view token) {
   const std::optional<T> value = parse_number<T>(token);

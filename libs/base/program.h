@@ -14,13 +14,14 @@ namespace axial {
 
 // Values of the options that are common to all programs. parse_options() fills them.
 struct CommonOptions {
-  std::filesystem::path working_folder;  // absolute; base of every relative path
+  std::filesystem::path working_folder;  // absolute; relative paths start here
   std::string config_file;
-  std::string log_file;  // empty: none
+  std::string log_file;  // empty: no log file
   int archive_type = -1;
   int process_priority = -1;
   unsigned max_threads = 0;
-  // 0: warnings, 1: stages (the log's info), 2: progress (debug), 3: details (trace).
+  // The lowest log level that is written. 0: warning, 1: info (results of stages), 2: debug
+  // (progress), 3: trace (details).
   int verbosity = 2;
 };
 
@@ -58,7 +59,8 @@ struct ParsedOptions {
 // unusable working folder or cfg file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
-// True if the user gave the option of this full name, on the command line or in the cfg.
+// True if the user gave the option with the full name `name` on the command line or in the cfg
+// file.
 bool given(const ParsedOptions& parsed, const std::string& name);
 
 // Returns `path` as an absolute path. A relative `path` starts at the working folder. An empty path

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The progress of a stage. Stages call a sink; programs choose the sink.
+// The progress of a stage. A stage reports its progress to a sink. The program chooses the sink.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@ namespace axial {
 // calls the sink from one thread at a time. A stage accepts an empty sink and then reports nothing.
 using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
 
-// A sink that writes "<title> 3/10 (30%, 12s, 28s left)". On a terminal it overwrites the same
-// line. Otherwise it logs a line every 5 seconds at most. The end of the stage is a line of its
-// own. Progress has the log level debug, and the end of the stage has the level info. The sink
-// writes nothing at a level that the log does not write.
+// Returns a sink that writes "<title> 3/10 (30%, 12s, 28s left)". On a terminal the sink overwrites
+// one line. Otherwise it logs a line every 5 seconds at most. It writes the end of the stage as a
+// separate line. Progress has the log level debug, and the end of the stage has the level info. The
+// sink writes nothing at a level that the log does not write.
 ProgressSink console_progress(const std::string& title);
 
 }  // namespace axial

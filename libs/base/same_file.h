@@ -9,14 +9,14 @@
 namespace axial {
 
 // Throws an Error that names `setting`, `output` and the input if `output` exists and is one of
-// `inputs`. Files are compared by device and inode, so that links are found too. Empty paths and
-// inputs that do not exist are ignored. If an input is a folder, only the folder itself is
-// compared, and not the files in it.
+// `inputs`. Files are compared by device and inode, so that a link to an input counts as the input.
+// Empty paths and inputs that do not exist are ignored. If an input is a folder, only the folder
+// itself is compared, and not the files in it.
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting);
 
-// The same for each of several outputs.
+// Calls require_not_an_input() for each of `outputs`.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
                        std::span<const std::filesystem::path> inputs, const std::string& setting);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The names of settings in messages. A library does not know the options of programs. Messages of a
-// library use the names in the headers of the library, unless the caller supplies other names.
+// library call a setting as its headers do, for example "max_memory", unless the caller supplies
+// other names.
 #pragma once
 
 #include <span>
@@ -9,8 +10,8 @@
 
 namespace axial {
 
-// Returns the words for `setting` in a message. `setting` is the name of a field or of a parameter
-// ("max_memory"), or this name with a value ("make_maps false").
+// A function that returns the words by which a message calls `setting`. `setting` is the name of a
+// field or of a parameter ("max_memory"), or this name with a value ("make_maps false").
 using SettingNames = std::string (*)(std::string_view setting);
 
 // Returns `setting` itself.

@@ -14,9 +14,10 @@
 namespace axial {
 
 // Keeps the `capacity` most recently requested values. A value that is in use outside the cache is
-// not evicted, because that would free no memory; the cache can therefore exceed `capacity`.
-// Thread-safe: if several threads request a value at the same time, one thread makes it and the
-// others wait. An exception from `make` reaches all waiting threads; the next request tries again.
+// not evicted, because its eviction would free no memory. The cache can therefore exceed
+// `capacity`. Thread-safe: if several threads request a value at the same time, one thread makes
+// the value and the others wait. An exception from `make` reaches all waiting threads. The next
+// request calls `make` again.
 template <class Value>
 class SharedCache {
  public:

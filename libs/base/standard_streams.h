@@ -5,8 +5,8 @@
 namespace axial {
 
 // Opens /dev/null for each closed standard stream. Otherwise the next opened file would get the
-// stream's descriptor, and output to the stream would be written into that file. Call it before
-// any file is opened.
+// stream's descriptor, and output to the stream would be written into that file. Call this function
+// before any file is opened.
 void open_standard_streams();
 
 }  // namespace axial

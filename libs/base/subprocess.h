@@ -16,10 +16,10 @@ namespace axial {
 // first.
 void run_subprocess(const std::vector<std::string>& command, const std::filesystem::path& log);
 
-// The same, but an excused failure is not an error. A failure is excused if the program ends with
-// exit code 1 and its log contains one of the texts `excuses`. An excuse is a text by which a
-// program says that it found nothing. Returns true for exit code 0, and false for an excused
-// failure.
+// As run_subprocess(), but an excused failure is not an error. A failure is excused if the program
+// ends with exit code 1 and its log contains one of the texts `excuses`. An excuse is a text by
+// which a program says that it found nothing. Returns true for exit code 0, and false for an
+// excused failure.
 bool run_unless_excused(const std::vector<std::string>& command, const std::filesystem::path& log,
                         const std::vector<std::string>& excuses);
 

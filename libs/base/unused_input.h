@@ -16,10 +16,10 @@ class UnusedInput {
   // options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
-  // For a program that has the option --allow-missing.
+  // The constructor for a program that has the option --allow-missing.
   explicit UnusedInput(bool allowed);
 
-  // For a library: `setting` is the name of the setting that allows unused input.
+  // The constructor for a library. `setting` is the name of the setting that allows unused input.
   UnusedInput(bool allowed, std::string setting);
 
   // Reports one unused input. `line` names the setting, the input and the reason. If unused input

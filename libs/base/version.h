@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The version of the programs. It is a build target of its own (axial_version), because it changes
-// with every commit to the sources. Only programs link it.
+// The version of the programs. version.cpp is a separate build target (axial_version), because the
+// version changes with every commit to the sources. Only programs link this target.
 #pragma once
 
 #include <string>

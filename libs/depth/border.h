@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pixels of a depth map near image borders. A matching window that leaves an image correlates
-// over fewer texels, so windows at wrong depths correlate by chance more often. Propagation spreads
-// such depths to the pixels beside them, whose windows are whole.
+// The pixels of a depth map near image borders. The correlation of a matching window that lies
+// partly outside an image uses fewer texels, so windows at wrong depths correlate by chance more
+// often. Propagation spreads these wrong depths to nearby pixels, whose windows lie inside the
+// image.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -15,8 +15,9 @@ namespace axial::depth {
 
 inline constexpr std::size_t kMaxCandidates = 8;  // hypotheses of one pixel scored at once
 
-// Aggregates the costs of a plane in several views, of which `smallest` and `second` are the two
-// smallest costs. Returns their mean, or `smallest` alone if `second` is kOutsideCost or more.
+// Returns the cost of a plane from its costs in several views. `smallest` and `second` are the two
+// smallest of these costs. The result is the mean of both, or `smallest` alone if `second` is
+// kOutsideCost or more.
 inline float aggregate(float smallest, float second) {
   return second < kOutsideCost ? 0.5f * (smallest + second) : smallest;
 }
@@ -58,7 +59,7 @@ struct BestPlane {
   PlaneHypothesis plane;
   float cost = std::numeric_limits<float>::max();
   BestViews views{kNoView, kNoView};
-  float motion = 0;  // in the best view [px/m]
+  float motion = 0;  // PlaneScore::motion in the best view [px/m]
 };
 
 }  // namespace axial::depth

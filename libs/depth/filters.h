@@ -13,7 +13,7 @@
 namespace axial::depth {
 
 struct SpeckleOptions {
-  float max_difference = 0.007f;  // relative depth step between pixels of a segment
+  float max_difference = 0.007f;  // largest relative depth step between neighbours
   int min_pixels = 100;           // segments with fewer pixels are cleared
 };
 
@@ -23,8 +23,8 @@ struct SpeckleOptions {
 DepthMap remove_speckles(const DepthMap& map, const SpeckleOptions& options = {});
 
 struct GapOptions {
-  int max_gap = 7;                // pixels
-  float max_difference = 0.025f;  // of the two ends' depths, relative to the smaller one
+  int max_gap = 7;                // longest gap that is filled [px]
+  float max_difference = 0.025f;  // of the depths at the ends, relative to the smaller depth
 };
 
 // Fills gaps, first along rows, then along columns. A gap is a run of at most max_gap invalid
@@ -38,9 +38,9 @@ DepthMap fill_gaps(const DepthMap& map, const GapOptions& options = {},
 
 struct AdjustOptions {
   float max_difference = 0.012f;   // relative difference of depth below which two maps agree
-  int min_agreeing = 1;            // neighbours that must agree
-  int min_seeing = 2;              // neighbours that must have a depth; reduced to their number
-  std::size_t max_neighbours = 8;  // only the first ones are used
+  int min_agreeing = 1;            // number of neighbours that must agree with a pixel
+  int min_seeing = 2;              // number of neighbours that must have a depth at a pixel
+  std::size_t max_neighbours = 8;  // only so many neighbours are used, the first of the list
 };
 
 // Adjusts the depths of `reference` to the depth maps of neighbouring views.
@@ -52,17 +52,17 @@ struct AdjustOptions {
 //   less than max_difference, relative to the reference's depth. Otherwise the neighbour
 //   contradicts.
 // * The weight of a neighbour is the confidence of its point, or 1 if its map has no confidences.
-//   There is one exception: a neighbour that contradicts with a larger depth sees through the
-//   pixel's point. The weight of this neighbour is the confidence of the neighbour's pixel onto
-//   which the pixel's point projects, if this pixel exists and has a depth.
+//   There is one exception: if a neighbour contradicts with a larger depth, it sees through the
+//   pixel's surface point. If the surface point projects to a pixel of the neighbour that has a
+//   depth, the weight of the neighbour is the confidence of this pixel of the neighbour.
 // * The new depth is the weighted mean of the reference's depth, weighted by its confidence, and
 //   of the neighbours' depths that agree. The new confidence is the reference's confidence, plus
 //   the weights of the neighbours that agree, minus the weights of the neighbours that
 //   contradict.
 // * A pixel is cleared if its new confidence is not positive, if too few neighbours agree
-//   (min_agreeing), if too few neighbours have a depth there (min_seeing), or if the new depth is
-//   outside [min_depth, max_depth] of `reference` (tested only if max_depth > 0). Without
-//   neighbours, all pixels are cleared.
+//   (min_agreeing), if too few neighbours have a depth at the pixel (min_seeing, but at most the
+//   number of neighbours), or if the new depth is outside [min_depth, max_depth] of `reference`
+//   (tested only if max_depth > 0). Without neighbours, all pixels are cleared.
 //
 // To filter all maps of a scene, pass the unfiltered maps and replace them after the last call.
 // Throws an Error for a map that is empty, for a map whose camera, normals or confidences differ
@@ -72,8 +72,8 @@ DepthMap adjust_with_neighbours(const DepthMap& reference, std::span<const Depth
 
 // The sizes on which the memory of adjust_with_neighbours() depends.
 struct AdjustSize {
-  std::uint64_t pixels = 0;      // of the reference
-  std::uint64_t neighbours = 0;  // that are used
+  std::uint64_t pixels = 0;      // number of pixels of the reference
+  std::uint64_t neighbours = 0;  // number of neighbours that are used
 };
 
 // An upper bound of the memory [bytes] of adjust_with_neighbours(). Includes the result, but not

@@ -12,11 +12,10 @@
 
 namespace axial::depth {
 
-// Returns the depth [m] of a map at the sub-pixel position `at` [px]. Of the four pixels around
-// the position, only those count whose depth differs from `expected` [m] by less than the share
-// `tolerance` of `expected`. The result is the mean of the depths that count, with bilinear
-// weights. Returns 0 if no depth counts or if the position is outside the map. Precondition: the
-// map is at least 2x2 pixels.
+// Returns the depth [m] of a map at the sub-pixel position `at` [px]. The result is the mean, with
+// bilinear weights, over the four pixels around the position. A pixel is left out if its depth
+// differs from `expected` [m] by tolerance * expected or more. Returns 0 if all four pixels are
+// left out or if the position is outside the map. Precondition: the map is at least 2x2 pixels.
 inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float expected,
                         float tolerance) {
   if (!(at.x() >= 0 && at.y() >= 0 && at.x() <= static_cast<float>(depth.cols - 1) &&
@@ -41,15 +40,16 @@ inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float
   return weight_sum > 0 ? sum / weight_sum : 0;
 }
 
-// The term of the forward-backward error e [px] in the cost. Let A be the point of the
-// hypothesis, and let B be the point at the depth that the source view's map has where the source
-// view sees A. Then e is the distance between the images of A and B in the reference view. It is
-// computed to first order (shift_in_pixels). Returns sqrt(e (e + 2)), reduced to `limit` if
-// larger. Returns `limit` if the map has no depth there whose relative difference to A's depth is
-// below kSameSurface.
+// Returns the geometric term of the cost: sqrt(e (e + 2)) of the forward-backward error e [px], or
+// `limit` if the term is larger. Let A be the surface point of the hypothesis. Let B be the point
+// on the source view's ray through A at the depth that the source view's depth map has there. Then
+// e is the distance between the images of A and B in the reference view, computed to first order
+// (shift_in_pixels). Returns `limit`, too, if every depth of the map next to the image of A differs
+// from the depth of A by the share kSameSurface or more.
+//
 // `ray`, `jacobian`: the reference pixel's ray and its derivatives by the pixel, in the reference
-// camera's frame. `depth`: the depth of the hypothesis along this ray [m]. `in_source`: the point
-// A in the source camera's frame [m]. `seen_at`: the image of A in the source view [px].
+// camera's frame. `depth`: the depth of the hypothesis along this ray [m]. `in_source`: the point A
+// in the source camera's frame [m]. `seen_at`: the image of A in the source view [px].
 // `source_depth`: the depth map of the source view [m].
 template <class Camera>
 float inconsistency(const refractive::AxialRay<float>& ray,

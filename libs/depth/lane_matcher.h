@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The matcher with SIMD. Supports exact projection and the affine warp, for pinholes, flat ports
-// and dome ports, each with undistorted or distorted lenses. The source views that share a
-// register have the same kind of camera. The reference view may have another kind, because the
-// SIMD code gets only its rays.
+// and dome ports, each with undistorted or distorted lenses. The source views that share a register
+// have the same kind of camera. The reference view may have another kind of camera, because the
+// scores need only the rays of the reference camera.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ class LaneMatcher {
   RayCaster<Camera> caster_;
   std::size_t views_;
   std::vector<Group> groups_;
-  std::array<LaneOfView, kMaxSources> lane_of_view_{};  // of the source views
+  std::array<LaneOfView, kMaxSources> lane_of_view_{};  // by the index of the source view
 };
 
 }  // namespace axial::depth

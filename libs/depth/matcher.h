@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores plane hypotheses of one reference view against its source views, for any camera and any
 // warp. Matcher scores one pair of plane and view at a time. LaneMatcher scores several pairs at
-// once in SIMD registers. Matcher is the reference in the tests of LaneMatcher, and runs the
-// paper's own methods.
+// once in SIMD registers. Matcher is the reference in the tests of LaneMatcher. It also runs the
+// methods of the paper, which LaneMatcher does not have.
 #pragma once
 
 #include <Eigen/Core>

@@ -12,7 +12,7 @@ namespace axial::depth {
 // How the matching window is mapped from the reference view to a source view.
 enum class Warp {
   affine,     // exact projection of the centre, exact first derivative (docs/refraction.md)
-  homography  // the paper's homography between virtual cameras (eqs. 1-3), at rounded pixels
+  homography  // the paper's homography between virtual cameras (eqs. 1-3) of rounded pixels
 };
 
 inline constexpr float radians(float degrees) {
@@ -25,13 +25,13 @@ struct PatchMatchOptions {
   int iterations = 2;             // sweeps per level
   int coarsest_side = 64;         // a coarser level is used if its shorter side is at least this
 
-  float sigma_color = 0.1f;  // of the bilateral weight, in intensities from 0 to 1
-  float sigma_space = 3.0f;  // of the bilateral weight [px]
+  float sigma_color = 0.1f;  // of the bilateral weights, for intensities from 0 to 1
+  float sigma_space = 3.0f;  // of the bilateral weights [px]
   // A patch is textureless if its ReferencePatch::texture is below this value. The value
   // corresponds to a standard deviation of half a grey level. OpenMVS's value of 4e-4 corresponds
-  // to three times that deviation. With OpenMVS's value, nearly three quarters of the pixels are
-  // lost on sand whose texture is as strong as the camera's noise. Depths of weak texture that
-  // the pixels around them do not confirm are removed later (weak_texture.h).
+  // to three times this deviation. With OpenMVS's value, nearly three quarters of the pixels are
+  // lost on sand whose texture is as strong as the camera's noise. Depths of weak texture that the
+  // pixels around them do not confirm are removed later (weak_texture.h).
   float min_texture = 3.6e-5f;
 
   SmoothnessOptions smoothness;
@@ -46,12 +46,11 @@ struct PatchMatchOptions {
   float prior_texture = 0.002f;
 
   // Trials are planes near a pixel's best plane. Trials come in pairs, with one trial on either
-  // side of the best plane. More than 4 pairs are an error. If the best plane is good already,
-  // few trials are enough (their number and cost: docs/performance.md, "How much there is to
-  // do").
+  // side of the best plane. More than 4 pairs are an error. If the best plane is good already, few
+  // trials are enough. docs/performance.md, "How much there is to do", gives their number and cost.
   int coarse_pairs = 4;                  // in the first sweep of a coarser level
   int first_pairs = 2;                   // in the first sweep of the working resolution
-  int later_pairs = 2;                   // in later sweeps, and in geometric passes but the last
+  int later_pairs = 2;                   // in later sweeps and geometric passes except the last
   int last_pairs = 0;                    // in the last geometric pass, which only propagates
   float refinement_shrink = 0.65f;       // factor of the ranges from one pair to the next
   int restart_trials = 3;                // random planes for a pixel whose cost is bad
@@ -74,7 +73,7 @@ struct PatchMatchOptions {
   float keep_cost = 1.2f;  // hypotheses with this cost or more are removed
 
   float geometric_weight = 0.25f;  // of the geometric-consistency term (eq. 7) in the cost
-  float geometric_limit = 4.0f;    // largest value of that term
+  float geometric_limit = 4.0f;    // largest value of the geometric-consistency term
 };
 
 }  // namespace axial::depth

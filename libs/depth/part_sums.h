@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Correlation of a matching window that leaves the source image, over the texels inside the
-// image. T: float, or a pack of lanes.
+// Correlation of a matching window that lies partly outside the source image. Only the texels
+// inside the image count. T is float or a SIMD pack.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,8 @@ inline float reference_square(const ReferencePatch& patch, std::size_t k) {
 }
 
 // Returns the correlation in [-1, 1]. Returns kNoCorrelation if the sum of weights is below
-// kLeastWeight, or if the source patch or the reference patch is flat in the part inside.
+// kLeastWeight, or if the source patch or the reference patch is flat over the texels inside the
+// image.
 template <class T>
 T part_correlation(const PartSums<T>& sums) {
   using refractive::greater;

@@ -11,7 +11,8 @@
 
 namespace axial::depth {
 
-// Offsets of the texels from the window's centre [px], row by row. The padding has offset 0.
+// Offsets of the texels from the window's centre [px], row by row. The entries after the last texel
+// are 0.
 struct TexelOffsets {
   alignas(32) std::array<float, kPaddedTexels> x{};
   alignas(32) std::array<float, kPaddedTexels> y{};
@@ -30,8 +31,8 @@ constexpr TexelOffsets make_texel_offsets() {
 
 inline constexpr TexelOffsets kTexelOffsets = make_texel_offsets();
 
-// Gathers windows with bilateral weights. The weights are tabulated by 8-bit intensity difference
-// and by texel.
+// Gathers windows with bilateral weights. The factors of the weights are tabulated: one by the
+// difference of 8-bit intensities, one by texel.
 class PatchSampler {
  public:
   explicit PatchSampler(const PatchMatchOptions& options);

@@ -28,7 +28,8 @@ struct MatchInput {
   std::span<const Eigen::Vector3f> sparse_points;  // world frame, seen by the reference view
   const cv::Mat1b* mask = nullptr;                 // non-zero: match this pixel; null: all pixels
   ProjectionMethod projection = ProjectionMethod::exact;
-  // Null, or increased by the number of scores, of which each is for one plane in one view.
+  // If not null, this number is increased by the number of computed scores. A score is for one
+  // plane in one view.
   std::uint64_t* scores = nullptr;
 };
 
@@ -47,12 +48,12 @@ DepthMap estimate_depth_map(const MatchInput& input, const PatchMatchOptions& op
 
 // Improves the depth map `current` of the reference view by one sweep with the
 // geometric-consistency term (eq. 7). Planes stay in the depth range of `current`. `source_maps`:
-// the depth maps of the source views, in the order of input.sources. A null or missing entry
-// means that the view has no depth map. `pass`: the number of the pass, from 0. `last`: whether
-// this pass is the last one. The last pass uses options.last_pairs pairs of trials, the other
-// passes use options.later_pairs. Precondition: `current` has the reference image's size, normals
-// and confidences. Throws an Error as estimate_depth_map() does, except for sparse points, which
-// are not used.
+// the depth maps of the source views, in the order of input.sources. A null or missing entry means
+// that the view has no depth map. `pass`: the number of the pass, from 0. `last`: true for the last
+// pass. The last pass uses options.last_pairs pairs of trials, the other passes use
+// options.later_pairs. Precondition: `current` has the reference image's size, normals and
+// confidences. Throws an Error as estimate_depth_map() does, except for sparse points, which are
+// not used.
 DepthMap refine_depth_map(const MatchInput& input, const DepthMap& current,
                           std::span<const DepthMap* const> source_maps, int pass, bool last,
                           const PatchMatchOptions& options);

@@ -29,7 +29,7 @@ using BestViews = std::array<std::uint8_t, 2>;
 struct PlanePixel {
   PlaneHypothesis plane;
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // origin + depth * direction
-  float cost = 2;                                   // aggregated, 0 (perfect) to 2
+  float cost = 2;                                   // of the plane, 0 (perfect) to 2
   BestViews views{kNoView, kNoView};
   // Motion of the point in the best view per metre of depth [px/m]; 0: unknown or not visible.
   float motion = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the rays of a camera's pixels, for kRayTile pixels of a row at a time. Uses SIMD for
-// the camera types that the SIMD code supports. Computes one ray after the other for other types.
+// Computes the rays of a camera's pixels, for kRayTile pixels of a row at a time. For the camera
+// types that the SIMD code supports, the rays are computed with SIMD, for other types one after the
+// other.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The matching window around a reference pixel, and the constants that all scorers share. The
-// window has 25 texels: every second pixel, in both directions, of 9x9 pixels. This file contains
-// only plain data, because translation units for all instruction sets include it.
+// window has 25 texels: in each direction, every second of 9 pixels. This file contains only plain
+// data, because translation units for all instruction sets include it.
 #pragma once
 
 #include <array>
@@ -15,15 +15,16 @@ inline constexpr int kTexels = 25;
 inline constexpr int kCentreTexel = 12;
 inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the padding has weight zero
 
-// The reference window. Computed once per pixel, used for all hypotheses and source views.
+// The window around a reference pixel. It is computed once per pixel and used for all hypotheses
+// and source views.
 struct ReferencePatch {
   alignas(32) std::array<float, kPaddedTexels> weight;     // bilateral, sums to 1
   alignas(32) std::array<float, kPaddedTexels> deviation;  // weight * (intensity - mean)
-  // Weighted mean of the intensities, 0 to 255. The same mean is also subtracted from the
-  // source's grey levels, so that the sums over them stay small.
+  // Weighted mean of the intensities, 0 to 255. This mean is also subtracted from the grey levels
+  // of the source image, so that the sums over these grey levels stay small.
   float mean;
   float variance;  // sum of weight * (intensity - mean)^2 with intensities from 0 to 1
-  float texture;   // the same sum with the weights before normalisation, which are at most 1
+  float texture;   // as `variance`, but with the weights before normalisation (at most 1)
 };
 
 inline constexpr float kOutsideCost = 1.2f;  // cost of a patch without a correlation
@@ -45,11 +46,12 @@ inline constexpr float kLeastWeight = 0.3f;
 inline constexpr float kFlatVariance = 0.25f;
 // A reference patch is flat if its variance is not above this value, for intensities from 0 to 1.
 // This limit applies only if the source patch lies partly outside its image. The variance is then
-// computed over the part inside.
+// computed over the part inside. For a source patch inside its image, the reference patch is flat
+// only if its variance is 0.
 inline constexpr float kFlatReference = kFlatVariance / (255 * 255);
 
-// A relative difference of depth. If the depth map of a source view differs from a hypothesis by
-// less than this, both count as the same surface.
+// If the depth in the map of a source view differs from the depth of a hypothesis by less than this
+// share, both count as the same surface.
 inline constexpr float kSameSurface = 0.03f;
 
 }  // namespace axial::depth

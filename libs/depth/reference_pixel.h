@@ -17,15 +17,16 @@ struct PixelRay {
   refractive::AxialRayJacobian<float> jacobian;
 };
 
-// The rays of consecutive pixels of a row. They are computed together, if possible with SIMD.
+// The rays of kRayTile consecutive pixels of a row, which are computed together, if possible with
+// SIMD.
 inline constexpr int kRayTile = 16;
 using RayTile = std::array<PixelRay, kRayTile>;
 
 struct ReferencePixel : PixelRay {
   int x = 0, y = 0;
   ReferencePatch patch;
-  float prior_depth = 0;   // [m]; 0: none
-  float prior_weight = 0;  // of the prior in the cost, 0 to 1; decreases with texture
+  float prior_depth = 0;   // [m]; 0: no prior
+  float prior_weight = 0;  // weight of the prior in the cost, 0 to 1; decreases with texture
 
   Eigen::Vector2f at() const { return {static_cast<float>(x), static_cast<float>(y)}; }
 };
@@ -48,8 +49,8 @@ class PixelSampler {
     return pixel;
   }
 
-  // Gathers the window of pixel (x, y) and sets no prior. `ray`: the ray of this pixel.
-  // Precondition: (x, y) lies inside the image.
+  // Returns the data of pixel (x, y), with its window and without a prior. `ray`: the ray of this
+  // pixel. Precondition: (x, y) lies inside the image.
   ReferencePixel prepare(int x, int y, const PixelRay& ray) const {
     ReferencePixel pixel;
     static_cast<PixelRay&>(pixel) = ray;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The smoothness factor of a hypothesis, eq. (6) of the paper. Its distance d_v is n . (X_n - X),
-// where n is the normal and X the point of the hypothesis, and X_n is the point of a neighbour. T
-// is float or a SIMD pack.
+// The smoothness factor of a hypothesis (the paper's eq. 6). In eq. 6, d_v is the distance
+// n . (X_n - X), where n is the normal and X the point of the hypothesis, and X_n is the point of a
+// neighbour. T is float or a SIMD pack.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 namespace axial::depth {
 
 struct SmoothnessOptions {
-  float depth_sigma = 0.02f;  // of the neighbour's distance to the plane, divided by |X|
-  float depth_bonus = 0.07f;  // largest reduction of the factor by one neighbour's distance
-  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;  // [rad]
-  float normal_bonus = 0.0672f;  // largest reduction by one neighbour's normal
+  float depth_sigma = 0.02f;  // standard deviation of d_v / |X|
+  float depth_bonus = 0.07f;  // largest reduction of the factor by d_v of one neighbour
+  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;  // of the angle [rad]
+  float normal_bonus = 0.0672f;  // largest reduction of the factor by one neighbour's normal
 };
 
 // The surface at a neighbouring pixel: a point [m] and a unit normal in the reference camera's

@@ -16,7 +16,7 @@ namespace axial::depth {
 
 inline constexpr int kStripHeight = 32;
 
-// The surface at the four pixels next to a pixel, without the pixels that have no plane.
+// The surface at the up to four pixels next to a pixel. Pixels without a plane are left out.
 struct Neighbourhood {
   std::array<SurfacePoint, 4> points;
   std::size_t count = 0;
@@ -46,8 +46,8 @@ class Strips {
     }
   }
 
-  // Returns pixel (x, y). If it belongs to the strip, its current state is returned. If it is in
-  // the row above or below the strip, its state at the call of copy_edges() is returned.
+  // Returns pixel (x, y): its current state if the pixel belongs to the strip, or its state at the
+  // call of copy_edges() if the pixel is in the row above or below the strip.
   const PlanePixel& neighbour(int strip, int x, int y) const {
     const int first = top(strip);
     if (y >= first && y < first + kStripHeight) return map_.at(x, y);
@@ -77,7 +77,7 @@ class Strips {
 
  private:
   const PlaneMap& map_;
-  std::vector<PlanePixel> edges_;  // the two rows at each inner edge
+  std::vector<PlanePixel> edges_;  // the two rows at each edge between strips
 };
 
 }  // namespace axial::depth

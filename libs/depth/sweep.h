@@ -6,10 +6,10 @@
 //
 // A visit scores the pixel's own plane in at most four views. It scores the planes of the two
 // neighbours visited before, each in the two best views of the plane. These are at most eight
-// scores (one AVX2 register), whatever the number of views. Then the visit scores trials around
-// the best plane. If there are few trials, they are scored together with the other planes (one
-// AVX-512 register). In this case, the trials lie around the plane with the lowest earlier cost,
-// because the best plane is not known yet.
+// scores (one AVX2 register), whatever the number of views. Then the visit scores trials: planes
+// near the best plane (PatchMatchOptions). If there are few trials, they are scored together with
+// the other planes (one AVX-512 register). In this case, the best plane is not known yet, so the
+// trials lie near the plane with the lowest earlier cost.
 //
 // In a level's first sweep, a pixel whose plane is not certain also tries random planes
 // (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
@@ -48,13 +48,14 @@ struct SweepInput {
   std::uint32_t sweep = 0;  // unique over levels and passes; odd sweeps run backwards
   float min_depth = 0;
   float max_depth = 0;
-  const cv::Mat1f* prior = nullptr;  // depths of the coarser level, of the map's size; null: none
-  // Prior depths for textureless pixels only, in place of `prior`; null: none. A geometric pass
-  // needs them to keep the depths that these pixels have from the coarser levels.
+  // Prior depths [m] from the coarser level, of the map's size; null: no prior.
+  const cv::Mat1f* prior = nullptr;
+  // Prior depths that replace `prior` at textureless pixels; null: `prior` is used there, too. In a
+  // geometric pass, they keep the depths that textureless pixels got from the coarser levels.
   const cv::Mat1f* textureless_prior = nullptr;
   const cv::Mat1b* mask = nullptr;  // non-zero: visit this pixel; null: all pixels
   int trial_pairs = 0;              // pairs of trials around the best hypothesis, at most 4
-  bool first = false;               // give pixels without a hypothesis a random one
+  bool first = false;               // true: a pixel without a hypothesis gets a random plane
   bool many_views = false;          // score all planes in kManyViews views
 };
 
@@ -97,7 +98,7 @@ class Sweep {
  private:
   // The rays of the tile of pixels that was visited last.
   struct Rays {
-    int x = -1, y = -1;  // first pixel of the tile
+    int x = -1, y = -1;  // the first pixel of the tile; -1: no tile yet
     RayTile tile;
   };
 
@@ -127,8 +128,8 @@ class Sweep {
     return {root * root, random.facing_normal(pixel.ray.direction)};
   }
 
-  // A random plane perpendicular to the ray. Its depth is uniform in inverse depth, which is about
-  // uniform in the source images.
+  // A random plane perpendicular to the ray. The inverse of its depth is uniformly distributed, so
+  // the images of its point in a source view are about uniformly distributed, too.
   PlaneHypothesis facing_plane(const ReferencePixel& pixel, KeyedRandom& random) const {
     const float nearest = 1 / input_.min_depth, farthest = 1 / input_.max_depth;
     return {1 / (farthest + random.unit() * (nearest - farthest)), -pixel.ray.direction};
@@ -136,12 +137,12 @@ class Sweep {
 
   void clear(PlanePixel& pixel) const { pixel = PlanePixel(); }
 
-  // The data that all hypotheses of one pixel are scored with.
+  // The data that the scores of all hypotheses of one pixel need.
   struct Visit {
     const ReferencePixel& pixel;
     const Neighbourhood& around;
     int trial_pairs;
-    std::uint64_t& scores;  // counted up
+    std::uint64_t& scores;  // number of scores so far
   };
 
   // NOLINTNEXTLINE(readability-function-size): the inner loop, whose time is measured.
@@ -199,9 +200,9 @@ class Sweep {
     current = {best.plane, pixel.ray.at(best.plane.depth), best.cost, best.views, best.motion};
   }
 
-  // The views for the pixel's own plane. These are all views if there are few. Otherwise they are
-  // the best views of the pixel, the best view of each neighbour visited before, and some other
-  // views. The other views take turns, so that a view that was occluded can be chosen again.
+  // The views for the pixel's own plane. If there are few views, these are all views. Otherwise
+  // they are the best views of the pixel, the best view of each neighbour visited before, and some
+  // other views. The other views take turns, so that a view that was occluded can be chosen again.
   ViewList own_views(int x, int y, const PlanePixel& current,
                      std::span<const PlanePixel* const> before) const {
     ViewList own;
@@ -219,14 +220,14 @@ class Sweep {
     add_in_turn(own, turn, wanted, matcher_.views());
   }
 
-  // Adds views from the first `of` views, starting with number `turn`, until there are `wanted`.
+  // Adds the views turn, turn + 1, ... (modulo `of`) until `own` has `wanted` views.
   void add_in_turn(ViewList& own, std::size_t turn, std::size_t wanted, std::size_t of) const {
     for (; own.count < wanted; ++turn) own.add(all_views_[turn % of]);
   }
 
-  // Returns the neighbour's plane with the depth at which this pixel's ray meets it (eq. 8).
-  // Returns no value if the neighbour has no plane, if the plane's cost is keep_cost or more, at
-  // grazing incidence, or if the depth is out of range.
+  // Returns the plane of the neighbour `from`, with the depth at which the ray of `pixel` meets the
+  // plane (eq. 8). Returns no value if the neighbour has no plane, if the plane's cost is keep_cost
+  // or more, if the ray grazes the plane, or if the depth is out of range.
   std::optional<PlaneHypothesis> carried(const ReferencePixel& pixel,
                                          const PlanePixel& from) const {
     if (!(from.plane.depth > 0) || !(from.cost < options_.keep_cost)) return {};
@@ -237,7 +238,7 @@ class Sweep {
     return PlaneHypothesis{depth, from.plane.normal};
   }
 
-  // Adds a neighbour's plane unless it equals a candidate.
+  // Adds a neighbour's plane, unless a candidate is nearly the same plane. `from`: the neighbour.
   void propagate(const PlaneHypothesis& plane, const PlanePixel& from, const ViewList& own,
                  Candidates& candidates) const {
     for (const PlaneHypothesis& other : candidates.all())
@@ -252,8 +253,8 @@ class Sweep {
       candidates.add(plane, distinct(from.views));
   }
 
-  // Adds random planes from the whole depth range. They find surfaces that no neighbour has: thin
-  // structures whose pixels match the background at a fair cost.
+  // Adds random planes from the whole depth range. They find surfaces that no neighbour has, such
+  // as thin structures, whose pixels match the background at a fair cost.
   void add_facing_planes(const ReferencePixel& pixel, KeyedRandom& random,
                          Candidates& candidates) const {
     const std::size_t of = std::min(matcher_.views(), kManyViews);
@@ -266,10 +267,11 @@ class Sweep {
     }
   }
 
-  // Sets `likely`, the expected best plane of a pixel, to `plane` if the cost of `plane` at pixel
-  // `from` is lower than the cost of `likely`, or lower than options_.bad_cost if `likely` is
-  // empty. Ignores a plane that this level or pass has not scored yet; its motion is 0. In the
-  // first sweep of a geometric pass, only the neighbours visited before have scored planes.
+  // `likely` is the expected best plane of the visited pixel. Sets `likely` to `plane` if the cost
+  // that `plane` has at pixel `from` is lower than the cost of `likely`, or lower than
+  // options_.bad_cost if `likely` is empty. A plane with motion 0 is ignored, because this level or
+  // pass has not scored it yet. In a geometric pass, only the planes of the neighbours visited
+  // before have scores.
   void offer(const PlaneHypothesis& plane, const PlanePixel& from,
              std::optional<BestPlane>& likely) const {
     if (from.motion > 0 && from.cost < (likely ? likely->cost : options_.bad_cost))
@@ -281,7 +283,8 @@ class Sweep {
            candidates.count + 2 * static_cast<std::size_t>(pairs) <= kMaxCandidates;
   }
 
-  // Scores the candidates. Sets `best` to the best candidate if that costs less than `best`.
+  // Scores the candidates. Sets `best` to the candidate with the lowest cost if this cost is lower
+  // than the cost of `best`.
   void keep_best(const Visit& at, const Candidates& candidates, BestPlane& best) const {
     std::array<PlaneScore, kMaxCandidates * kMaxSources> scores;
     const std::span<const ScorePair> pairs = candidates.all_pairs();
@@ -313,7 +316,8 @@ class Sweep {
     best.motion = scores[first].motion;
   }
 
-  // Scores trials around the best plane, all at once in its two best views.
+  // If the best plane has a bad cost, tries random planes (restart). Unless the cost stays bad,
+  // scores trials near the best plane, all at once in the two best views of the plane.
   void refine(const Visit& at, KeyedRandom& random, BestPlane& best) const {
     if (best.cost >= options_.bad_cost && !restart(at, random, best)) return;
     if (at.trial_pairs == 0) return;
@@ -322,15 +326,15 @@ class Sweep {
     keep_best(at, trials, best);
   }
 
-  // The factor of the ranges of the first trials: smaller for better planes.
+  // The factor of the ranges of the first trials. Better planes have a smaller factor.
   float trial_scale(float cost) const {
     if (cost <= options_.good_cost) return 0.25f;
     return cost <= options_.fair_cost ? 0.5f : 1.0f;
   }
 
-  // Adds pairs of trials, one on either side of the plane. Pairs change depth and normal in turn,
-  // with decreasing ranges. A trial that changed both would seldom be better: near the optimum, one
-  // change loses what the other gains.
+  // Adds pairs of trials, with one trial on either side of the plane. Pairs change depth and normal
+  // in turn, with decreasing ranges. No trial changes both, because such a trial is seldom better:
+  // near the optimum, one change loses what the other gains.
   void add_trials(const Visit& at, const BestPlane& best, KeyedRandom& random,
                   Candidates& trials) const {
     const float depth_range = best.motion > 0 ? std::min(options_.refinement_pixels / best.motion,

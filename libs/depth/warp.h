@@ -73,9 +73,9 @@ struct AffineWarp {
   }
 };
 
-// The paper's warp (eqs. 1-3). It is the homography between two virtual cameras: the virtual
-// camera of the reference pixel, and the virtual camera of the source pixel after rounding that
-// pixel to integers. For a pinhole camera it is the usual homography of a plane.
+// The paper's warp (eqs. 1-3): the homography between two virtual cameras. These are the virtual
+// camera of the reference pixel and the virtual camera of the source pixel, rounded to integers.
+// For pinhole cameras this is the usual homography of a plane.
 struct HomographyWarp {
   struct Map {
     Eigen::Vector2f centre;  // image of the surface point in the source view [px], not rounded

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removes unreliable depths where the photograph shows little more than the camera's noise: sand,
-// haze, open water. Also removes unreliable depths at image borders (border.h).
+// Removes unreliable depths where the photograph shows little more than the camera's noise, for
+// example on sand, in haze and in open water. Also removes unreliable depths at image borders
+// (border.h).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,12 +11,13 @@
 namespace axial::depth {
 
 struct WeakTextureOptions {
-  // Texture is weak if the standard deviation of the grey levels in a 9x9 window is below this.
+  // Texture is weak if the standard deviation of the grey levels (0 to 255) in a 9x9 window is
+  // below this value.
   float deviation = 1.5f;
-  // An unsure depth is kept if the mean confidence of the unsure depths in the 9x9 window around
-  // it is at least this value. On the preset `sand` of SimulateUnderwater, the mean is at least
-  // 0.68 in 95 % of the windows. With a twentieth of that texture, it is below 0.62 in half of
-  // the windows.
+  // An unsure depth is kept if the mean confidence of the unsure depths in the 9x9 window around it
+  // is at least this value. On the preset `sand` of SimulateUnderwater, this mean is at least 0.68
+  // in 95 % of the windows. With a twentieth of the texture of `sand`, the mean is below 0.62 in
+  // half of the windows.
   float least_confidence = 0.6f;
 };
 

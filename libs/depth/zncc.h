@@ -31,15 +31,16 @@ class QuadImage {
   std::vector<std::uint32_t> words_;  // row-major, width * height
 };
 
-// Positions of the texels of a patch in the source image [px]. The padding repeats the centre.
+// Positions of the texels of a patch in the source image [px]. The entries after the last texel
+// repeat the centre.
 struct TexelPositions {
   alignas(32) std::array<float, kPaddedTexels> x;
   alignas(32) std::array<float, kPaddedTexels> y;
 };
 
-// Returns the correlation in [-1, 1] of the reference patch with the source image at the texel
-// positions, or kNoCorrelation. All implementations add in the same order and use no fused
-// multiply-add. So their results are bit-identical.
+// A function that returns the correlation in [-1, 1] of the reference patch with the source image
+// at the texel positions, or kNoCorrelation. All implementations add in the same order and use no
+// fused multiply-add. So their results are bit-identical.
 using ZnccFunction = float (*)(const ReferencePatch&, const QuadImage&, const TexelPositions&);
 
 // The reference implementation, in plain C++.
@@ -49,8 +50,8 @@ float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const Te
 ZnccFunction fastest_zncc();
 
 namespace detail {
-// The correlation of a patch that lies partly outside the source image. Computes all sums, also
-// those of the reference patch, over the texels inside the source image.
+// Returns the correlation of a patch that lies partly outside the source image. All sums, also the
+// sums over the reference patch, take only the texels inside the source image.
 float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 }  // namespace detail

@@ -17,7 +17,7 @@ namespace axial::lens {
 struct Lens {
   const Model* model = nullptr;
   refractive::PinholeLens<double> pinhole{};  // the lens without its distortion
-  std::vector<double> distortion;             // the Parameters of `model`
+  std::vector<double> distortion;             // Parameters (models.h) of `model`
   int width = 0, height = 0;                  // of the image [px]
 };
 
@@ -25,14 +25,15 @@ struct Lens {
 // defined. Precondition for this and all functions below, except field_of(): the lens has a model.
 Eigen::Vector2d image_direction(const Lens& lens, double u, double v);
 
-// As image_direction() for `direction` (u, v). `by` is d(pixel)/d(u, v) [px].
+// As image_direction(), for `direction` = (u, v), with the derivative. In the result, `point` is
+// the pixel and `by` is d(pixel)/d(u, v) [px].
 refractive::PlanePoint<double> image_with_derivative(const Lens& lens,
                                                      const Eigen::Vector2d& direction);
 
 // The result of the inverse of image_direction().
 struct ImagedDirection {
   Eigen::Vector2d direction;   // (u, v)
-  Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) there
+  Eigen::Matrix2d derivative;  // d(pixel)/d(u, v) at `direction` [px]
 };
 
 // The inverse of image_direction(): returns the in-air direction that the lens projects to
@@ -42,26 +43,25 @@ struct ImagedDirection {
 // not move outwards in the image.
 std::optional<ImagedDirection> direction_at(const Lens& lens, const Eigen::Vector2d& pixel);
 
-// How far from its axis a lens images directions. Lengths |(u, v)| are tangents of angles from the
-// axis.
+// How far from its axis a lens images directions. The length |(u, v)| of a direction is the tangent
+// of its angle from the axis.
 struct Field {
-  // The largest |(u, v)| at which the lens has not folded back on at least one of 16 sides of the
-  // axis. Up to this length, directions on that side that move away from the axis also move
-  // outwards in the image. `reach` does not depend on the focal lengths. Another side may fold
-  // back earlier. There callers test the determinant of the derivative. This test is sufficient if
-  // the sides fold back at similar angles.
+  // The largest |(u, v)| up to which the lens does not fold back (see direction_at() above) at one
+  // or more of 16 azimuths around the axis. `reach` does not depend on the focal lengths. At
+  // another azimuth, the lens may fold back at a smaller |(u, v)|. Callers therefore also test the
+  // determinant of the derivative. This test is sufficient if the lens folds back at similar angles
+  // at all azimuths.
   double reach = 0;
-  // The largest |(u, v)| of the image corners. Let the limit be the smaller of `reach` and the
-  // tangent of 85 degrees. A larger value is reduced to the limit. A corner to which no direction
-  // projects counts as a corner at the limit.
+  // The largest |(u, v)| of the image corners. It is at most a limit, the smaller of `reach` and
+  // the tangent of 85 degrees. If no direction projects to a corner, `corner` is this limit.
   double corner = 0;
 };
 // Returns zeros for a lens without a model.
 Field field_of(const Lens& lens);
 
-// As direction_at() above, but faster: the function does not search for a fold between the axis
-// and the direction. Instead, the result is empty if the direction is longer than field.reach.
-// Precondition: `field` is field_of(lens).
+// As direction_at() above, but faster: the function does not test whether the lens folds back
+// between the axis and the direction. Instead, the result is empty if |(u, v)| of the direction is
+// larger than field.reach. Precondition: `field` is field_of(lens).
 std::optional<ImagedDirection> direction_at(const Lens& lens, const Field& field,
                                             const Eigen::Vector2d& pixel);
 
@@ -79,7 +79,7 @@ std::optional<refractive::LensDistortion<double>> lens_distortion(const Lens& le
 
 // Returns a pinhole that replaces the lens without a black border in the undistorted image. The
 // pinhole has the lens's image size, principal point and ratio of focal lengths. Its focal length
-// is between half and four times the focal length of the lens. The result is the shortest focal
+// is between half and four times the focal length of the lens. The result has the shortest focal
 // length in this range for which every sampled border pixel of the pinhole lies inside the image of
 // the lens. Empty if four times the focal length is too short.
 std::optional<refractive::PinholeLens<double>> pinhole_inside(const Lens& lens);

@@ -10,11 +10,11 @@
 namespace axial::lens {
 
 // Fits the rational function of the matcher's fisheye to a lens without tangential distortion.
-// `radius(theta)`: let a direction lie at the angle theta [rad] from the axis of the lens. The
-// result of radius() is the distance of its image from the principal point, divided by the focal
-// length. The fit covers 0 < theta <= widest. Precondition: widest < pi/2. `tolerance` has the
-// unit of the result of radius(). Empty if the error of the fit exceeds `tolerance` at any of 1000
-// tested angles, or if the fit has a pole at a tested angle.
+// `radius` describes this lens. It maps the angle theta [rad] of a direction from the axis to the
+// distance of the direction's image from the principal point, divided by the focal length. The fit
+// covers 0 < theta <= widest. Precondition: widest < pi/2. `tolerance` has the unit of the result
+// of radius(). Empty if the error of the fit exceeds `tolerance` at any of 1000 tested angles, or
+// if the fit has a pole at a tested angle.
 std::optional<refractive::LensDistortion<double>> fitted_fisheye(
     const std::function<double(double theta)>& radius, double widest, double tolerance);
 

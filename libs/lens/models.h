@@ -13,8 +13,8 @@
 
 namespace axial::lens {
 
-// The distortion parameters of a camera, in COLMAP's order. Focal lengths and principal point are
-// not among them.
+// The distortion parameters of a camera, in COLMAP's order, without focal lengths and principal
+// point.
 using Parameters = std::span<const double>;
 
 struct Model {
@@ -23,12 +23,12 @@ struct Model {
   // focal lengths and principal point are applied, and the derivative of the point by (u, v). Both
   // are NaN where the model is not defined.
   refractive::PlanePoint<double> (*distort)(Parameters, const Eigen::Vector2d& direction);
-  // True: a lens of this model is a pinhole if all distortion parameters are zero.
+  // True if a lens of this model is a pinhole when all its distortion parameters are zero.
   bool flat;
-  // Converts the distortion to the matcher's form without error. Null if the matcher's form does
-  // not contain this model.
+  // Converts the distortion to the matcher's form without error. Null if the matcher's form cannot
+  // represent this model.
   refractive::LensDistortion<double> (*bent)(Parameters){};
-  // True: the matcher's fisheye can be fitted to lenses of this model (lens_fit.h).
+  // True if the matcher's fisheye can be fitted to lenses of this model (lens_fit.h).
   bool radial = false;
 };
 
@@ -46,9 +46,9 @@ struct ModelOf {
 };
 
 // The inverse of Model::bent: returns the model that images every direction as `bent` does, up to
-// rounding. The result is the first model that fits, of OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
-// THIN_PRISM_FISHEYE and FOV. Empty if none of these models fits. Lenses that lens_distortion()
-// (lens.h) has fitted are an example.
+// rounding. The models OPENCV, FULL_OPENCV, OPENCV_FISHEYE, THIN_PRISM_FISHEYE and FOV are tried in
+// this order. Empty if none of them fits, for example for a distortion that lens_distortion()
+// (lens.h) has fitted.
 std::optional<ModelOf> model_of(const refractive::LensDistortion<double>& bent);
 
 }  // namespace axial::lens

@@ -15,7 +15,7 @@ struct Rectangle {
 
 enum class Anchor { kStart, kMiddle, kEnd };
 
-// A picture as the base64 text of a PNG file, for SVG and JSON.
+// Encodes an image (B G R) as a PNG file and returns the file as base64 text, for SVG and JSON.
 std::string png_in_base64(const cv::Mat3b& bgr);
 
 class Svg {
@@ -25,12 +25,12 @@ class Svg {
   // `kind` is a class of the style sheet: "title", "small", "grid" or "axis".
   void text(double x, double y, std::string_view content, Anchor anchor = Anchor::kStart,
             std::string_view kind = "");
-  void upright_text(double x, double y, std::string_view content);  // upwards, centred
+  void upright_text(double x, double y, std::string_view content);  // runs upwards, centred
   void line(double x1, double y1, double x2, double y2, std::string_view kind);
   void polyline(const std::vector<cv::Point2d>& points, std::string_view color);
   void circle(double x, double y, std::string_view color, std::string_view tip);
   void box(const Rectangle& where, std::string_view color);
-  // Stretches the picture to fill the rectangle.
+  // Draw an image, stretched to fill the rectangle.
   void picture(const Rectangle& where, const cv::Mat3b& bgr);
   void picture(const Rectangle& where, std::string_view png_in_base64);
 

@@ -19,7 +19,8 @@ class AnyCamera {
 
   const CameraVariant<T>& kind() const { return camera_; }
 
-  // Each function calls the function of the same name of kind() (see refractive/axial_ray.h).
+  // Each function below calls the function of the same name of the camera in kind() (see
+  // refractive/axial_ray.h).
   refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const {
     return std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
   }

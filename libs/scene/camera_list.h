@@ -12,7 +12,7 @@
 
 namespace axial {
 
-// The method of projecting points into a camera behind a port.
+// How points are projected into a camera behind a port.
 enum class ProjectionMethod {
   exact,
   line_search  // the paper's Algorithm 1, for comparison
@@ -25,8 +25,8 @@ using CameraList = std::variant<
     std::vector<refractive::LensPinholeCamera<T>>, std::vector<refractive::LensFlatPortCamera<T>>,
     std::vector<refractive::LensDomePortCamera<T>>, std::vector<AnyCamera<T>>>;
 
-// Makes the cameras of `models`, in the same order, with the simplest camera type that fits all
-// of them:
+// Makes the cameras of `models`, in the same order. All cameras of the list have one type, the
+// simplest type that fits all of them:
 // - If there are flat ports as well as domes, the list is of AnyCamera. Each camera keeps its own
 //   kind, and the next rules do not apply.
 // - Without any port the cameras are pinholes, and no time is spent on refraction. If some

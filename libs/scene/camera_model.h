@@ -14,8 +14,8 @@
 
 namespace axial {
 
-// The lens in air, its distortion and the port. The lens is given in pixels of an image of width x
-// height pixels, with pixel centres at integers.
+// The lens in air, its distortion and the port. The unit of the lens is the pixel of an image of
+// width x height pixels, with pixel centres at integers.
 struct CameraModel {
   int width = 0;
   int height = 0;
@@ -43,16 +43,16 @@ using CameraVariant =
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 
-// A camera whose pixels are the tangents in air (u, v) of the direction (u, v, 1) in the camera
-// frame. A lens of any kind can be put before it (lens_camera.h). A tangent can be up to 1e6, and
-// the incidence on a flat port up to 88.8 degrees.
+// A camera whose lens maps the direction in air (u, v, 1) [camera frame] to the pixel (u, v). A
+// lens of any kind can then map (u, v) to its own pixel (lens_camera.h). |u| and |v| can be up to
+// 1e6, and the incidence on a flat port up to 88.8 degrees.
 using TangentCamera =
     std::variant<refractive::PinholeCamera<double>, refractive::FlatPortCamera<double>,
                  refractive::DomePortCamera<double>>;
 
-// Makes the camera behind `port`, or in air if `port` is empty. Let a be the angle between the
-// direction in air and the optical axis. `usual` is the tangent of the largest usual angle:
-// points are projected fastest if tan(a) is at most `usual`.
+// Makes the camera behind `port`, or in air if `port` is empty. `usual`: points are projected
+// fastest if the tangent of the angle between their direction in air and the optical axis is at
+// most `usual`.
 TangentCamera make_tangent_camera(const std::optional<refractive::Port<double>>& port,
                                   double usual);
 

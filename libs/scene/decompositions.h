@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matrix decompositions that several libraries need. They are compiled only here, because each
-// takes seconds to compile.
+// Matrix decompositions that several libraries need. Only decompositions.cpp compiles them, because
+// each takes seconds to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,8 +43,8 @@ struct Similarity {
   Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
     return scale * (rotation * x) + translation;
   }
-  // The pose of a camera that is moved together with the points: in the camera frame, the
-  // directions of the points stay the same.
+  // The pose of a camera that is moved together with the points. The directions of the points in
+  // the camera frame do not change.
   Pose operator()(const Pose& pose) const {
     return {pose.rotation * rotation.transpose(), (*this)(pose.centre)};
   }

@@ -13,9 +13,9 @@
 namespace axial {
 
 // Depth is lambda of the paper's eq. (4): the distance [m] along the pixel's ray in the scene
-// medium, from the ray's origin on the axis. For a camera without a port this is the distance
-// from the camera centre. Files of depth maps contain z-depth instead. Readers and writers
-// convert.
+// medium, from the ray's origin on the axis. For a camera without a port this is the distance from
+// the camera centre. Files of depth maps contain z-depth instead. The functions that read and write
+// these files convert the depths.
 struct DepthMap {
   std::string image_path;
   std::vector<std::uint32_t> ids;  // global ids: the reference view, then its source views

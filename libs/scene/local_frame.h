@@ -21,14 +21,15 @@ struct LocalFrame {
   Eigen::Vector3d to_world(const Eigen::Vector3d& local) const { return local + origin; }
 };
 
-// Returns the world if `place` lies within 1,000 units of its origin. Otherwise the origin of the
-// result is `place`, rounded to 10 units. Let x be the local value of a coordinate. Because the
-// origin is rounded, conversion to the local frame and back changes the coordinate by no more
-// than the rounding error of a double of the size of x.
+// Returns the world if `place` [world] lies within 1,000 units of the world's origin. Otherwise the
+// origin of the result is `place`, rounded to 10 units. The origin is rounded so that conversions
+// lose little: if x is the local value of a coordinate, conversion to the local frame and back
+// changes the coordinate by no more than the rounding error of a double of the size of x.
 LocalFrame frame_near(const Eigen::Vector3d& place);
 
-// Chooses a frame for a scene. `points` may be empty. The order of centres and points does not
-// matter. The first rule that applies is used:
+// Chooses a frame for a scene with the camera centres `centres` and the sparse points `points`
+// [world]. `points` may be empty. The order of centres and of points does not matter. The first
+// rule that applies is used:
 // - Without `centres`, the result is the world.
 // - If all camera centres and the median of `points` lie within 1,000 units of the world's
 //   origin, the result is the world. Without points, only the centres decide.

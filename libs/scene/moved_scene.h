@@ -9,19 +9,20 @@
 namespace axial {
 
 // A similarity between local frames: `similarity` maps coordinates in `from` to coordinates in
-// `to`. Its numbers stay small even if the scene is far from the origin of the world.
+// `to`. The numbers of `similarity` stay small even if the scene is far from the origin of the
+// world.
 struct FrameMove {
   Similarity similarity;
   LocalFrame from, to;
 
-  // The same map, with its results in coordinates of `frame`.
+  // The same map, with results in coordinates of `frame` instead of `to`.
   FrameMove ending_in(const LocalFrame& frame) const;
-  // The map from world to world coordinates.
+  // The same map, from world coordinates to world coordinates.
   Similarity between_worlds() const;
 };
 
-// Returns the map `worlds`, which maps world to world coordinates, as a map from `frame` to
-// `frame`.
+// `worlds` maps world coordinates to world coordinates. Returns the same map in local coordinates:
+// `from` and `to` of the result are `frame`.
 FrameMove move_in(const LocalFrame& frame, const Similarity& worlds);
 
 // Moves the poses and depth ranges of the calibrated images, the sparse points, their normals and

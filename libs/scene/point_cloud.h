@@ -10,8 +10,8 @@
 
 namespace axial {
 
-// A dense point cloud. Unless its remark says otherwise, an array is empty or as long as
-// `positions`. The views of all points are stored in one array: the views of point i have the
+// A dense point cloud. An array is empty or as long as `positions`, unless the comment on the array
+// says otherwise. The views of all points are stored in one array: the views of point i have the
 // indices [view_begin[i], view_begin[i + 1]).
 struct PointCloud {
   std::vector<Eigen::Vector3f> positions;  // world frame
@@ -21,7 +21,7 @@ struct PointCloud {
   std::vector<std::uint32_t> view_images;  // indices into Scene::images
   std::vector<float> view_weights;         // empty, or one per entry of view_images
   std::vector<float> errors;               // expected distance to the true surface [m]; 0: unknown
-  std::vector<float> confidences;          // probability that the distance is at most 3 errors
+  std::vector<float> confidences;          // probability that the distance is at most 3 * error
 
   std::size_t size() const { return positions.size(); }
   // The images that see point i. Precondition: view_begin is not empty.

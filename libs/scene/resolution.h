@@ -10,7 +10,7 @@ namespace axial {
 
 struct ResolutionOptions {
   unsigned level = 1;  // number of halvings of the image
-  int min = 640;       // the longest side is not halved below this [px]
+  int min = 640;       // lower bound of the longest side after halving [px]
   int max = 2560;      // upper bound of the longest side [px]
 };
 
@@ -20,9 +20,9 @@ struct ResolutionOptions {
 // Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
-// Whether two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. Let
-// s be the shortest of the four sides. The quotient of the ratios may differ from 1 by at most
-// 1.5 / s. False if s is below 1.
+// True if two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. Let s
+// be the shortest of the four sides. The quotient of the two aspect ratios may differ from 1 by at
+// most 1.5 / s. False if s is below 1.
 bool same_shape(cv::Size a, cv::Size b);
 
 // Resizes `image` to `size`, with an area filter if no side grows and a cubic filter otherwise. If
@@ -30,8 +30,8 @@ bool same_shape(cv::Size a, cv::Size b);
 // camera of the result. Throws an Error for an empty image or size.
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);
 
-// As resized_image(), but with the nearest pixel instead of a filter, because labels must not be
-// averaged.
+// As resized_image(), but each pixel of the result has the label of the nearest pixel, because
+// labels must not be averaged.
 cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size);
 
 }  // namespace axial

@@ -17,27 +17,27 @@ namespace axial {
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
 // How suitable another image (the neighbour) is as a source view of this image. The fields are
-// those of ViewScore in the OpenMVS scene format. score_neighbours() defines scale, area and
-// score.
+// those of ViewScore in the OpenMVS scene format. score_neighbours() (view_selection.h) defines
+// scale, area and score.
 struct ViewScore {
   std::uint32_t image = 0;   // index into Scene::images
-  std::uint32_t points = 0;  // sparse points seen by both
+  std::uint32_t points = 0;  // number of sparse points that both images see
   float scale = 1;           // mean of (footprint in this image / footprint in the neighbour)
   float angle = 0;           // mean triangulation angle [rad]
-  float area = 0;            // fraction of this image that shared points cover
+  float area = 0;            // fraction of this image that the shared points cover
   float score = 0;           // higher is better
 };
 
 struct SceneImage {
   std::string path;          // absolute or relative to the working folder
-  std::string mask_path;     // empty: none
-  std::uint32_t id = kNoId;  // global id: names the depth map file
+  std::string mask_path;     // empty: no mask
+  std::uint32_t id = kNoId;  // global id; the name of the depth map file contains it
   bool calibrated = true;    // false: camera and pose are invalid, skip the image
   CameraModel camera;        // at the resolution that the scene file records
   std::string port_name;     // name of camera.port in the housing file; empty: no port
   Pose pose;
-  float min_depth = 0, average_depth = 0, max_depth = 0;  // z-depth
-  std::vector<ViewScore> neighbours;                      // decreasing score
+  float min_depth = 0, average_depth = 0, max_depth = 0;  // z-depths of sparse points
+  std::vector<ViewScore> neighbours;                      // by decreasing score
 };
 
 struct SparseView {

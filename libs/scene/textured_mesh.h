@@ -13,8 +13,9 @@ namespace axial {
 
 // A triangle mesh with one or more texture images. Corner k of face f has the colour that the
 // texture texture_of[f] has at the pixel uv[f][k]. Inside a face, uv is linear. Pixels are (x, y)
-// with x to the right, y down, and pixel centres at integers: the upper left corner of a texture
-// is (-0.5, -0.5). The files have other conventions, and io/textured converts between them.
+// with x to the right, y down, and pixel centres at integers: the upper left corner of a texture is
+// (-0.5, -0.5). Files of textured meshes have other conventions. io/textured converts the
+// coordinates.
 struct TexturedMesh {
   using Corners = std::array<Eigen::Vector2f, 3>;
 

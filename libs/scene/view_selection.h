@@ -15,27 +15,29 @@ namespace axial {
 
 struct ViewSelectionOptions {
   double optimal_angle = 12.0 * std::numbers::pi / 180.0;  // best triangulation angle [rad]
-  std::uint32_t min_shared_points = 3;                     // with fewer, an image is no candidate
-  std::size_t min_trusted_views = 2;  // images that must see a sparse point to trust it
-  std::size_t min_init_points = 4;    // with fewer trusted points, the image is unusable
-  // With fewer candidates, the image is unusable. A value above the number of other calibrated
-  // images is reduced to this number.
+  // With fewer shared sparse points, another image is no candidate for a source view.
+  std::uint32_t min_shared_points = 3;
+  std::size_t min_trusted_views = 2;  // a sparse point that fewer images see is not trusted
+  std::size_t min_init_points = 4;    // an image with fewer trusted points is unusable
+  // An image with fewer candidates is unusable. If the value is above the number of other
+  // calibrated images, it is reduced to this number.
   std::size_t min_views = 2;
-  double weight_outside_region = 0.7;  // of points outside Scene::region
+  double weight_outside_region = 0.7;  // weight of points outside Scene::region in the score
 
-  // For filter_neighbours(). The fields of ViewScore explain the quantities.
+  // Limits for filter_neighbours(). ViewScore explains the quantities.
   double min_area = 0.05;
   double min_scale = 0.2, max_scale = 3.2;
   double min_angle = 3.0 * std::numbers::pi / 180.0;
   double max_angle = 65.0 * std::numbers::pi / 180.0;
   std::size_t max_views = 12;
 
-  // For choose_source_views().
+  // Limits for choose_source_views().
   double min_score = 2.0;
   double min_score_ratio = 0.03;  // relative to the best score
 };
 
-// What score_neighbours() finds for one image from the sparse cloud, besides the neighbours.
+// The result of score_neighbours() for one image, besides the neighbours, which score_neighbours()
+// stores in SceneImage.
 struct ViewPreparation {
   // Indices into Scene::points of the trusted points that the image sees, in ascending order.
   std::vector<std::uint32_t> init_points;
@@ -46,8 +48,8 @@ struct ViewPreparation {
   bool usable() const { return problem.empty(); }
 };
 
-// Scores the neighbours of all images. For every calibrated image it computes from scene.points
-// and stores in SceneImage:
+// Scores the neighbours of all images. For every calibrated image, the function computes these
+// values from scene.points and stores them in SceneImage:
 // - neighbours: unfiltered, by decreasing score, images of equal score by index.
 // - min_depth, average_depth and max_depth: z-depth over all points that the image sees.
 //
@@ -56,8 +58,8 @@ struct ViewPreparation {
 //
 // The score of the neighbour B of an image A is the sum of the weights of their shared points,
 // times max(area, 0.01). The weight of a point is the product of three factors:
-// - Angle: a function of the angle between the two rays of the point in the medium. It is 1 at
-//   `optimal_angle`, falls on both sides like a normal distribution, and is at least 0.1.
+// - Angle: a function of the angle between the two rays of the point in the scene medium. It is 1
+//   at `optimal_angle`, falls on both sides like a normal distribution, and is at least 0.1.
 // - Scale: let r be the footprint of the point in A divided by its footprint in B. The factor is
 //   r^2 for r < 1, 1 for r from 1 to 1.6, and (1.6 / r)^2 above.
 // - Region: 1 inside Scene::region or without a region, `weight_outside_region` outside.
@@ -98,26 +100,28 @@ std::uint64_t most_neighbours(std::uint64_t images, std::uint64_t pairs,
                               const ViewSelectionOptions& options = {});
 
 // A closer upper bound of the total number of neighbours of all images. It is the exact number if
-// each camera can have made all its observations. Needs less time and memory than scoring. Throws
-// an Error if a point has a view of an image that does not exist.
+// score_neighbours() ignores no observation. The function needs less time and memory than
+// score_neighbours(). Throws an Error if a point has a view of an image that does not exist.
 std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& options = {});
 
-// Returns the working list of an image. `neighbours`: sorted by decreasing score. First removes
-// unsuitable neighbours, the worst score first, while more than max(4, 3/4 max_views) neighbours
-// remain. A neighbour is unsuitable if its area is below `min_area`, or if its scale or angle is
-// out of range. Then keeps the `max_views` best of the remaining neighbours.
+// Returns the working list of an image: the neighbours from which choose_source_views() chooses.
+// `neighbours`: sorted by decreasing score. First removes unsuitable neighbours, the worst score
+// first, while more than max(4, 3/4 max_views) neighbours remain. A neighbour is unsuitable if its
+// area is below `min_area`, or if its scale or angle is out of range. Then keeps the `max_views`
+// best of the remaining neighbours.
 std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbours,
                                          const ViewSelectionOptions& options = {});
 
 // Chooses source views from a working list, which is sorted by decreasing score. Let s be the
 // larger of `min_score` and `min_score_ratio` times the best score. Returns the first
 // `number_views` neighbours with a score of at least s, or all of them if `number_views` is 0.
-// Empty if there is none.
+// Empty if there is no such neighbour.
 std::vector<ViewScore> choose_source_views(const std::vector<ViewScore>& filtered,
                                            std::size_t number_views,
                                            const ViewSelectionOptions& options = {});
 
-// For a message: the reasons why choose_source_views() found no view among an image's neighbours.
+// Returns the reasons why choose_source_views() found no view among the neighbours of an image, as
+// words for a message.
 std::string why_no_source_view(const std::vector<ViewScore>& neighbours,
                                const ViewSelectionOptions& options = {});
 

@@ -17,15 +17,16 @@ struct WaterSurface {
   double n_air = 1;
   double n_water = 1.333;
 
-  // Height of the point x [world] above the surface; negative in the water.
+  // The height of the point x [world] above the surface, in the unit of the poses; negative in the
+  // water.
   double height_of(const Eigen::Vector3d& x) const { return normal.dot(point - x); }
 };
 
 // The surface as the flat port of the camera at `pose`. Let R be pose.rotation and n
-// surface.normal. The normal of the port is R n, its distance is the height of the camera above
-// the surface, and its thickness is 0. Throws an Error that starts with `where` unless the camera
-// is above the surface and its optical axis points towards the surface. Under these conditions,
-// the rays in water of all pixels that look into the water have z > 0 in the camera frame.
+// surface.normal. The normal of the port is R n, its distance is the height of the camera above the
+// surface, and its thickness is 0. Throws an Error that starts with `where` unless the camera is
+// above the surface and its optical axis points towards the surface. Under these conditions, the
+// water rays of all pixels that show water have z > 0 in the camera frame.
 refractive::FlatPort<double> port_seen_from(const Pose& pose, const WaterSurface& surface,
                                             const std::string& where);
 

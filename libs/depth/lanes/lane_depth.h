@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depths near an expected depth, with one source view per SIMD lane.
+// Reads depths near an expected depth from depth maps, with one source view per SIMD lane.
 #pragma once
 
 #include "depth/consistency.h"

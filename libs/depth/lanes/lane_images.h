@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The source image of each lane: the index of its first word in SceneTables::words, and its size.
+// The source image of each lane: the index of the image's first word in SceneTables::words, and the
+// size of the image [px].
 #pragma once
 
 #include "depth/lanes/pack.h"
@@ -13,8 +14,8 @@ struct LaneImages {
   Pack<Abi> width, height;
 };
 
-// Returns the images of one view per lane. `view`: the indices of these views, aligned to the
-// size of the register.
+// Returns the image of one view for each lane. `view`: the index of each lane's view. The array is
+// aligned to the size of the register.
 template <class Abi>
 LaneImages<Abi> lane_images(const SceneTables& tables, const std::int32_t* view) {
   using Ints = typename Pack<Abi>::Ints;

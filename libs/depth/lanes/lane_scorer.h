@@ -9,8 +9,8 @@
 #include "refractive/flat_port_camera.h"
 #include "refractive/pinhole_camera.h"
 
-// Inlines all calls, so that values stay in registers. Not under the sanitizers, where this one
-// large function would take minutes to compile.
+// AXIAL_FLATTEN inlines all calls of a function, so that values stay in registers. It is empty
+// under the sanitizers, where the large function would take minutes to compile.
 #ifdef AXIAL_SANITIZED
 #define AXIAL_FLATTEN
 #else
@@ -21,8 +21,8 @@ namespace axial::depth::lanes {
 
 // Projects in registers of `Wide` and correlates in registers of `Narrow`. A projection is a long
 // chain of dependent operations. Two narrow registers need two passes through this chain, but one
-// wide register needs only one pass. The pass takes no longer if half of the register is unused.
-// Correlation does not gain from wide registers, because texels are loaded one by one.
+// wide register needs only one pass, which takes no longer if half of the register is unused.
+// Correlation is not faster with wide registers, because texels are loaded one by one.
 template <template <class> class Camera, class Narrow, class Wide>
 class LaneScorer final : public Scorer {
   using T = Pack<Narrow>;

@@ -16,8 +16,8 @@ inline constexpr float kGreyUnit = 128.0f * 32767.0f;  // the integer for 1 grey
 namespace detail {
 
 #ifdef __AVX2__
-// Eight scalar loads. They are faster than the gather instruction on AMD's Zen 3 and Zen 4, which
-// execute it as microcode.
+// Loads base[at] with eight scalar loads. On AMD's Zen 3 and Zen 4, scalar loads are faster than
+// the gather instruction, which these processors execute as microcode.
 [[gnu::always_inline]] inline __m256i gather_by_loads(const int* base, __m256i at) {
   const auto four_of = [&](std::uint64_t first, std::uint64_t second) {
     __m128i words = _mm_cvtsi32_si128(base[static_cast<std::uint32_t>(first)]);
@@ -56,8 +56,8 @@ inline __m128i lower_half_twice() {
 #endif
 
 // Operations on the 16-bit halves of 32-bit lanes.
-//   upper_halves: the upper half of `upper` as the upper half, and the upper half of `lower` as the
-//                 lower half.
+//   upper_halves: upper half of the result: the upper half of `upper`; lower half of the result:
+//                 the upper half of `lower`.
 //   dot_halves:   the sum of the products of the upper halves and of the lower halves.
 //   fractions:    the upper 15 bits of the fraction of a 16.16 number, in both halves.
 #ifdef __AVX2__

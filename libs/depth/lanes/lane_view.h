@@ -19,8 +19,8 @@ struct LaneProjections {
   LaneFloats x, y;                 // the patch's centre in the source view [px]
   LaneFloats visible;              // 1 or 0
   std::array<LaneFloats, 4> warp;  // d(source pixel)/d(reference pixel), row-major
-  LaneFloats depth;                // of the plane
-  LaneFloats inconsistency;        // geometric term times its weight; is added to the cost
+  LaneFloats depth;                // depth of the plane [m]
+  LaneFloats inconsistency;        // geometric term of the cost, times its weight
 };
 
 template <template <class> class Camera, class Abi>
@@ -30,8 +30,9 @@ class LaneView {
   using Projector = typename Camera<T>::Projector;
   using Image = decltype(std::declval<Projector>().image(std::declval<Vector>()));
 
-  // One source view per lane. If all views have the same projector, `projector` points to it,
-  // because a copy would take much of the time. Otherwise it points to `gathered`.
+  // One source view per lane. If all views have the same projector, `projector` points to this
+  // projector, because a copy would take much of the time. Otherwise `projector` points to
+  // `gathered`.
   struct Views {
     Projector gathered;
     const Projector* projector;
@@ -53,7 +54,8 @@ class LaneView {
     fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
-  // Processes kWidth pairs, from pair `first` on. Stores `projected` and all scores but the cost.
+  // Processes kWidth pairs, from pair `first` on. Stores `projected` and all scores except the
+  // cost.
   void look(const LanePixel& pixel, const LanePlanes& lane_planes, const LanePairs& pairs,
             std::span<const SurfacePoint> neighbours, std::size_t first, LaneScores& scores,
             LaneProjections& projected) const {

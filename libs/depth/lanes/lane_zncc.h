@@ -16,7 +16,7 @@ struct LaneWindow {
   Ints x, y;              // the first texel
   Ints right_x, right_y;  // the step to the next texel of a row
   Ints down_x, down_y;    // the step to the next row
-  // These are set only if the window of a lane leaves its image.
+  // The members below are set only if the window of some lane lies partly outside its image.
   Ints last_x, last_y;  // the last column and row of the image
   Ints whole;           // 1 in lanes whose whole window lies inside the image, else 0
 };
@@ -24,9 +24,10 @@ struct LaneWindow {
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
 // Computes the sums over one window per lane, with grey levels in units of kGreyUnit. With kPart,
-// windows may leave their images. A texel outside its image then has a share of 0, and its sample
-// is taken at the edge of the image. A whole window gets the same bytes with and without kPart.
-// Without kPart, no window may leave its image, and the first three sums stay 0.
+// windows may lie partly outside their images. A texel outside its image then has a share
+// (kLeastWeight) of 0, and its sample is taken at the edge of the image. For a window inside its
+// image, the sums have the same bytes with and without kPart. Without kPart, all windows must lie
+// inside their images, and the first three sums stay 0.
 template <bool kPart, class Abi>
 PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<Abi>& sample,
                                 const LaneWindow<Abi>& window) {
@@ -79,10 +80,10 @@ Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi
   return select(known, min(max(value, T(-1)), T(1)), T(kNoCorrelation));
 }
 
-// Returns the correlation of each lane if some windows leave their images. The windows of the
-// lanes in `whole` lie completely inside their images. The windows of the lanes in `partly` leave
-// their images. The other lanes get kNoCorrelation. This is a separate function, because the case
-// is rare and its code would slow down the usual case.
+// Returns the correlation of each lane if some windows lie partly outside their images. The windows
+// of the lanes in `whole` lie completely inside their images, the windows of the lanes in `partly`
+// lie partly outside. The other lanes get kNoCorrelation. This function is separate from
+// lane_zncc() because its case is rare and its code would slow down the usual case.
 template <class Abi>
 [[gnu::noinline]] Pack<Abi> lane_zncc_of_parts(const ReferencePatch& patch,
                                                const LaneSampler<Abi>& sample,
@@ -105,9 +106,10 @@ template <class Abi>
 // image [px]. `warp`: d(source pixel)/d(reference pixel).
 //
 // The result of a lane does not depend on the other lanes. The warp is affine, so a test of the
-// window's corners tells whether the whole window is inside the image. Centre and steps are
-// rounded to 1/65536 px, which moves samples by at most 1e-3 px. A whole window keeps one pixel
-// of distance to the image's edge, so that its samples meet the precondition of LaneSampler.
+// window's corners tells whether the whole window is inside the image. The centre of the window and
+// the steps between texels are rounded to 1/65536 px, which moves samples by at most 1e-3 px. A
+// window counts as inside only if it is at least one pixel from the image's edge, so that its
+// samples meet the precondition of LaneSampler.
 template <class Abi>
 Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
                     const LaneImages<Abi>& image, const refractive::Projection<Pack<Abi>>& centre,
@@ -123,7 +125,7 @@ Pack<Abi> lane_zncc(const ReferencePatch& patch, const std::uint32_t* words,
   const PackMask<Abi> whole = centre.visible && x - extent_x >= T(1) && y - extent_y >= T(1) &&
                               x + extent_x <= image.width - T(2) &&
                               y + extent_y <= image.height - T(2);
-  // Larger windows have texels that positions in fixed point cannot represent.
+  // Texels farther out have positions that 16.16 fixed point cannot represent.
   const T farthest(static_cast<float>(kLargestSide));
   const PackMask<Abi> partly = centre.visible && !whole && x > T(0) && y > T(0) &&
                                x < image.width - T(1) && y < image.height - T(1) &&

@@ -39,7 +39,7 @@ struct Pack {
 
   Pack() = default;
   template <class Number>
-  requires std::is_arithmetic_v<Number> Pack(Number value)  // the same in every lane
+  requires std::is_arithmetic_v<Number> Pack(Number value)  // `value` in every lane
       : part(static_cast<float>(value)) {}
 
   explicit Pack(const Part& lanes) : part(lanes) {}
@@ -83,8 +83,8 @@ struct Pack {
 };
 
 // Returns `yes` in the lanes where `mask` is true and `no` in the other lanes. Always inlined, so
-// that no two translation units share a compiled copy, not even if they are for the same
-// instruction set (tests/depth/shared_names_test.py).
+// that no two translation units share a compiled copy, not even two units for the same instruction
+// set (tests/depth/shared_names_test.py).
 template <class Abi>
 [[gnu::always_inline]] inline Pack<Abi> select(const PackMask<Abi>& mask, const Pack<Abi>& yes,
                                                Pack<Abi> no) {
@@ -104,9 +104,9 @@ Pack<Abi> abs(Pack<Abi> a) {
   return a;
 }
 
-// lesser() returns the smaller number of each lane, and greater() the larger number. Both return
-// b if a or b is NaN, as the minimum and maximum instructions do. These instructions take one
-// step. A comparison and a selection, as in min() and max(), take two.
+// lesser() returns the smaller number of each lane, and greater() the larger number. Both return b
+// if a or b is NaN, as the minimum and maximum instructions do. These instructions are faster than
+// a comparison and a selection, as in min() and max().
 template <class Abi>
 Pack<Abi> lesser(const Pack<Abi>& a, const Pack<Abi>& b) {
   using Part [[maybe_unused]] = typename Pack<Abi>::Part;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The arguments of a lane scorer as plain numbers. Only these types are passed between code
-// compiled for different instruction sets.
+// The arguments and results of a scorer (scorer.h) as plain numbers. Only these types are passed
+// between code compiled for different instruction sets.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct LanePlanes {
 };
 
 // The plane and the source view of each lane, as indices into LanePlanes and SceneTables. Lanes
-// from `count` on are unused. The indices of unused lanes must be valid, too, so they repeat
-// another lane. The scores of unused lanes have no meaning.
+// from `count` on are unused. The indices of unused lanes must be valid, too, so they repeat the
+// indices of a used lane. The scores of unused lanes have no meaning.
 struct LanePairs {
   std::size_t count;
   alignas(64) std::array<std::int32_t, kLanes> plane;

@@ -31,32 +31,32 @@ inline constexpr std::size_t kMaxCameraFields = 96;
 // The numbers of a camera or of its projector in the order of each_field().
 struct CameraFields {
   std::array<float, kMaxCameraFields> value{};
-  int steps = 0;  // the only integer field: the number of projection steps
+  int steps = 0;  // the only integer field: the number of solver steps
 
   bool operator==(const CameraFields&) const = default;
 };
 
-// The data of the reference camera and of up to kLanes source views. A LaneFloats has one entry
-// per source view. The entries beyond the last view are not used.
+// The data of the reference camera and of up to kLanes source views. Each LaneFloats below has one
+// entry per source view. Entries after the last view are not used.
 struct SceneTables {
   CameraKind kind = CameraKind::pinhole;  // of the source cameras; for rays(): of `reference`
   CameraFields reference;                 // used by rays() only
   // The projectors' fields: projector[field][view].
   std::array<LaneFloats, kMaxCameraFields> projector{};
-  int steps = 0;                // largest number of projection steps of all projectors
+  int steps = 0;                // largest number of solver steps of all projectors
   bool same_projector = false;  // the projectors of all source views are equal
-  // From the reference camera's frame to the frame of each source view's projector: x_projector =
-  // rotation * x_reference + translation. The rotation is row-major.
+  // The transformation from the reference camera's frame to the frame of each source view's
+  // projector: x_projector = rotation * x_reference + translation. The rotation is row-major.
   std::array<LaneFloats, 9> rotation{};
   std::array<LaneFloats, 3> translation{};
-  // The words of all source images (QuadImage, zncc.h), one image after the other, and the index of
-  // each image's first word.
+  // words: the words of all source images (QuadImage, zncc.h), one image after the other.
+  // image_begin: the index of each image's first word.
   std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> words;
   std::array<std::int32_t, kLanes> image_begin{};
   LaneFloats width{};
   LaneFloats height{};
-  // The depth maps of the source views [m], indexed as `words`. Empty: photometric cost only.
-  // has_depth: 1 if the view has a depth map, otherwise 0.
+  // depths: the depth maps of the source views [m], with the indices of `words`; empty if the cost
+  // is only photometric. has_depth: 1 if the view has a depth map, otherwise 0.
   std::vector<float, HugePageAllocator<float>> depths;
   LaneFloats has_depth{};
   float geometric_weight = 0;
@@ -79,8 +79,8 @@ class Scorer {
 
 enum class InstructionSet { scalar, baseline, avx2, avx512 };
 
-// The instruction sets that this build and this processor support, the fastest one last. `scalar`
-// is the reference for the tests of the others.
+// The instruction sets that this build and this processor support, the fastest set last. `scalar`
+// is the reference in the tests of the other sets.
 std::vector<InstructionSet> available_instruction_sets();
 InstructionSet fastest_instruction_set();
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads and writes JSON texts and files. Only json.cpp calls the parser and the writer of the JSON
-// library, because each source file that calls the parser or writer takes seconds longer to
-// compile.
+// library, because their code takes seconds to compile in each source file that calls them.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,8 @@ namespace axial::io {
 nlohmann::json list_files(const std::filesystem::path& folder);
 
 struct WrittenFiles {
-  // Paths relative to the folder, sorted. The content is or is not that of the listed fingerprint.
+  // Sorted paths relative to the folder. A file is unchanged if its content has the listed
+  // fingerprint, otherwise changed.
   std::vector<std::filesystem::path> unchanged;
   std::vector<std::filesystem::path> changed;
 };

@@ -13,7 +13,7 @@
 
 namespace axial::io {
 
-// "<scene without extension>.geo.json".
+// Returns the path "<scene without extension>.geo.json".
 std::filesystem::path geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Returns the frame whose origin the file beside the scene states; nothing if there is no file.
@@ -26,14 +26,14 @@ void write_geo_offset_beside(const std::filesystem::path& scene_path, const Loca
 
 // Moves a scene that was read from `scene_path` into its local frame and returns this frame.
 //
-// First, if there is a file beside the scene, the scene is already in the frame that the file
-// states. The scene stays unchanged. A warning is given if the cameras are more than 1e5 units from
-// the origin of the frame. Otherwise the scene is in world coordinates and is moved into
+// If there is a file beside the scene, the scene is already in the frame that the file states and
+// stays unchanged. A warning is given if the cameras are more than 1e5 units from the origin of
+// this frame. If there is no file, the scene is in world coordinates and is moved into
 // frame_of(scene). If frame_of(scene) is not the world, a warning states that the sparse points,
 // which are float, have lost digits.
 LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path);
 
-// Moves a model in world coordinates into the frame near its cameras (frame_of) and returns that
+// Moves a model from world coordinates into the frame near its cameras (frame_of) and returns the
 // frame.
 LocalFrame enter_local_frame(ColmapModel& model);
 

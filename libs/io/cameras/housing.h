@@ -35,8 +35,8 @@ struct Housing {
   // attach_ports check this.
   std::map<std::string, std::string>::const_iterator entry_of(const std::string& image_name) const;
 
-  // Returns the name of the port of an image. First the entry of the image in `images` counts
-  // (entry_of), then the entry of its camera in `cameras`, otherwise `default_port`.
+  // Returns the name of the port of an image: the entry of the image in `images` (entry_of), or if
+  // there is none, the entry of the camera in `cameras`, or if there is none, `default_port`.
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
 
   // Returns the port `name` for an image that was taken at `pose`; nothing for "none". A water
@@ -46,8 +46,9 @@ struct Housing {
   std::optional<refractive::Port<double>> port_at(const std::string& name, const Pose& pose,
                                                   const std::string& image) const;
 
-  // Returns the port `name` without a pose; nothing for "none". Error if the port is not defined,
-  // or if the port is a water surface, because a water surface is another port for every pose.
+  // Returns the port `name`, which moves with the camera; nothing for "none". Error if the port is
+  // not defined, or if it is a water surface, because a water surface is another port for every
+  // pose.
   std::optional<refractive::Port<double>> carried_port(const std::string& name) const;
 };
 
@@ -59,8 +60,8 @@ Housing housing_with(const HousingPort& port);
 void check_port(const refractive::Port<double>& port, const std::string& where);
 void check_port(const HousingPort& port, const std::string& where);
 
-// Error that names `file` and the port if a port of `housing` is a water surface. Programs that
-// handle only ports that move with the camera call this function.
+// Error that names `file` and the port if a port of `housing` is a water surface. This function is
+// for programs that can handle only ports that move with the camera.
 void refuse_water_surfaces(const Housing& housing, const std::filesystem::path& file);
 
 // `checked`: unusual values of ports give warnings (warn_of_port_values). `passed_over`: no
@@ -82,18 +83,19 @@ Housing read_housing(const std::filesystem::path& path, PortValues values = Port
 // a port name that is not defined.
 void write_housing(const std::filesystem::path& path, const Housing& housing);
 
-// "<scene without extension>.housing.json".
+// Returns the path "<scene without extension>.housing.json".
 std::filesystem::path housing_beside(const std::filesystem::path& scene_path);
 
 struct NamedCamera {
-  std::string name;          // of an image, relative to the image folder
-  std::uint32_t camera = 0;  // COLMAP's id
+  std::string name;          // name of an image: its path relative to the image folder
+  std::uint32_t camera = 0;  // COLMAP's id of the camera
 };
 
-// Returns a copy of `housing` in which port_of gives every one of `images` its own port. An entry
-// that is the whole name of an image belongs to this image only. Other images whose names end in
-// the same text get entries of their own in the result. Error that starts with `file` and the entry
-// and names two images, if an entry is the end of several names and the whole name of none.
+// Returns a copy of `housing` in which port_of finds the right port of each image in `images`. An
+// entry of `housing` that is the whole name of an image belongs to this image only. Other images
+// whose names end in this entry get separate entries in the result. Error that starts with `file`
+// and the entry and names two images, if an entry is the end of several names and the whole name of
+// none.
 Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
                    const std::string& file);
 
@@ -102,11 +104,11 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
 // the whole path of another image does not count. An image without an entry gets
 // `housing.default_port`. A water surface becomes a flat port for the pose of each image.
 //
-// Errors as for port_at and for_images. An image without an entry is also an Error if
-// `housing.cameras` is not empty, because a scene does not contain COLMAP's camera ids
-// (InterfaceCOLMAP writes entries by image where cameras differ). Warns of entries that match no
-// image, and of ports that disagree with the sparse points (warn_of_ports_in_scene). All messages
-// start with `file`.
+// Errors as for port_at and for_images. Also an Error if an image has no entry and
+// `housing.cameras` is not empty, because a scene does not contain COLMAP's camera ids.
+// (InterfaceCOLMAP therefore writes entries by image.) Warns of entries that match no image, and of
+// ports that disagree with the sparse points (warn_of_ports_in_scene). All messages start with
+// `file`.
 void attach_ports(Scene& scene, const Housing& housing, const std::string& file);
 
 }  // namespace axial::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file beside a scene that describes the distortion of its lenses. The .mvs format cannot store
-// it.
+// The file beside a scene that describes the distortion of the lenses, which the .mvs format cannot
+// store.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct SceneLenses {
   std::map<std::string, std::string> images;  // image name -> lens name, as Housing::images
 };
 
-// "<scene without extension>.lenses.json".
+// Returns the path "<scene without extension>.lenses.json".
 std::filesystem::path lenses_beside(const std::filesystem::path& scene_path);
 
 // Read and write the file of the lenses. Reading gives an Error that names the file, the key and
@@ -32,8 +32,8 @@ void write_lenses(const std::filesystem::path& path, const SceneLenses& lenses);
 // the longest entry that is the end of the image's path in whole path components. An entry that is
 // the whole path of another image does not count. An image without an entry gets
 // `lenses.default_lens`. Warns of entries that match no image. Error that starts with `file` if
-// several images share an entry, or if a lens does not show the image centre or shows the image
-// centre mirrored.
+// several images share an entry, or if a lens does not image a direction at the image centre, or
+// mirrors the image there.
 void attach_lenses(Scene& scene, const SceneLenses& lenses, const std::filesystem::path& file);
 
 // Attaches the lenses of the file beside the scene, if there is one. Returns true if the file
@@ -45,10 +45,10 @@ bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path)
 // a wrong lens.
 SceneLenses lenses_of(const Scene& scene, const std::filesystem::path& scene_path);
 
-// Writes the file of the lenses beside the scene. First, if a lens is distorted, the file is
-// written. Second, if `behind_ports` is true, the file is written although no lens is distorted:
-// images behind ports are rarely undistorted, so that a missing file would look like a lost file.
-// Otherwise no file is written and an existing file is removed.
+// Writes the file of the lenses beside the scene. The file is written if a lens is distorted or if
+// `behind_ports` is true. Otherwise an existing file is removed. With `behind_ports` the file is
+// also written without distorted lenses: images behind ports usually have distorted lenses, so a
+// missing file would look like a lost file.
 void write_lenses_beside(const std::filesystem::path& scene_path, const SceneLenses& lenses,
                          bool behind_ports);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares two sources of ports for the same images, of which only one is used.
+// Compares two sources of ports for the same images. Only one of the two sources is used.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,10 @@ namespace axial::io {
 // True if the two ports are of the same kind and no number differs by more than 1e-9.
 bool same_port(const HousingPort& a, const HousingPort& b);
 
-// Returns the name of the first image of `model` that has a port in `other`, and in `taken` another
-// port or no port. The result is empty if there is no such image. An image without a port in
-// `other` is never returned, because a camera file without a port makes no statement (housing_of).
+// Returns the name of the first image of `model` that has a port in `other`, but has another port
+// or no port in `taken`, the source that is used. The result is empty if there is no such image. An
+// image without a port in `other` is never returned, because a camera file without a port makes no
+// statement (housing_of).
 std::string image_with_other_port(const Housing& taken, const Housing& other,
                                   const ColmapModel& model);
 

@@ -17,15 +17,15 @@ struct NamedPosition {
   std::string name;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   int line = 0;
-  bool known = false;  // the argument `is_image` of read_positions returned true for the name
+  bool known = false;  // true if `is_image` of read_positions returned true for the name
 };
 
 // Reads a file with lines "NAME X Y Z", in UTF-8 with or without a byte order mark. The numbers are
 // read from the end of the line, so that a name may contain blanks. A comment starts with '#' at
-// the beginning of the line or after a blank. Exception: a '#' is part of the name if `is_image`
-// returns true for the name with this '#'. A name in double quotes is taken literally, and ""
-// between the quotes stands for one quote. Empty lines are skipped. Error that names the file and
-// the line for a line of another form and for numbers that are not finite.
+// the beginning of the line or after a blank. Exception: a '#' does not start a comment if
+// `is_image` returns true for a name that contains this '#'. A name in double quotes is taken
+// literally, and "" between the quotes stands for one quote. Empty lines are skipped. Error that
+// names the file and the line for a line of another form and for numbers that are not finite.
 std::vector<NamedPosition> read_positions(const std::filesystem::path& file,
                                           const IsImage& is_image);
 

@@ -63,17 +63,16 @@ struct ColmapModel {
 };
 
 // Returns the folder that holds the model of `folder`. The candidates are `folder`/sparse,
-// `folder`/sparse/0 and `folder`, in this order. First, the first candidate with a complete model
-// is taken. Otherwise the first candidate with a cameras file is taken. The log names other
-// complete models that were found. Error that lists the candidates if no candidate has a cameras
-// file.
+// `folder`/sparse/0 and `folder`, in this order. The result is the first candidate with a complete
+// model, or if no model is complete, the first candidate with a cameras file. The log names other
+// complete models. Error that lists the candidates if no candidate has a cameras file.
 std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 
 // Reads the cameras, images and points3D of COLMAP or COLMAP-Underwater. A binary cameras file does
 // not state which of the two programs wrote it. The program is determined from the length of the
 // file. As in COLMAP, the binary model in the folder is read if it is complete, otherwise the text
-// model. A warning names the files of the form not read whose contents differ from the model that
-// is read. All camera models of COLMAP are accepted.
+// model. If the folder also holds files in the other form, a warning names those whose contents
+// differ from the model that is read. All camera models of COLMAP are accepted.
 //
 // Error for an unknown camera model, a wrong number of parameters, a value that is not finite, a
 // reference to a camera, image or point that does not exist, an id that occurs twice, two images
@@ -84,8 +83,8 @@ ColmapModel read_colmap_model(const std::filesystem::path& folder);
 // cameras, or a file of Calibmar with its port (calibmar.h). Errors as for read_colmap_model.
 std::vector<ColmapCamera> read_colmap_cameras(const std::filesystem::path& path);
 
-// Error if `folder` holds a complete binary model, because readers would prefer it to a text model
-// in the same folder.
+// Error if `folder` holds a complete binary model, because readers would read the binary model
+// instead of a text model in the same folder.
 void require_no_binary_model(const std::filesystem::path& folder);
 
 // Write a model for COLMAP. Ports are left out because COLMAP cannot read them. The text writer

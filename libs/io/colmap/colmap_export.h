@@ -16,7 +16,7 @@ namespace axial::io {
 //
 // A scene does not keep the measured observations. Each observation of the model is therefore the
 // projection of its sparse point. Observations of points that the camera does not see are left out.
-// Points without any observation are left out too.
+// Points that no camera sees are left out too.
 //
 // Error that names the image for a lens that no model of COLMAP describes, a path outside
 // `image_folder`, or two images with the same name.

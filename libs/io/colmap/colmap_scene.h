@@ -16,13 +16,13 @@ namespace axial::io {
 
 struct ColmapImport {
   std::filesystem::path model_folder;        // for messages
-  std::filesystem::path image_folder;        // image names are relative to it
-  std::filesystem::path undistorted_folder;  // where undistorted images go; made when needed
+  std::filesystem::path image_folder;        // image names are relative to this folder
+  std::filesystem::path undistorted_folder;  // for undistorted images; created when needed
   bool undistort = true;  // false: keep the lenses whose distortion the matcher can model
 };
 
-// Returns the scene of `model`, with the images in the model's order. The rules for the cameras, in
-// order:
+// Returns the scene of `model`, with the images in the model's order. For each camera, the first
+// rule that applies is used:
 // 1. Images of pinhole cameras are used as they are.
 // 2. If `import.undistort` is false and lens_distortion describes the lens, the camera keeps its
 //    distorted lens and its images are used as they are.
@@ -53,8 +53,8 @@ Housing housing_of(std::span<const ColmapCamera> cameras);
 // Reads a housing file and resolves its entries for the images of `model` (for_images).
 Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
 
-// Returns a housing that gives every image the same port as `housing`, with entries by image only
-// and without entries by camera id. attach_ports needs this form, because a scene does not contain
+// Returns a housing that gives every image the same port as `housing`, but has only entries by
+// image and no entries by camera id. attach_ports needs this form, because a scene does not contain
 // COLMAP's camera ids. An image that gets the default port has no entry unless another entry would
 // match it. `scene` must have been imported from `model` with `import`. Readers assign a port to an
 // image by the end of the image's path. Error if this rule would give an image a wrong port.

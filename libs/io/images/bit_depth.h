@@ -21,7 +21,7 @@ void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 
 // Returns the number of bits (8 to 16) that the values of 16-bit photographs use. in_8_bits needs
 // this number to convert the photographs to 8 bits. `headers[i]` is the header of `photographs[i]`.
-// `asked` is the number of bits that the user asks for, or 0. The rules, in order:
+// `asked` is the number of bits that the user asks for, or 0. The first rule that applies is used:
 // 1. If no photograph has more than 8 bits, the result is 16. The result then has no effect,
 //    because pixels of 8 bits are not converted. A warning says that `asked` is not used if `asked`
 //    is not 0.

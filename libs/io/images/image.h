@@ -13,7 +13,7 @@ namespace axial::io {
 
 struct ImageHeader {
   cv::Size size;
-  int bits = 8;        // of a stored value, rounded up to whole bytes: 8 or 16
+  int bits = 8;        // bits of a stored value, rounded up to whole bytes: 8 or 16
   bool alpha = false;  // pixels may be transparent
   unsigned decode_bytes =
       4;  // memory [bytes per pixel] during decoding, for the file, the library and the result
@@ -21,7 +21,7 @@ struct ImageHeader {
 
 struct Photograph {
   cv::Mat pixels;    // B G R, CV_8UC3 or CV_16UC3
-  cv::Mat1b opaque;  // 0: the pixel is fully transparent; empty if no pixel is
+  cv::Mat1b opaque;  // 0: pixel is fully transparent; empty if no pixel is fully transparent
 };
 
 // Reads a photograph of 8 or 16 bits. A grey image gives three equal channels. Error for
@@ -42,8 +42,8 @@ std::uint64_t bytes_needed(const ImageHeader& header);
 // with 10, 12 or 14 bits are stored in 16 bits.
 int bits_used(const cv::Mat& pixels);
 
-// Converts pixels to 8 bits by keeping the upper 8 of `bits` (8 to 16) bits. Larger values become
-// 255. Pixels of 8 bits stay as they are.
+// Converts pixels to 8 bits by keeping the upper 8 of `bits` (8 to 16) bits. A value that needs
+// more than `bits` bits becomes 255. Pixels of 8 bits stay as they are.
 cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits);
 
 // Reads a photograph and converts it to 8 bits. The upper 8 bits of 16-bit values are kept.
@@ -54,8 +54,8 @@ cv::Mat3b read_color_image(const std::filesystem::path& path);
 // palette are the palette indices. Error for other images.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
-// Error that names the file `mask` if the aspect ratios of the mask's `size` and of the image's
-// size `image` differ. A mask may have another resolution than its image.
+// Error that names the file `mask` if the aspect ratio of the mask's size `size` differs from the
+// aspect ratio of the image's size `image`. A mask may have another resolution than its image.
 void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image);
 
 // Read and write float TIFF files (ground truth) with one or three channels, without loss. The

@@ -10,14 +10,14 @@
 namespace axial::io {
 
 struct MaskRequest {
-  std::filesystem::path image;  // absolute, as all paths here
-  std::filesystem::path named;  // the mask that the scene names for it; empty: none
+  std::filesystem::path image;  // absolute, as all paths in this file
+  std::filesystem::path named;  // the mask that the scene names for the image; empty: none
 };
 
 struct FoundMask {
   std::filesystem::path path;                 // empty: none was found
   std::vector<std::filesystem::path> others;  // other candidates that exist, in search order
-  std::string looked_for;                     // names and folders that were searched, for a message
+  std::string looked_for;                     // the names and folders searched, for a message
 };
 
 // Finds the masks of all images of a scene.
@@ -27,11 +27,11 @@ struct FoundMask {
 // image.
 //
 // With `folder`, masks are searched only in `folder`, and the mask that the scene names does not
-// count. The names are the three above and a.png. Let an end be one or more of the last components
-// of the path of the image's folder, for example cam0. The subfolders of `folder` that an end names
-// are searched first, the longest end first, and `folder` itself last. In the example all names are
-// searched in `folder`/cam0, then in `folder`. A name is not used in a folder where several images
-// of the scene would have it.
+// count. The file names are the three above and a.png. Let an end be one or more of the last
+// components of the path of the image's folder, for example cam0. The subfolders of `folder` whose
+// path is an end are searched first, the longest end first, and `folder` itself last. In the
+// example all names are searched in `folder`/cam0, then in `folder`. If a file in one of these
+// folders would be the mask of several images of the scene by its name, it is not used.
 //
 // Without `folder`, images of the scene do not count as masks unless the scene names them as masks.
 // With `folder`, they never count. Error if `folder` is not a folder, or if two images would share

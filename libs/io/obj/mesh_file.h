@@ -13,8 +13,8 @@ namespace axial::io {
 // Returns the path of the mesh file to write. `path` is the value of the option -o. `type` is the
 // value of the option --export-type, "ply" or "obj". `type_given` is true if the user gave the
 // type. If the user did not give the type and `path` ends in .obj, the type is "obj". The type
-// becomes the extension of the result. The new extension replaces .ply, .obj and .mvs, and is
-// appended to any other path.
+// becomes the extension of the result: it replaces the extensions .ply, .obj and .mvs, and is
+// appended to a path with any other extension.
 std::filesystem::path mesh_file(std::filesystem::path path, std::string type, bool type_given);
 
 // Writes the mesh as OBJ if the extension of `path` is .obj, otherwise as PLY. `frame` is the frame

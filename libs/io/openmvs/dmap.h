@@ -13,12 +13,12 @@ namespace axial::io {
 
 // A depth map that is stored in a .dmap file and a side file "<path>.json".
 //
-// The .dmap file holds the z-depth and the normals in the camera frame, the in-air K, and the pose.
-// The side file holds the camera model with its port, the text `made_from`, and a fingerprint of
-// the bytes of the .dmap file. `made_from` is a fingerprint of the inputs and options from which
-// the depth map was made. The fingerprint of the bytes shows whether the .dmap file is damaged or
-// was written by another program. Without a side file the camera counts as a pinhole and
-// `made_from` is empty.
+// The .dmap file holds the z-depth and the normals in the camera frame, the matrix K of the lens in
+// air, and the pose. The side file holds the camera model with its port, the text `made_from`, and
+// a fingerprint of the bytes of the .dmap file. `made_from` is a fingerprint of the inputs and
+// options from which the depth map was made. The fingerprint of the bytes shows whether the .dmap
+// file is damaged or was written by another program. Without a side file the camera counts as a
+// pinhole and `made_from` is empty.
 //
 // Depth in memory is lambda (see DepthMap). The functions below convert between z-depth in the file
 // and lambda in memory.
@@ -38,15 +38,15 @@ enum class DmapSide { used, ignored };
 StoredDepthMap read_dmap(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
 // Reads a depth map without its pixels: `depth`, `normal` and `confidence` stay empty. The
-// fingerprint of the .dmap file is not checked. Errors as for read_dmap except for pixels and for
-// the fingerprint, and an Error for a file whose length disagrees with its header.
+// fingerprint of the .dmap file is not checked. Errors as for read_dmap, except for wrong pixels
+// and a wrong fingerprint. Also an Error for a file whose length disagrees with its header.
 DepthMap read_dmap_header(const std::filesystem::path& path, DmapSide side = DmapSide::used);
 
 // Writes a depth map and its side file. First an existing depth map at `path` is removed. Then the
-// side file is replaced. Last the new depth map gets its name. In this order an interruption never
-// leaves a depth map beside the side file of another depth map. `made_from` is the text that
-// read_dmap returns later. Error for an empty map, arrays of different sizes, a map without ids, or
-// a depth that is not in front of the camera.
+// side file is replaced. Last the new depth map is renamed to `path`. Because of this order, an
+// interruption never leaves a depth map beside the side file of another depth map. `made_from` is
+// the text that read_dmap returns later. Error for an empty map, arrays of different sizes, a map
+// without ids, or a depth that is not in front of the camera.
 void write_dmap(const std::filesystem::path& path, const DepthMap& map,
                 const std::string& made_from);
 
@@ -58,10 +58,10 @@ constexpr std::uint64_t dmap_bytes_needed(std::uint64_t pixels) {
 }
 
 enum class DmapOrigin {
-  none,     // no such file
-  ours,     // matches its side file
-  damaged,  // has a side file, but the map or the side file is incomplete
-  foreign   // has no side file, or is not damaged but does not match its side file
+  none,     // there is no depth map
+  ours,     // the depth map matches its side file
+  damaged,  // there is a side file, but the depth map or the side file is incomplete
+  foreign   // there is no side file, or the undamaged depth map does not match its side file
 };
 
 struct DmapStatus {

@@ -8,7 +8,7 @@
 
 namespace axial::io {
 
-// Reads a scene. Relative paths of images and masks in the file count from `working_folder`. All
+// Reads a scene. Relative paths of images and masks in the file start at `working_folder`. All
 // paths in the result are absolute. Ports are not part of the format (see housing.h). If a camera
 // is stored without a resolution (normalised K), the resolution is read from the header of the
 // image file.
@@ -25,8 +25,8 @@ enum class MvsIntrinsics { pixels, normalised };
 
 // Writes a scene in version 7 of the format. Paths of images and masks below `working_folder` are
 // stored relative to it, other paths are stored whole. Error for fewer than two images, no
-// calibrated image, sparse points that read_mvs refuses, or a principal point that readers of a
-// normalised K would place elsewhere.
+// calibrated image, sparse points that read_mvs refuses, or, with normalised intrinsics, a
+// principal point that readers of the file would place elsewhere.
 void write_mvs(const std::filesystem::path& path, const Scene& scene,
                const std::filesystem::path& working_folder,
                MvsIntrinsics intrinsics = MvsIntrinsics::pixels);

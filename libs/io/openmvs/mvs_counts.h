@@ -13,22 +13,22 @@ namespace axial::io {
 struct MvsCounts {
   std::uint64_t file_bytes = 0;
   std::uint64_t cameras = 0, poses = 0, images = 0;
-  std::uint64_t name_bytes = 0;   // of images and masks
+  std::uint64_t name_bytes = 0;   // of the names of all images and masks
   std::uint64_t view_scores = 0;  // of all images
   std::uint64_t points = 0;
   std::uint64_t observations = 0;     // views of all points
-  std::uint64_t pairs = 0;            // ordered pairs of different views of a point
+  std::uint64_t pairs = 0;            // ordered pairs of two views of one point, of all points
   std::uint64_t view_list_bytes = 0;  // heap memory of the points' lists of views
   std::uint64_t normals = 0, colors = 0;
 
-  // Replaces the number of view scores and adapts `file_bytes`.
+  // Sets view_scores to `number` and changes `file_bytes` accordingly.
   void set_view_scores(std::uint64_t number);
 
   // Upper bound of the memory [bytes] of the scene that read_mvs makes.
   std::uint64_t scene_bytes() const;
-  // Upper bounds of the memory [bytes] that read_mvs and write_mvs need while they work. The bound
-  // for reading includes the scene that is made. The bound for writing does not include the scene
-  // that is written.
+  // Upper bounds of the memory [bytes] that read_mvs and write_mvs need while they work.
+  // reading_bytes() includes the scene that read_mvs returns. writing_bytes() does not include the
+  // scene that write_mvs writes.
   std::uint64_t reading_bytes() const;
   std::uint64_t writing_bytes() const;
 };

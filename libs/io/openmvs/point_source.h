@@ -18,11 +18,11 @@ namespace axial::io {
 // Read the PLY file of a cloud or a mesh that belongs to a scene in `frame`. The positions of the
 // result are in `frame`.
 //
-// First, if the file has a comment geo_offset, its point is the origin of the stored positions.
-// Otherwise the frame of the stored positions is guessed, because OpenMVS's programs write
-// coordinates in the frame of their input but drop its comment geo_offset. The guess is the world
-// or `frame`: the one whose origin is nearer to the first vertex. A comment geo_offset 0 0 0 counts
-// as no comment.
+// If the file has a comment geo_offset, the point in this comment is the origin of the stored
+// positions. A comment geo_offset 0 0 0 counts as no comment. Without a comment the frame of the
+// stored positions is guessed, because OpenMVS's programs write coordinates in the frame of their
+// input but drop the comment geo_offset. The guess is the world or `frame`, whichever has its
+// origin nearer to the first vertex.
 //
 // Errors as for read_cloud_ply and read_mesh_ply.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
@@ -38,14 +38,14 @@ void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesyste
 
 struct PointSourceCounts {
   MvsCounts scene;                  // with the points of the cloud
-  std::uint64_t reading_bytes = 0;  // lower bound of the memory that use_point_cloud needs
+  std::uint64_t reading_bytes = 0;  // lower bound of the memory that use_point_cloud needs [bytes]
 };
 
 // Estimates the counts of a scene after use_point_cloud, from the header and the size of the file
-// `ply`. `scene` holds the counts of the scene before. The number of observations cannot be
-// computed, and is 0, for an ascii PLY and for a PLY with other elements than the vertices or other
-// lists than those of views. Returns nothing for a file that cannot be read and for a malformed
-// file. In these cases use_point_cloud reports the reason.
+// `ply`. `scene` holds the counts of the scene before. The number of observations is 0 if it cannot
+// be computed: for an ascii PLY, for a PLY with other elements than vertices, and for a PLY with
+// other lists than view_indices and view_weights. Returns nothing for a file that cannot be read
+// and for a malformed file. In these cases use_point_cloud reports the reason.
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene);
 

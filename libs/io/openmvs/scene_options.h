@@ -22,8 +22,8 @@ struct SceneOptions {
 void declare_scene_options(OptionList& list, SceneOptions& options);
 
 // Returns the files of the scene `input`. `input` and `options.housing` may be relative to the
-// working folder of `common`. Later messages about these files name settings by their options.
-// Error for an unknown camera model, and for options that contradict each other.
+// working folder of `common`. Messages about these files call settings by the names of these
+// options. Error for an unknown camera model, and for options that contradict each other.
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
                        const CommonOptions& common);
 

@@ -18,29 +18,30 @@ namespace axial::io {
 enum class PortChoice {
   automatic,  // the ports of the housing file, if there is one
   ignored,    // the housing file is not read
-  required,   // a housing file must exist and give an image a port
-  flat        // a housing file must exist and give every image a flat port
+  required,   // a housing file must exist and give at least one image a port
+  flat        // a housing file must exist and give every calibrated image a flat port
 };
 
 // The files of a scene. The paths are absolute. Messages name four settings: "allow_missing",
-// "housing", "refractive" (which asks for PortChoice::required) and "camera is flat_port" (which
-// asks for PortChoice::flat). `name_of` translates these names to the names that the user knows.
+// "housing", "refractive" (PortChoice::required) and "camera is flat_port" (PortChoice::flat).
+// `name_of` translates these names to the names that the user knows.
 struct SceneFiles {
-  std::filesystem::path scene;           // .mvs
+  std::filesystem::path scene;           // the .mvs file
   std::filesystem::path working_folder;  // base of relative image paths in the scene
-  std::filesystem::path housing;         // empty: beside the scene, if there is one
+  std::filesystem::path housing;         // empty: the housing file beside the scene, if any
   PortChoice ports = PortChoice::automatic;
-  bool allow_missing = false;  // go on if the named `housing` gives no image a port
+  bool allow_missing = false;  // true: if `housing` gives no image a port, warn instead of fail
   SettingNames name_of = own_name;
 };
 
 struct SceneWithCameras {
   Scene scene;                     // in `frame`; cameras have their lenses and ports
   LocalFrame frame;                // the frame of the scene's coordinates
-  std::optional<Housing> housing;  // in world coordinates; nothing if no image has a port
+  std::optional<Housing> housing;  // in world coordinates; empty if no image has a port
 };
 
-// Returns the path of the housing file. The file need not exist.
+// Returns the path of the housing file: `files.housing`, or if it is empty, the path beside the
+// scene. The file need not exist.
 std::filesystem::path housing_file(const SceneFiles& files);
 
 // Reads the scene, moves it into a frame near its cameras (enter_local_frame), and attaches lenses
@@ -52,11 +53,11 @@ std::filesystem::path housing_file(const SceneFiles& files);
 SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
 
 // Writes the files of the housing, the lenses and the offset beside the scene `output`, where later
-// programs look for them. An existing housing file is removed if the scene has no housing. The
+// programs look for them. If the scene has no housing, an existing housing file is removed. The
 // offset file is written if scene.frame is not the world. If scene.frame is the world, an existing
 // offset file is removed, except if `output` is the scene that was read. The file of lenses is
-// written or removed as in write_lenses_beside. The housing file of `files`, from which the scene
-// was read, is never changed or removed. `lenses` is the result of lenses_of() for the scene and
+// written or removed as in write_lenses_beside. The file housing_file(files), from which the ports
+// were read, is never changed or removed. `lenses` is the result of lenses_of() for the scene and
 // `output`.
 void write_cameras_beside(const std::filesystem::path& output, const SceneWithCameras& scene,
                           const SceneLenses& lenses, const SceneFiles& files);

@@ -25,16 +25,16 @@ namespace axial::io {
 PointCloud read_cloud_ply(const std::filesystem::path& path);
 
 // Reads a cloud and returns its positions in `frame`. The origin of the stored positions is the
-// file's comment geo_offset, or the world's origin if there is no such comment. The positions are
-// moved in double precision and then rounded to float.
+// point in the file's comment geo_offset, or the world's origin if there is no such comment. The
+// positions are moved in double precision and then rounded to float.
 PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
 // The origin and the precision of a file's positions.
 struct PlyPlace {
-  // The stored first vertex plus the origin of `frame`; zero if the file has no vertices.
+  // The stored first vertex plus the origin of `frame` below; zero if the file has no vertices.
   Eigen::Vector3d first_vertex = Eigen::Vector3d::Zero();
-  LocalFrame frame;      // from the comment geo_offset; the world without this comment
-  bool is_float = true;  // positions are float32
+  LocalFrame frame;      // from the comment geo_offset; the world if there is no such comment
+  bool is_float = true;  // true: positions are float32; false: float64
 };
 
 // Reads the header and the first vertex. Errors as for read_cloud_ply.
@@ -51,14 +51,14 @@ struct PlyPlacement {
 // The properties that every point of a cloud has besides its position.
 struct CloudLayout {
   bool colors = false, normals = false, views = false, view_weights = false;
-  bool errors = false;  // the expected error and the confidence
+  bool errors = false;  // both properties error and confidence
 };
 
-// Writes a cloud of any size in portions. The file gets its name in finish(). If finish() is not
-// called, no file remains. The order of the properties is that of OpenMVS: x y z, red green blue,
-// nx ny nz, view_indices, view_weights. The properties error and confidence, which OpenMVS does not
-// have, follow. The number of points is known only at the end. The header therefore contains a
-// comment line with blanks that reserve room for the digits of this number.
+// Writes a cloud of any size in portions. finish() renames a temporary file to `path`. If finish()
+// is not called, no file remains. The order of the properties is that of OpenMVS: x y z, red green
+// blue, nx ny nz, view_indices, view_weights. The properties error and confidence, which OpenMVS
+// does not have, follow. The number of points is known only at the end. The header therefore
+// contains a comment line with blanks that reserve room for the digits of this number.
 class CloudWriter {
  public:
   CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
@@ -71,9 +71,10 @@ class CloudWriter {
   // format counts views in a byte), or if the file cannot be written.
   void add(const PointCloud& portion);
 
-  std::size_t size() const;  // points so far
+  std::size_t size() const;  // number of points added so far
 
-  // Writes the number of points and gives the file its name. Error if the file cannot be written.
+  // Writes the number of points into the header and renames the temporary file. Error if the file
+  // cannot be written.
   void finish();
 
  private:
@@ -87,10 +88,10 @@ class CloudWriter {
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true, const PlyPlacement& placement = {});
 
-// Read a mesh. Faces with more than three corners are split into a fan of triangles. With and
-// without `frame`, positions are treated as in the two functions read_cloud_ply. Error that names
-// the file for a file without an element face, a face with fewer than three corners, or a vertex
-// index out of range. Other errors as for read_cloud_ply.
+// Read a mesh. Faces with more than three corners are split into a fan of triangles. Positions are
+// returned as by the function read_cloud_ply with the same parameters. Error that names the file
+// for a file without an element face, a face with fewer than three corners, or a vertex index out
+// of range. Other errors as for read_cloud_ply.
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
@@ -98,7 +99,7 @@ Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 
-// Parts of a PLY file, for writers that add properties of their own. geo_comment returns the header
+// Functions for writers that add other properties to a PLY file. geo_comment returns the header
 // line "comment geo_offset X Y Z" with its newline, or an empty text if the positions are in the
 // world. position_properties returns the header lines of x, y and z. append_position appends the
 // bytes of one position, which is given in `placement.frame`, to `bytes`.

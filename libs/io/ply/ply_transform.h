@@ -14,21 +14,21 @@ namespace axial::io {
 // scale. All other properties, all other elements (faces, texture coordinates) and all comments
 // except geo_offset stay as they are.
 //
-// The frame of the positions of `input` follows from frame_of_positions with `move.from`. Positions
-// are written in `move.to`, with a comment geo_offset unless `move.to` is the world. Exception: if
-// the positions of `input` are float64 in the world and the file has no comment geo_offset, they
-// are written as float64 in the world, without the comment.
+// The positions of `input` are in the frame frame_of_positions(input, move.from). Positions are
+// written in `move.to`, with a comment geo_offset unless `move.to` is the world. Exception: if
+// `input` has float64 positions in the world and no comment geo_offset, positions are written as
+// float64 in the world, without a comment geo_offset.
 //
 // Error that names the file for a malformed or truncated file, a file without vertices, positions
 // that are neither float32 nor float64, or a position that is not finite after the move.
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
                    const FrameMove& move);
 
-// Returns the frame of the positions of a PLY file that belongs to a scene in `frame`. First, if
-// the file has a comment geo_offset that is not zero, its point is the origin. Otherwise the file
-// does not state the frame, because OpenMVS's programs keep coordinates but drop comments. The
-// positions are then taken to be in the world or in `frame`, whichever of the two origins is nearer
-// to the stored first vertex. Errors as for ply_place.
+// Returns the frame of the positions of a PLY file that belongs to a scene in `frame`. If the file
+// has a comment geo_offset that is not zero, the point in this comment is the origin of the frame.
+// Without such a comment the file does not state the frame, because OpenMVS's programs keep
+// coordinates but drop comments. The frame is then the world or `frame`, whichever has its origin
+// nearer to the first vertex. Errors as for ply_place.
 LocalFrame frame_of_positions(const std::filesystem::path& ply, const LocalFrame& frame);
 
 }  // namespace axial::io

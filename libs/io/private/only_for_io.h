@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every header in this folder includes this one. Only libs/io, and the tests that ask for it, have
-// the include directory in which it is found. Anywhere else the headers do not compile.
+// Every header in this folder and its subfolders includes this file. The include directory that
+// contains it is set only for libs/io and for tests that name PRIVATE_OF io in their
+// CMakeLists.txt. Other code that includes one of the headers does not compile.
 #pragma once

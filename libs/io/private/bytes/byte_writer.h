@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: the counterpart of ByteReader.
+// Private to libs/io: makes little-endian binary data that ByteReader can read.
 #pragma once
 
 #include <bit>

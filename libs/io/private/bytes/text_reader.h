@@ -22,7 +22,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// Removes and returns the first blank-separated token of `text`; empty when there is none.
+// Removes the first blank-separated token of `text` and returns it; empty if there is no token.
 inline std::string_view take_token(std::string_view& text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to libs/io: entries by which the files beside a scene refer to images. The name of an
-// image is a path. The key of an entry is a whole name, or the end of a name. An end may be used if
-// only one image has it.
+// image is a path. The key of an entry is the whole name of an image, or an end of the name that no
+// other image has.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 namespace axial::io {
 
-// Entries: each maps the name of an image, or the end of a name in whole path components, to a
-// value.
+// Entries by image. Each entry maps the name of an image, or the end of a name in whole path
+// components, to a value.
 using ByImage = std::map<std::string, std::string>;
 
 // Returns the entry that matches the longest end of `image_name`; `entries.end()` if no entry
@@ -32,8 +32,9 @@ std::vector<ByImage::const_iterator> entries_of_all(const ByImage& entries,
 
 // Returns entries that give every image its value. Image i has the path `paths[i]` and the value
 // `values[i]`. Its name `names[i]` is the end of its path. Readers give an image without an entry
-// the value `otherwise`. The result therefore contains only entries that are needed. If two images
-// share a name and need entries, the key of the second image's entry is its whole path.
+// the value `otherwise`, so the result contains no entry for such an image unless another entry
+// would match it. If two images share a name and need entries, the key of the second image's entry
+// is the whole path of the second image.
 ByImage entries_for(const std::vector<std::string>& names, const std::vector<std::string>& paths,
                     const std::vector<std::string>& values, const std::string& otherwise);
 

@@ -18,7 +18,7 @@ struct JsonPlace {
   const nlohmann::json& json;
   std::string where;
 
-  // Error unless this is an object whose keys are all among `known`.
+  // Error unless the value is an object whose keys are all among `known`.
   void require_object(std::initializer_list<const char*> known) const;
   bool has(const char* key) const;
   JsonPlace at(const std::string& key) const;  // Error if the key is missing

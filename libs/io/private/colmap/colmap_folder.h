@@ -24,19 +24,18 @@ bool has_part(const std::filesystem::path& folder, const std::string& part, Mode
 // True if the folder holds all three parts in `form`.
 bool holds_model(const std::filesystem::path& folder, ModelForm form);
 
-// Returns the form in which a model is read, as COLMAP chooses it. First, the form is binary if the
-// binary model is complete. Otherwise the form is text if the text model is complete. All files of
-// a model are read in one form. Error that names the missing files of both forms if no model is
-// complete.
+// Returns the form in which a model is read, as COLMAP chooses it: binary if the binary model is
+// complete, otherwise text if the text model is complete. All files of a model are read in one
+// form. Error that names the missing files of both forms if no model is complete.
 ModelForm model_form(const std::filesystem::path& folder);
 
-// Returns the form in which the cameras are read. First, if a model is complete, the form is that
-// of model_form. Otherwise the form is that of the cameras file that exists, or binary if both
-// files exist. Error if there is no cameras file.
+// Returns the form in which the cameras are read. If a model is complete, this is
+// model_form(folder). Otherwise it is the form of the cameras file that exists, or binary if
+// cameras files exist in both forms. Error if there is no cameras file.
 ModelForm cameras_form(const std::filesystem::path& folder);
 
-// Warns, in one line, of files that are ignored although their contents differ from `model` or
-// `cameras`. `read` is the form that was read. The ignored files are those of the other form. A
+// Warn, in one line, of files that were ignored although their contents differ from `model` or
+// `cameras`. `read` is the form that was read. The ignored files are the files in the other form. A
 // file that cannot be read counts as different. The order of cameras, images and points does not
 // matter. Numbers a and b count as equal if |a - b| <= 1e-9 max(1, |a|, |b|).
 void warn_of_ignored_files(const std::filesystem::path& folder, ModelForm read,

@@ -14,7 +14,8 @@
 
 namespace axial::io {
 
-// Who writes the files: COLMAP, or COLMAP-Underwater, whose cameras may have ports.
+// The program whose files are read or written: COLMAP, or COLMAP-Underwater, whose cameras may have
+// ports.
 enum class Dialect { colmap, underwater };
 
 // Returns the name of the camera model that has the number `id` in binary files; empty if the
@@ -27,8 +28,9 @@ int colmap_model_id(std::string_view name, Dialect dialect);
 // Quaternion (w, x, y, z) and translation of the transformation from world to camera.
 using ColmapPose = std::array<double, 7>;
 
+// Convert a pose from and to this form. Quaternions that are read are normalised. Reading gives an
 // Error that starts with `where` for values that are not finite, a quaternion of (almost) zero
-// length, or a translation whose camera centre is not finite. Other quaternions are normalised.
+// length, or a translation whose camera centre is not finite.
 Pose pose_from_colmap(const ColmapPose& values, const std::string& where);
 ColmapPose pose_to_colmap(const Pose& pose);
 

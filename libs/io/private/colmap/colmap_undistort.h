@@ -15,9 +15,9 @@ namespace axial::io {
 
 // An image of a model that needs to be undistorted.
 struct DistortedImage {
-  std::string name;                           // in the model
+  std::string name;                           // of the image in the model
   std::filesystem::path source;               // the photograph
-  std::filesystem::path mask;                 // of the photograph; empty: none
+  std::filesystem::path mask;                 // of the photograph; empty: no mask
   const ColmapCamera* camera = {};            // of the photograph
   refractive::PinholeLens<double> pinhole{};  // of the undistorted image, which has the same size
   bool fits_jpeg = true;  // 8 bits without transparency: a JPEG can hold the pixels

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/io: decodes JPEG, PNG and TIFF images with the library of each format. OpenCV can
-// decode these formats too, but OpenCV rotates pixels, drops alpha and lets the libraries print
+// Private to libs/io: decodes JPEG, PNG and TIFF images with the library of each format. OpenCV is
+// not used for these formats, because it rotates images, drops alpha and lets the libraries print
 // messages. Every function with an argument `path` throws an Error of one line that names `path`
 // for damaged bytes and for features that are not supported.
 #pragma once
@@ -29,7 +29,7 @@ void refuse_truncated_png(std::string_view bytes, const std::filesystem::path& p
 
 ImageHeader jpeg_header(std::string_view bytes, const std::filesystem::path& path);
 ImageHeader png_header(std::string_view bytes, const std::filesystem::path& path);
-// Error also if the file is shorter than its TIFF directory says.
+// In addition, an Error if the file is shorter than its TIFF directory says.
 ImageHeader tiff_header(std::string_view bytes, const std::filesystem::path& path);
 
 Photograph decode_jpeg(std::string_view bytes, const std::filesystem::path& path);

@@ -16,7 +16,7 @@
 namespace axial::io {
 
 struct DmapHeader {
-  DepthMap map;              // without pixels; the camera has the depth map's resolution
+  DepthMap map;              // without pixels; the camera is at the depth map's resolution
   std::uint8_t content = 0;  // flags of the pixel arrays that follow the header
 
   std::uint64_t pixels() const {

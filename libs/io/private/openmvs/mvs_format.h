@@ -55,8 +55,8 @@ struct MvsBox {
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
 };
 
-// The contents of a file, without its lines and its transform. Neither AxialMVS nor OpenMVS 2.3
-// uses the lines and the transform.
+// The contents of a file, without the lists of lines and the transform, which neither AxialMVS nor
+// OpenMVS 2.3 uses.
 struct MvsFile {
   std::vector<MvsPlatform> platforms;
   std::vector<MvsImage> images;

@@ -23,7 +23,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kFloat32;
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;  // of a list's length
+  PlyType count_type = PlyType::kUint8;  // type of a list's length
 };
 
 struct PlyElement {
@@ -37,7 +37,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::optional<Eigen::Vector3d> geo_offset;  // from "comment geo_offset X Y Z"
   std::vector<std::string> texture_files;     // from "comment TextureFile NAME"
-  std::size_t body = 0;                       // offset of the data in bytes
+  std::size_t body = 0;                       // offset of the data in the file [bytes]
 };
 
 // Parses the header. Error that names `file` if it is not well-formed.

@@ -12,9 +12,9 @@
 
 namespace axial::io {
 
-// The corners of the faces of one texture, without repetitions. Two corners are the same if they
-// have the same vertex and the same texture coordinates. Corner i has the vertex `vertex[i]` and
-// the texture coordinates `uv[i]`.
+// The corners of the faces that have one texture, without repetitions. Two corners are the same if
+// they have the same vertex and the same texture coordinates. Corner i has the vertex `vertex[i]`
+// and the texture coordinates `uv[i]`.
 struct UnifiedCorners {
   std::vector<std::uint32_t> vertex;                // indices into the vertices of the mesh
   std::vector<Eigen::Vector2f> uv;                  // [px]
