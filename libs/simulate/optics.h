@@ -35,10 +35,10 @@ struct Lens {
 Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction);
 Eigen::Vector3d direction_of(const Lens& lens, double u, double v);
 
-// Checks the lens at samples along the border of the image, corners included. Throws an Error that
-// names the coefficients and the pixel in two cases: pixel_of() does not map the direction_of() the
-// pixel back to the pixel, or the lens mirrors the image somewhere between the optical axis and
-// this direction. Lenses without distortion pass.
+// Checks the lens at samples along the border of the image, corners included. Each sampled pixel
+// must have a direction that pixel_of() maps back to the pixel, and the lens must not mirror the
+// image between the optical axis and this direction. Otherwise throws an Error that names the
+// coefficients and the pixel. Lenses without distortion pass.
 void check_lens(const Lens& lens);
 
 // Makes a lens with square pixels and the principal point in the image centre. Throws an Error
