@@ -35,8 +35,7 @@ DepthMap read_final_map(const Project& project, const Settings& settings, const 
 void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps);
 
 // For runs that make no maps: removes images without a map from Project::references. Sets the
-// cameras of the kept images in
-// Project::views to the resolution of their maps. Throws an Error
+// cameras of the kept images in Project::views to the resolution of their maps. Throws an Error
 // - if no reference has a map,
 // - for a damaged map,
 // - for a foreign map of an image whose camera has a port or a distorted lens,

@@ -11,8 +11,8 @@ namespace axial::densify {
 // matching and filters, cameras, poses, the contents of image files and mask files, neighbours,
 // sources and sparse points. A member that a later version adds to these settings changes the
 // fingerprint only if it differs from its default. So existing maps stay valid. The number of
-// threads and the settings that only fusion uses do not change the fingerprint. Reads
-// the image and mask files of all calibrated images. Error for a file that cannot be read.
+// threads and the settings that only fusion uses do not change the fingerprint. Reads the image and
+// mask files of all calibrated images. Error for a file that cannot be read.
 std::string fingerprint(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

@@ -12,9 +12,8 @@ namespace axial::densify {
 // Reads the file and replaces the neighbours of each image that has a line in the file. The new
 // neighbours get the values that OpenMVS gives them (ViewScore: scale 1, angle 15 degrees, area
 // 0.5, score 3). Images without a line keep their neighbours. Returns, for each image of the scene,
-// whether it
-// has a line. Neighbours without a pose are left out with a warning. Throws an Error, which names
-// file and line,
+// whether it has a line. Neighbours without a pose are left out with a warning. Throws an Error,
+// which names file and line,
 // - for an index that is no image of the scene,
 // - for an image that has two lines or is its own neighbour,
 // - for a line without neighbours.

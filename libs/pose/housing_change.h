@@ -73,8 +73,7 @@ HousedCamera with_change(const HousedCamera& measured, const HousingChange<doubl
 // Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
 // function theorem, the derivative of the tangents of this direction with respect to the numbers is
 // -d(tangents)/dX times the result. Only the ray, which has a closed form, is differentiated, and
-// not the
-// iteration of the projection.
+// not the iteration of the projection.
 Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
     const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
     const Eigen::Vector2d& tangents, double lambda);

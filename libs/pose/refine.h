@@ -47,8 +47,7 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // Adjusts and filters a bundle in metres for `options.rounds` rounds, then once more. The first
 // round uses `options.adjust.pixel_sigma`, and four times the limit `options.tracks.max_error`.
 // Later rounds use observed_pixel_sigma() of the round before. `progress` gets one line for each
-// round. For
-// the standard deviations of the result, call uncertainty() with the refined bundle and
+// round. For the standard deviations of the result, call uncertainty() with the refined bundle and
 // `options.adjust`. Throws an Error if no observation is left.
 RefineReport refine(Bundle& bundle, const RefineOptions& options,
                     const std::function<void(const std::string&)>& progress = {});

@@ -37,7 +37,6 @@ void decimate(HalfedgeMesh& mesh, std::size_t faces);
 // Makes triangles with edges of about `edge_length` [m] (isotropic remeshing).
 void remesh(HalfedgeMesh& mesh, double edge_length);
 
-// untangle.cpp
 // Moves vertices at the same place apart: each moves by 1 % of the way to the mean of its
 // neighbours.
 void separate_copies(HalfedgeMesh& mesh);
