@@ -16,7 +16,7 @@ struct Options {
   ParsedOptions parsed;
   std::vector<std::filesystem::path> input;  // files of photographs, or folders of them
   std::filesystem::path lens;                // COLMAP's cameras, or Calibmar's calibration.yaml
-  std::filesystem::path housing;  // or Calibmar's calibration.yaml; empty: the port in `lens`
+  std::filesystem::path housing;  // housing file or calibration.yaml; empty: the port in `lens`
   std::string port;  // name of the port in `housing`; empty: the port that the camera has there
   calibrate::Board board;
   int bit_depth = 0;        // number of bits that 16-bit photographs use; 0: detected

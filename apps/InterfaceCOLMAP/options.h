@@ -19,7 +19,7 @@ struct Options {
   std::filesystem::path other_image_folder;
   std::filesystem::path housing_file;  // empty: no housing
   std::filesystem::path point_cloud;   // for an export; empty: the scene's own points
-  bool allow_missing = false;          // go on if the housing gives no image a port
+  bool allow_missing = false;          // no error if the housing gives no image a port
   bool normalize = false;
   std::optional<bool> undistort;  // empty: only if no image is behind a port
 };

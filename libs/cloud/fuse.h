@@ -42,9 +42,10 @@ struct FusionProviders {
 };
 
 struct FuseOptions {
-  // The number of images that must agree on a point. The image of the point's first pixel counts as
-  // one of them. A value above the number of views is reduced to the number of views. With a value
-  // below 2 the maps are merged without tests: every valid pixel becomes a point with one view.
+  // The number of images that must agree on a point. The image whose pixel gives the point counts
+  // as one of them. A value above the number of views is reduced to the number of views. With a
+  // value below 2 the maps are merged without tests: every valid pixel becomes a point with one
+  // view.
   std::size_t min_views = 3;
   // Accepts a point on which only two images agree, if no other image disagrees and the point lies
   // in a piece of surface of both maps (see fuse). Has no effect for min_views up to 2.
@@ -113,9 +114,9 @@ PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
 
 // The sizes on which the memory of fusion depends.
 struct FusionSize {
-  std::uint64_t pixels = 0;  // of the largest map
+  std::uint64_t pixels = 0;  // number of pixels of the largest map
   std::uint64_t views = 0;
-  std::uint64_t maps = 0;  // in memory at the same time (FuseOptions::max_maps)
+  std::uint64_t maps = 0;  // number of maps in memory at the same time (FuseOptions::max_maps)
   bool colors = false;
 };
 

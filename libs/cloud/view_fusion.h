@@ -57,7 +57,7 @@ class ViewFusion {
   void estimate_errors(PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
-  std::vector<PixelPoints> where_;            // [0]: collected pixels; others: supports
+  std::vector<PixelPoints> where_;  // [0]: the collected pixels; [v]: supports in views_[v]
   std::vector<std::vector<Answer>> answers_;  // of each neighbour to each collected pixel
   std::vector<std::uint8_t> proved_by_two_;   // per collected pixel: two views are enough; or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])

@@ -14,9 +14,9 @@ namespace axial::densify {
 struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
   std::size_t decodes = 1;        // images that are decoded at the same time at the start
-  std::size_t cached_images = 0;  // entries of the ImageStore
-  std::size_t cached_depths = 0;  // depths of the previous stage, for geometric consistency
-  std::size_t cached_maps = 0;    // whole maps of the previous stage
+  std::size_t cached_images = 0;  // capacity of the ImageStore
+  std::size_t cached_depths = 0;  // StageRun::cached_depths (map_stages.h)
+  std::size_t cached_maps = 0;    // StageRun::cached_maps
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
   std::size_t exports = 1;        // images resampled at the same time by the pinhole export

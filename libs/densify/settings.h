@@ -41,10 +41,10 @@ struct Settings {
   std::vector<std::filesystem::path> other_inputs;  // the caller's files: never overwritten
 
   int ignore_mask_label = -1;  // below 0: no masks
-  int bit_depth = 0;           // of 16-bit images: 8 to 16; 0: detected
+  int bit_depth = 0;           // bits that 16-bit images use: 8 to 16; 0: detected
 
   CameraChoice camera = CameraChoice::automatic;
-  bool refractive = false;     // a housing is required
+  bool refractive = false;     // true: the run needs a housing
   bool allow_missing = false;  // no error if the housing gives no image a port
   ProjectionMethod projection = ProjectionMethod::exact;
 

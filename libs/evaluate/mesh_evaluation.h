@@ -25,8 +25,8 @@ inline constexpr std::array<double, 3> kNormalLimits{10, 20, 30};  // [degrees]
 // point, from 0 to 180 degrees. A face whose orientation is opposite to the truth has an angle of
 // more than 90 degrees.
 struct NormalErrors {
-  std::size_t count = 0;                              // angles; faces without area have none
-  double median = 0;                                  // [degrees]
+  std::size_t count = 0;  // number of angles; faces without area have none
+  double median = 0;      // [degrees]
   std::array<double, kNormalLimits.size()> within{};  // shares of angles up to kNormalLimits
 };
 

@@ -38,7 +38,7 @@ struct SceneOptions {
   std::string medium = "both";  // "air", "water" or "both"
   bool truth = true;            // keep true distances; true normals are always removed
   Words port;                   // options of the port: "--tilt-degrees", "3"
-  Words more;  // other options; they replace the fields above that have the same name
+  Words more;                   // more options; they take precedence over numbers and `truth`
 };
 // Returns the words of SimulateUnderwater's command line, without the output folder.
 Json to_json(const SceneOptions& options);

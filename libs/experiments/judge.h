@@ -43,7 +43,7 @@ Json to_json(const EvaluationOptions& options);
 // Fields of the result: "points", "mean", "median" and "variance" of the distances of the points to
 // the truth [m, m^2]; "recall" and "f_score" at the tolerance; and, if `picture_width` is above 0,
 // "picture" (PNG in base64). If there is nothing to measure, returns null with
-// `options.or_nothing`, and throws an Error without.
+// `options.or_nothing`, and otherwise throws an Error.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 

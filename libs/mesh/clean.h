@@ -14,7 +14,7 @@ struct CleanOptions {
   double spurious = 20;  // remove components with a diameter below this many mean edge lengths
   bool spikes = true;    // remove faces that hang on the mesh by one edge or one corner
   std::size_t close_holes = 30;  // close holes of at most this many edges; 0: none
-  unsigned smooth = 0;           // steps of smoothing
+  unsigned smooth = 0;           // number of smoothing steps
   double edge_length = 0;        // length of the edges after remeshing [m]; 0: no remeshing
 };
 
@@ -37,9 +37,8 @@ struct CleanReport {
 //
 // Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
 // neighbours. Vertices without faces are removed. Colours are lost. `report`: may be null. The
-// result does not depend on the number of threads. Throws an Error if every face of `mesh` names a
-// vertex twice or `mesh` has no faces, if the steps leave no face, or if remeshing would make more
-// than 2^28 faces.
+// result does not depend on the number of threads. Throws an Error if no face of `mesh` has three
+// different vertices, if the steps leave no face, or if remeshing would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 }  // namespace axial::mesh

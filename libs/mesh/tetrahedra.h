@@ -11,7 +11,7 @@
 namespace axial::mesh {
 
 // The tetrahedra fill the convex hull of the points. In addition, an infinite tetrahedron lies
-// outside of each facet of the hull. One of its corners is at infinity.
+// outside of each facet of the hull. One corner of an infinite tetrahedron is at infinity.
 struct Tetrahedra {
   static constexpr std::uint32_t kInfinity = 0xFFFFFFFFu;  // the corner at infinity
   using Four = std::array<std::uint32_t, 4>;

@@ -30,8 +30,8 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
                        const io::Housing& housing);
 
 // Two RMS reprojection errors [px] of the tracks of a model: with its cameras behind their ports,
-// and with the same cameras in air. The poses were computed with the cameras that have the smaller
-// error. Both are 0 if the model has no tracks.
+// and with the same cameras in air. The smaller error belongs to the cameras with which the poses
+// were computed. Both are 0 if the model has no tracks.
 struct PortFit {
   double behind_ports = 0, in_air = 0;
 };

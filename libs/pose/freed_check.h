@@ -16,7 +16,7 @@ namespace axial::pose {
 struct FreedNumber {
   std::string name, unit;
   double stated = 0, found = 0;          // [unit]
-  double rms_stated = 0, rms_found = 0;  // [px]
+  double rms_stated = 0, rms_found = 0;  // RMS reprojection errors with either value [px]
   double deviations = 0;                 // |found - stated| in standard deviations
 };
 
@@ -48,8 +48,8 @@ std::string warning_of(const FreedNumber& freed, double scale_sigma,
 
 // One line for each reason that dropped more than a quarter of the observations. Observations
 // that repeat a point in an image are not counted. Only the line about large errors asks the user
-// to check the housing. Too few observations in an image and narrow angles are properties of the
-// survey.
+// to check the housing, because the other reasons (few observations in an image, narrow angles) are
+// properties of the survey.
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits);
 
 }  // namespace axial::pose

@@ -37,8 +37,8 @@ struct RefineReport {
 // - Three or more known positions place the bundle by a similarity.
 // - The first known distance scales the bundle.
 // - Otherwise a short adjustment is tried for a series of median scene distances from 0.25 to 16
-//   m, and the scale with the smallest error is taken. Refraction depends on the distance in
-//   metres.
+//   m, and the scale with the smallest error is taken. The errors differ because refraction depends
+//   on the distance in metres.
 //
 // Throws an Error if the first known distance is zero in the model, or if it names a point that the
 // bundle does not have.

@@ -10,7 +10,7 @@ namespace axial::refine {
 
 struct Sizes {
   std::uint64_t vertices = 0, faces = 0, views = 0;
-  std::uint64_t pixels = 0;  // of the largest view
+  std::uint64_t pixels = 0;  // number of pixels of the largest view
 };
 
 // Returns the number of views whose VertexImages are kept in memory: the largest number for which
