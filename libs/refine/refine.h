@@ -21,8 +21,8 @@
 // w: the inverse of the variance of the residuals in the window. So windows that look different in
 // the two views, for example because of occlusion, count little.
 // o_v: the signed distance along the normal from the vertex's first position to its position before
-// the step. The first position is the vertex's position before the first step; it is a measurement,
-// too.
+// the step. The first position is the vertex's position before the first step. It counts as a
+// measurement.
 // a_v: the weight of the first position. The weight grows with the information of the photographs
 // on the vertex, and is small where the photographs contradict the first position (anchor.h).
 // s: a factor that is less than one at edges of the surface (system.h).
