@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result of a calibration, for the log and as JSON.
+// Reports the result of a calibration, as lines for the log and as JSON.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@
 
 namespace axial::apps {
 
-// The table of photographs and the calibrated numbers for the log, one entry for each line.
+// Returns the lines for the log: the table of photographs and the calibrated numbers. `port_name`:
+// the name of the port in the housing file.
 std::vector<std::string> report_lines(const calibrate::Calibration& calibration,
                                       const std::string& port_name);
 
-// The same numbers as JSON, with the photographs that are left out, what the photographs lack, and
-// the next photograph to take.
+// Returns the same numbers as JSON, and also the photographs that are left out, the gaps of the
+// photographs (calibrate/advice.h), and the next photograph to take.
 std::string report_json(const calibrate::Calibration& calibration, const calibrate::Limits& limits);
 
 }  // namespace axial::apps

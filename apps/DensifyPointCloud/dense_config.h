@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --dense-config-file: OpenMVS's file of settings that have no option, one "Title = value" a line.
+// The file of --dense-config-file: OpenMVS's settings that have no option. Each line has the form
+// "Title = value".
 #pragma once
 
 #include <filesystem>
@@ -8,11 +9,12 @@
 
 namespace axial::apps {
 
-// Sets the values that the file names. Logs one line each for titles that are unknown (a warning),
-// for titles that have no effect here, and for titles of options; options take precedence, as in
-// OpenMVS. Section lines "[...]", braces, and comments after '#' or ';' are ignored. If the file
-// does not exist, it is written with the current values, as OpenMVS does. Error that names file and
-// line for a line without '=', and for a value that is no number or out of range.
+// Sets the values that the file names. If the file does not exist, it is written with the current
+// values, as OpenMVS does. Section lines "[...]", braces, and comments after '#' or ';' are
+// ignored. The log gets one line each for unknown titles (a warning), for titles that have no
+// effect in this program, and for titles whose setting has an option. In the last case the option
+// takes precedence, as in OpenMVS. Error that names file and line for a line without '=', and for a
+// value that is no number or out of range.
 void apply_dense_config(const std::filesystem::path& file, densify::Settings& settings);
 
 }  // namespace axial::apps

@@ -6,8 +6,9 @@
 
 namespace axial::apps {
 
-// The option for a field of densify::Settings, for Settings::name_of: "--max-memory" for
-// "max_memory". For a field with a value, the option with its value.
+// Returns the option that sets a field of densify::Settings: "--max-memory" for "max_memory". For a
+// field with a value ("make_maps false"), returns the option with the value. Used as
+// Settings::name_of.
 std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

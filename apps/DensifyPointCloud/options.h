@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DensifyPointCloud's options: OpenMVS's options with the same names and defaults, except --iters
-// (2; OpenMVS: 3), --postprocess-dmaps (3; OpenMVS: 7) and --tower-mode (0; OpenMVS: 4), and the
-// options for refraction.
+// DensifyPointCloud's options: the options of OpenMVS with the same names, and the options for
+// refraction. Three defaults differ from OpenMVS: --iters (2; OpenMVS: 3), --postprocess-dmaps (3;
+// OpenMVS: 7) and --tower-mode (0; OpenMVS: 4).
 #pragma once
 
 #include "base/program.h"

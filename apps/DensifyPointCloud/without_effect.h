@@ -6,11 +6,12 @@
 
 namespace axial::apps {
 
-// Warns, in one line for each cause, of given options that have no effect because of other given
-// options. OpenMVS's options that never have an effect here are reported in options.cpp.
+// Warns of given options that have no effect because of other given options. There is one line for
+// each cause. Options of OpenMVS that never have an effect in this program are reported elsewhere,
+// by parse_command_line().
 void warn_of_options_without_effect(const Options& options);
 
-// The same for options that have no effect on this scene, for example in air.
+// Warns of given options that have no effect on the scene, for example because it is in air.
 void warn_of_options_without_effect(const Options& options, const densify::SceneFacts& facts);
 
 }  // namespace axial::apps

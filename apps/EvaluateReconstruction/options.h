@@ -15,26 +15,27 @@ struct Options {
   std::filesystem::path input, truth;
   std::vector<double> tolerances;   // [m], at least one
   std::string align = "none";       // none, centres, icp
-  bool allow_missing = false;       // go on if the housing gives no image a port
+  bool allow_missing = false;       // no error if the housing gives no image a port
   std::filesystem::path cameras;    // true COLMAP model; empty: none
-  std::filesystem::path housing;    // ports of `cameras`; empty: dry
+  std::filesystem::path housing;    // ports of `cameras`; empty: no ports
   std::filesystem::path estimated;  // estimated COLMAP model; empty: none
   // The folders with the models of `cameras` and `estimated`; filled by the program.
   std::filesystem::path cameras_model, estimated_model;
   std::size_t samples = 200000;
   std::uint64_t seed = 1;
   std::uint32_t least_views = 2;
-  bool framed_only = false;
-  double gross = 0;      // [m]; 0: four times the first tolerance
-  bool strip = false;    // evaluate the density along the strip of cameras
-  double color_max = 0;  // [m]
+  bool framed_only = false;  // evaluate only the points inside the images of least_views cameras
+  double gross = 0;          // evaluate::CloudOptions::gross [m]
+  bool strip = false;        // evaluate the density along the strip of cameras
+  double color_max = 0;      // error of the last colour [m]
   int picture_width = 1024;
   std::string picture_camera;  // image name; empty: the first image
-  // Outputs; empty: not written.
+  // Output files. An empty path: the file is not written.
   std::filesystem::path json, error_cloud, picture, aligned, transform;
 };
 
-// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+// Parses and checks the command line. Error for an unknown option and for a wrong value.
+// `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace axial::apps

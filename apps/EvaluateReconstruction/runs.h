@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The evaluation of a cloud or mesh, and of a depth map. Both print their table, write the files
-// that the options name, and return the content of the JSON file.
+// The evaluation of a cloud or mesh (run_cloud), and of a depth map (run_depth_map). Both functions
+// print their tables, write the files that the options name, and return the content of the JSON
+// file.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

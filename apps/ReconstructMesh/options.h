@@ -15,14 +15,15 @@ struct Options {
   ParsedOptions parsed;
   io::SceneFiles scene;
   std::filesystem::path cloud;   // empty: <scene>.ply if it exists, otherwise the scene's points
-  std::filesystem::path mesh;    // empty: reconstruct; otherwise clean this mesh
+  std::filesystem::path mesh;    // mesh to clean; empty: reconstruct a mesh
   std::filesystem::path output;  // .ply or .obj
   double roi_border = 0;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
   mesh::ReconstructOptions reconstruct;
 };
 
-// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+// Parses and checks the command line. Error for an unknown option and for a wrong value.
+// `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace axial::apps

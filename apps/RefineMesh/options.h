@@ -14,15 +14,16 @@ namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  densify::Settings scene;       // scene, images, masks, cameras and memory
+  densify::Settings scene;       // settings of the scene, images, masks, cameras and memory
   std::filesystem::path mesh;    // .ply
   std::filesystem::path output;  // .ply or .obj
-  double decimate = 1;           // part of the faces to keep before refining
-  mesh::CleanOptions cleaning;   // of the refined mesh
+  double decimate = 1;           // fraction of the faces that are kept before refining
+  mesh::CleanOptions cleaning;   // for the refined mesh
   refine::Options refine;
 };
 
-// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+// Parses and checks the command line. Error for an unknown option and for a wrong value.
+// `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace axial::apps

@@ -15,22 +15,23 @@ struct Options {
   ParsedOptions parsed;
   std::filesystem::path model;    // COLMAP folder
   std::filesystem::path lens;     // COLMAP cameras in air: a file or a model's folder
-  std::filesystem::path housing;  // file
-  std::filesystem::path output;   // folder
+  std::filesystem::path housing;  // housing file
+  std::filesystem::path output;   // output folder
   bool underwater = false;        // also write the model for COLMAP-Underwater
   std::string poses = "adjust";   // "adjust" or "known"
-  bool allow_missing = false;     // go on without a known scale that cannot be used
+  bool allow_missing = false;     // no error if the known scale cannot be used
   std::string scale_from;         // see scale_from.h; empty: refraction alone determines the scale
-  double scale_sigma = 0.001;     // [m]
-  std::string refine_list;        // see pose/free_numbers.h
+  double scale_sigma = 0.001;     // standard deviation of the known lengths [m]
+  std::string refine_list;        // `refine` of pose::set_free_numbers()
   pose::Sigmas sigmas;
   pose::RefineOptions refine;
 };
 
-// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+// Parses and checks the command line. Error for an unknown option and for a wrong value.
+// `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
-// The option for a setting of pose::set_free_numbers.
+// Returns the option that sets `setting`, a setting of pose::set_free_numbers.
 std::string option_of(std::string_view setting);
 
 }  // namespace axial::apps

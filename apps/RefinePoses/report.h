@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result of a refinement, for the log and as JSON.
+// Reports the result of a refinement, as lines for the log and as JSON.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace axial::apps {
 
-// The RMS errors of one image [px], before and after.
+// The RMS reprojection errors of one image [px], before and after the refinement.
 struct ImageErrors {
   std::string name;
   std::size_t observations = 0;
@@ -25,20 +25,22 @@ struct Results {
   const pose::Bundle& bundle;
   std::vector<std::string> ports;  // one for each camera
   const pose::AdjustOptions& options;
-  // Input that was given but not used, one entry for each line. `scale_lost`: the known scale was
-  // not used. Then the scale counts as not known, even where refraction determines it.
+  // unused: input that was given but not used, as lines. scale_lost: the known scale is among this
+  // input. In this case the scale is reported as not known, even if refraction determines it.
   std::vector<std::string> unused;
   bool scale_lost = false;
 };
 
-// The table of errors for the log, one entry for each line.
+// Returns the table of errors as lines for the log.
 std::vector<std::string> error_lines(const Results& results);
 
-// The standard deviations of numbers and lengths, one entry for each line.
+// Returns the standard deviations of the free numbers and of lengths as lines for the log. `known`:
+// the standard deviations of the refinement.
 std::vector<std::string> uncertainty_lines(const Results& results, const pose::Uncertainty& known);
 
-// Numbers that are not known are null. Without `known` all standard deviations are null, and the
-// report says that they are missing.
+// Returns the report as JSON. Numbers that are not known are null. If `known`, the standard
+// deviations of the refinement, is null, all standard deviations are null, and the report says that
+// they are missing.
 std::string report_json(const Results& results, const pose::Uncertainty* known);
 
 }  // namespace axial::apps

@@ -13,27 +13,28 @@ namespace axial::apps {
 
 struct Arguments {
   std::string experiment, output, page;
-  std::string part;  // computes only the parts whose names begin with it
+  std::string part;  // compute only the parts whose names begin with this text
   bool quick = false;
-  experiments::CompletenessOptions completeness;  // for the experiment of that name
+  experiments::CompletenessOptions completeness;  // for the experiment `completeness`
   std::string seeds, scene_options, dense_options, work;
 };
 
-// The options of ReproducePaper, bound to `a`.
+// Returns the options of ReproducePaper. Parsing the options fills `a`.
 ProgramOptions describe(Arguments& a);
 
-// Whether the experiment is `completeness`. Its tables are also printed.
+// Whether the experiment is `completeness`. The tables of this experiment are also printed.
 bool is_completeness(const Arguments& a);
 
 // Warns of each option that has no effect on the experiment.
 void warn_of_no_effect(const Arguments& a, const ParsedOptions& parsed);
 
-// The experiment of `a`, or all experiments. Error that names the option and its value.
+// Returns the experiment that `a` names, or all experiments. Error that names the option and its
+// value if `a` names no experiment or has a wrong value.
 std::vector<experiments::Experiment> chosen_experiments(const Arguments& a,
                                                         const CommonOptions& common);
 
 // The folder of all results. A quick run has its own folder inside the output folder, so that it
-// neither removes files of a full run nor replaces its results.
+// does not remove or replace the results of a full run.
 std::filesystem::path results_folder(const Arguments& a, const CommonOptions& common);
 
 // The folder of an experiment's intermediate files, which is removed when the experiment is

@@ -19,18 +19,19 @@ struct Arguments {
   double port_distance = 0, port_thickness = 0, tilt_degrees = 0, n_glass = 1, n_water = 1;
 };
 
-// The options of SimulateUnderwater, bound to `a`.
+// Returns the options of SimulateUnderwater. Parsing the options fills `a`.
 ProgramOptions describe(Arguments& a);
 
-// Error that names the option and its value.
+// Checks the values of the options. Error that names the option and its value.
 void check(const Arguments& a);
 
-// Gives the preset the lens of --lens. Error for an unknown model, a wrong number of coefficients,
-// and a lens that does not fill its image.
+// Replaces the preset's lens by the lens of --lens, if this option is given. Error for an unknown
+// model, for a wrong number of coefficients, and for a lens that has no ray at a pixel of the
+// image's border.
 void apply_lens_option(simulate::Preset& preset, const Arguments& a);
 
-// Sets the given properties of the preset's port, or replaces the port by a water surface. Error
-// for options that contradict each other.
+// Sets the properties of the preset's port for which options are given, or replaces the port by a
+// water surface. Error for options that contradict each other.
 void apply_port_options(simulate::Preset& preset, const Arguments& a, const ParsedOptions& parsed);
 
 }  // namespace axial::apps

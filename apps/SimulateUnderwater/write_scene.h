@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes the simulator's data as the project's files.
+// Writes the data of the simulator in the file formats of the project.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,25 @@
 
 namespace axial::apps {
 
-// "0007": the common name of an image, its truth and its entry in the sparse model.
+// Returns the name, such as "0007", that the files of a view and its image in the sparse model have
+// without extension.
 std::string view_name(std::size_t view);
 
-// <folder>/{cameras,images,points3D}.txt: one camera, the true poses and observations.
+// Writes a COLMAP model with one camera, the true poses and the true observations: cameras.txt,
+// images.txt and points3D.txt in `folder`.
 void write_sparse_model(const std::filesystem::path& folder, const simulate::Lens& lens,
                         std::span<const simulate::View> views,
                         std::span<const simulate::SparsePoint> points);
 
-// One port, "main", for every image, or the water surface.
+// Writes a housing file with one port, "main", for every image: the preset's port, or the water
+// surface.
 void write_port(const std::filesystem::path& file, const simulate::Preset& preset);
 
-// With a vertex property `thickness` [m] if the mesh has thicknesses.
+// Writes a PLY file. If the mesh has thicknesses, they are the vertex property `thickness` [m].
 void write_mesh(const std::filesystem::path& file, const simulate::TriangleMesh& mesh);
 
-// <folder>/<name>.{distance,normal}.tiff
+// Writes the true distances to <folder>/<name>.distance.tiff, and the true normals to
+// <folder>/<name>.normal.tiff.
 void write_truth(const std::filesystem::path& folder, const std::string& name,
                  const simulate::Truth& truth);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The photographs of the scene that are used, with their masks.
+// The photographs that give the mesh its colours, with their masks.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@ namespace axial::apps {
 
 class Photographs {
  public:
-  // Finds the calibrated images of `scene`, or those that Settings::views_file names, and their
-  // masks, and reads the headers of the files. Error for a missing image, an image of another shape
-  // than its camera's, a missing mask in Settings::mask_folder, and a line of the views file that
-  // names no image.
+  // Finds the used images and their masks, and reads the headers of the files. The used images are
+  // all calibrated images of `scene`, or only the images that Settings::views_file names. Error for
+  // a missing image, an image of another shape than its camera's, a missing mask in
+  // Settings::mask_folder, and a line of the views file that names no image.
   Photographs(const Scene& scene, const Settings& settings);
 
   const std::vector<texture::View>& views() const { return views_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TextureMesh's options: OpenMVS's options with the same names and defaults, except
-// --sharpness-weight, and the options for refraction.
+// TextureMesh's options: the options of OpenMVS with the same names and defaults, and the options
+// for refraction. Only --sharpness-weight has another default.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +14,18 @@
 
 namespace axial::apps {
 
-// What marks pixels that must not be used.
+// How pixels are found that must not be used.
 enum class MaskChoice {
-  label,         // the masks' pixels with Settings::mask_label
-  black_border,  // the black borders that undistortion leaves
-  none
+  label,         // pixels whose label in the image's mask is Settings::mask_label
+  black_border,  // pixels of the black borders that undistortion leaves
+  none           // all pixels are used
 };
 
 struct Settings {
   io::SceneFiles scene;
   std::filesystem::path mesh, output;  // the extension of the output is .mvs, as in OpenMVS
   std::vector<io::TexturedFormat> formats;
-  std::filesystem::path views_file;   // empty: all views
+  std::filesystem::path views_file;   // list of the images to use; empty: all
   std::filesystem::path mask_folder;  // empty: masks of the scene, or beside the images
   MaskChoice masks = MaskChoice::black_border;
   int mask_label = 0;
@@ -40,7 +40,7 @@ struct Options {
 };
 
 // Parses and checks the command line. Error for an unknown option, for a value out of range, and
-// for an option of OpenMVS that is not built, unless it has its default.
+// for an option of OpenMVS that TextureMesh does not have, unless it has its default value.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace axial::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The similarity that the options demand.
+// Finds the similarity by which the options move the scene.
 #pragma once
 
 #include "io/openmvs/scene_with_cameras.h"
@@ -8,12 +8,12 @@
 
 namespace axial::apps {
 
-// Returns the map from the scene's frame to the frame that the moved scene will have. Logs how it
-// was found. Errors name the file.
+// Returns the map from the frame of the scene to the frame of the moved scene. Logs how the map was
+// found. Errors name the file from which the map follows (Options::align, transform or positions).
 FrameMove find_move(const Options& options, const io::SceneWithCameras& scene);
 
-// Error if the map changes the scale of a scene whose cameras carry ports, unless
-// options.scale_ports.
+// Error if `similarity` changes the scale and a camera of the scene has a flat port or a dome. No
+// error if options.scale_ports is set.
 void check_scale(const Options& options, const io::SceneWithCameras& scene,
                  const Similarity& similarity);
 

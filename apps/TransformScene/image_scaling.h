@@ -8,11 +8,12 @@
 
 namespace axial::apps {
 
-// Writes images whose longest side is longer than `max_resolution` [px] in a smaller size to
-// `folder`, with their paths below the folder that all images have in common, and sets the paths
-// and cameras of `scene` accordingly. JPEG files with 8 bits stay JPEG, other files become PNG. All
-// other images and all masks stay where they are. Error for an image that cannot be read or that
-// has transparent pixels, and if an output would replace an image of the scene.
+// Reduces each image whose longer side exceeds `max_resolution` [px] to this length. Writes the
+// smaller image to `folder`, and sets the path and the camera of the image in `scene`. The path in
+// `folder` is the image's path below the deepest common folder of all images. JPEG files with 8
+// bits stay JPEG, other files become PNG. All other images and all masks stay where they are. Error
+// for an image that cannot be read or that has transparent pixels, and if an output would replace
+// an image of the scene.
 void shrink_images(unsigned max_resolution, const std::filesystem::path& folder, Scene& scene);
 
 }  // namespace axial::apps

@@ -7,8 +7,9 @@
 
 namespace axial::apps {
 
-// Logs the volume of the mesh of the options after `move`. `scene`: after it, in move.to. Error
-// that names the mesh if its volume is not determined.
+// Logs the volume that options.mesh has after `move`. `scene`: the moved scene, in the frame
+// move.to. Error that names the mesh if the volume is not defined, for example because the mesh is
+// not closed and no ground plane is used.
 void measure_volume(const Options& options, const Scene& scene, const FrameMove& move);
 
 }  // namespace axial::apps

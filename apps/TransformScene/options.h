@@ -13,21 +13,22 @@ struct Options {
   ParsedOptions parsed;
   io::SceneFiles files;  // the scene and its housing
   std::filesystem::path cloud, mesh, output;
-  // At most one of these says how to move.
+  // The three ways to move the scene. At most one of these files is given.
   std::filesystem::path align, transform, positions;
-  bool rigid = false;        // align without scale
-  bool scale_ports = false;  // lengths of ports change with the scale
+  bool rigid = false;        // align without a change of scale
+  bool scale_ports = false;  // the lengths of ports change with the scale
   std::filesystem::path transform_out;
   bool compute_volume = false;
-  double plane_threshold = 0;  // [m]; 0: automatic, negative: no ground plane
-  int up_axis = 2;
-  unsigned max_resolution = 0;  // 0: images stay
+  double plane_threshold = 0;   // GroundOptions::threshold [m]; negative: no ground plane
+  int up_axis = 2;              // GroundOptions::up_axis
+  unsigned max_resolution = 0;  // longest side of an image [px]; 0: images stay as they are
 
   bool moves() const { return !align.empty() || !transform.empty() || !positions.empty(); }
   bool writes_scene() const { return moves() || max_resolution > 0; }
 };
 
-// Parses and checks the command line. `parsed.run` is false if nothing is left to do.
+// Parses and checks the command line. Error for an unknown option and for a wrong value.
+// `parsed.run` is false if nothing is left to do, for example after --help.
 Options parse_command_line(int argc, const char* const* argv);
 
 }  // namespace axial::apps

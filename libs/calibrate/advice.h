@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the photographs of a calibration suffice, and which photograph to add if they do not.
+// Decides whether the photographs of a calibration are sufficient, and otherwise which photograph
+// to add.
 #pragma once
 
 #include <array>
@@ -21,20 +22,22 @@ struct Limits {
   double thickness = 0.002;  // [m]
 };
 
-// The gaps of the photographs. Each text continues the sentence "no photograph shows". There are
-// three kinds of gaps: corners near an edge of the image, a tilted board, and a second distance.
-// Empty if there is no gap.
+// Returns the gaps of the photographs as texts. Each text continues the sentence "no photograph
+// shows". A gap is one of three: no corners near an edge of the image, no tilted board, or no
+// second distance. Empty if there is no gap.
 std::vector<std::string> gaps(const Calibration& calibration);
 
-// The most useful next photograph. The candidates are placed_boards(). Let the ratio of a number be
-// its standard deviation with the candidate added, divided by the limit of the number. The result
-// is the candidate with which the largest ratio is smallest. No candidate is closer than 0.8 times
-// the distance of the nearest board in the photographs, because a closer board may be out of focus.
-// Empty if no candidate fits into the image, or if no candidate gives a finite largest ratio.
 struct NextPhotograph {
   PlacedBoard board;
   pose::HousingChange<double> sigmas;  // standard deviations with this photograph added
 };
+
+// Returns the most useful next photograph. The candidates are placed_boards() (placed_board.h). Let
+// the ratio of a number be its standard deviation with the candidate added, divided by the limit of
+// the number. The result is the candidate with the smallest largest ratio. No candidate is closer
+// than 0.8 times the distance of the nearest board in the photographs, because a closer board may
+// be out of focus. Empty if no candidate fits into the image, or if no candidate gives a finite
+// largest ratio.
 std::optional<NextPhotograph> next_photograph(const Calibration& calibration, const Limits& limits);
 
 // Throws an Error if a number has a standard deviation above its limit. The message names the
@@ -42,7 +45,7 @@ std::optional<NextPhotograph> next_photograph(const Calibration& calibration, co
 // of the photographs, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
-// The place of the board in one image.
+// The place of the board in one image of a bundle.
 struct BoardPlace {
   double distance = 0;      // from the camera to the board's middle [m]
   double tilt_degrees = 0;  // angle between the board and the image plane

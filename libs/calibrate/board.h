@@ -18,7 +18,7 @@ struct Board {
   int columns = 0, rows = 0;
   double size = 0;         // side of a square, or of a tag with its black border [m]
   double second = 0;       // ChArUco: side of a marker. AprilTags: gap between tags [m]
-  std::string dictionary;  // of the markers, with OpenCV's name: "4X4_50", "APRILTAG_36h11"
+  std::string dictionary;  // OpenCV's name of the set of markers: "4X4_50", "APRILTAG_36h11"
 };
 
 // Reads a board from a text of one of these forms, with lengths in metres:

@@ -9,9 +9,9 @@ namespace axial::calibrate {
 
 // Sets the poses of the images of `bundle` so that the board's corners fit best. The port is not
 // changed. First the rays in water are treated as if they met in one point, and a perspective pose
-// problem is solved. Then the pose is adjusted by exact projection. The perspective problem of a
-// plane may have two similar solutions, and both are tried. An image whose corners do not determine
-// a pose keeps its pose and loses its observations.
+// problem is solved. A plane may have two similar perspective poses. In this case both are tried.
+// Then the pose is adjusted by exact projection. An image whose corners do not determine a pose
+// keeps its pose and loses its observations.
 void place_boards(pose::Bundle& bundle);
 
 }  // namespace axial::calibrate

@@ -12,7 +12,7 @@ struct CalibrateOptions {
   // The unknown numbers and the standard deviations of their measurements. calibrate() sets
   // adjust.points_known.
   pose::AdjustOptions adjust;
-  double max_error = 4;  // corners with larger errors are dropped [px of the photograph]
+  double max_error = 4;  // corners with larger reprojection errors are dropped [px]
 };
 
 struct Calibration {
@@ -32,9 +32,9 @@ struct Calibration {
 // Adjusts the board poses and the unknown numbers of the port. Minimises the squared reprojection
 // errors of the corners (exact projection, Huber loss). The adjustment starts from `port`. The
 // poses need no initial values. `corners`: the corners of the board [m], in the order of their
-// numbers. A photograph is used if it shows 8 corners or more, if these determine its pose, and if
-// 8 corners or more fit. Throws an Error if fewer than 3 photographs can be used. Whether the
-// result is precise enough is checked separately (advice.h).
+// numbers. A photograph is used if it shows 8 corners or more, if its corners determine its pose,
+// and if 8 corners or more have an error of at most max_error. Throws an Error if fewer than 3
+// photographs can be used. Whether the result is precise enough is checked separately (advice.h).
 Calibration calibrate(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                       std::span<const View> views, std::span<const Eigen::Vector3d> corners,
                       const CalibrateOptions& options);

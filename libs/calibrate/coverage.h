@@ -7,8 +7,9 @@
 
 namespace axial::calibrate {
 
-// A drawing (SVG) of the corners' places in the image: one dot for each corner, with a colour for
-// its reprojection error, and the number of corners in each field of a grid.
+// Returns a drawing (SVG) of the places of the corners in the image. Each corner is a dot, whose
+// colour shows the corner's reprojection error. The drawing also shows the number of corners in
+// each cell of a grid.
 std::string coverage_svg(const Calibration& calibration);
 
 }  // namespace axial::calibrate

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The information that photographs of a board give about the camera. The board is known, and each
-// photograph has a pose of its own. So the information of several photographs is the sum of the
-// information of each.
+// The information that photographs of a board give about the camera. The information of several
+// photographs is the sum of the information of each, because the board is known and each photograph
+// has a pose of its own.
 #pragma once
 
 #include "pose/adjust.h"
@@ -12,7 +12,8 @@ namespace axial::calibrate {
 // the covariance of the numbers.
 using Information = Eigen::Matrix<double, pose::kHousingNumbers, pose::kHousingNumbers>;
 
-// The information of the observations of one image, for noise of 1 px. The pose is eliminated.
+// The information of the observations of one image, for noise of 1 px. The pose of the image is
+// unknown and eliminated.
 Information information(const pose::Bundle& bundle, std::size_t image);
 
 // The sum of two parts: the information of all images for noise of `pixel_sigma` [px], and the

@@ -13,7 +13,7 @@ namespace axial::calibrate {
 // the dictionary has too few markers for `board`.
 void check_markers(const Board& board, const std::string& where);
 
-// As corners_of and find_corners, for boards of markers.
+// The same as corners_of() and find_corners() (board.h), for ChArUco and AprilTags.
 std::vector<Eigen::Vector3d> marker_board_corners(const Board& board);
 std::vector<Corner> find_marker_corners(const cv::Mat1b& photograph, const Board& board);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs of a board under water: which files they are, and where the board is in them.
+// Photographs of a board under water: finds the files, and the corners of the board in each
+// photograph.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +22,7 @@ std::vector<std::filesystem::path> photographs_in(std::span<const std::filesyste
 // Finds the corners of the board in every photograph. Returns one view per photograph, in the order
 // of `photographs`. A view has the name of the photograph's file, and no corners if the board is
 // not found. Throws an Error that names the first photograph that cannot be read or differs in size
-// from the lens. `bit_depth` and `bit_depth_name` (its name in messages): as for
+// from the lens. `bit_depth`, and `bit_depth_name`, its name in messages: as for
 // io::common_bit_depth.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
                              const io::ColmapCamera& lens, int bit_depth = 0,

@@ -13,8 +13,8 @@ namespace axial::calibrate {
 struct PlacedBoard {
   int column = 0, row = 0;  // in the image: -1 left or top edge, 0 middle, 1 right or bottom
   double distance = 0;      // of the board's middle along the optical axis [m]
-  int turned = 0;           // 0: faces the camera; -1, 1: left, right side nearer
-  int tipped = 0;           // -1, 1: upper, lower side nearer
+  int turned = 0;           // -1: the left side is nearer, 1: the right side; 0: neither
+  int tipped = 0;           // -1: the upper side is nearer, 1: the lower side; 0: neither
   Pose pose;
   std::vector<Corner> corners;  // all corners of the board, in the photograph
 };

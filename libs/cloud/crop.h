@@ -5,8 +5,8 @@
 
 namespace axial::cloud {
 
-// Removes the points outside `region`. The other points keep their order and attributes. Returns
-// the number of removed points.
+// Removes the points outside `region`, which is in the frame of the cloud. The other points keep
+// their order and attributes. Returns the number of removed points.
 std::size_t crop(PointCloud& cloud, const OrientedBox& region);
 
 }  // namespace axial::cloud

@@ -20,17 +20,20 @@ namespace axial::cloud {
 // One image that has a depth map.
 struct FusionView {
   std::uint32_t image = 0;  // index into Scene::images
-  // Images whose pixels may support the points of this view, best first (filter_neighbours). Images
-  // that have no FusionView of their own are ignored.
+  // Images whose pixels may support the points of this view, best first: the result of
+  // filter_neighbours (scene/view_selection.h). Images that have no FusionView of their own are
+  // ignored.
   std::vector<std::uint32_t> neighbours;
   // Views are fused in decreasing order of rank. Views of equal rank are fused in the order of
-  // `image`. The rank is the number of neighbours before filter_neighbours.
+  // `image`. The caller sets the rank to the number of neighbours of the image before
+  // filter_neighbours.
   std::size_t rank = 0;
 };
 
-// Functions that load the inputs. Both are called with an index into Scene::images, as late as
-// possible, from at most FuseOptions::max_loads threads. A view is loaded once. Exception: if
-// max_maps is so small that the map of the view is evicted, the view is loaded again.
+// Functions that load the inputs. `image` is an index into Scene::images. Up to
+// FuseOptions::max_loads threads call the functions at the same time. A view is loaded when fusion
+// first needs it. It is loaded again only if FuseOptions::max_maps is so small that its map had to
+// be freed.
 struct FusionProviders {
   std::function<DepthMap(std::size_t image)> load_map;
   // Returns the image in B G R at the depth map's size. If the function is empty, the cloud has no
@@ -39,26 +42,29 @@ struct FusionProviders {
 };
 
 struct FuseOptions {
-  // The number of images that must agree on a point. The image of the point's first pixel counts as
-  // one of them. A value above the number of views is reduced to the number of views. With a value
-  // below 2 the maps are merged without tests: every valid pixel becomes a point with one view.
+  // The number of images that must agree on a point. The image whose pixel gives the point counts
+  // as one of them. A value above the number of views is reduced to the number of views. With a
+  // value below 2 the maps are merged without tests: every valid pixel becomes a point with one
+  // view.
   std::size_t min_views = 3;
-  // Only for min_views above 2. Two images are enough if no other image disagrees and both maps
-  // pass the test for surfaces (see fuse).
+  // Accepts a point on which only two images agree, if no other image disagrees and the point lies
+  // in a piece of surface of both maps (see fuse). Has no effect for min_views up to 2.
   bool two_if_undisputed = true;
-  double depth_threshold = 0.005;                             // relative, along the neighbour's ray
-  double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // [rad]
+  // Depths agree if their difference is below this fraction of the point's depth. Both are measured
+  // along the neighbour's ray.
+  double depth_threshold = 0.005;
+  double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // largest angle that agrees [rad]
   bool normals = true;                                        // fill PointCloud::normals
   bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
   // Limits of memory (see bytes_needed). The cloud does not depend on them. max_maps: the number of
-  // maps in memory at the same time; if it is too small for a view and its neighbours, these maps
-  // are in memory all the same. max_loads: the number of simultaneous calls of the providers.
+  // maps in memory at the same time. A view and its neighbours are always in memory together, even
+  // if they are more than max_maps. max_loads: the number of simultaneous calls of the providers.
   std::size_t max_maps = std::numeric_limits<std::size_t>::max();
   std::size_t max_loads = 1;
 };
 
-// Adds the points of `portion` to `cloud`. Preconditions: both have the same attributes, and the
+// Appends the points of `portion` to `cloud`. Preconditions: both have the same attributes, and the
 // view_begin of an empty `cloud` is {0}.
 void append(PointCloud& cloud, const PointCloud& portion);
 
@@ -77,27 +83,27 @@ using CloudSink = std::function<void(PointCloud portion)>;
 //   is outside its image, its map has no depth there, or its depth is smaller, so that the point is
 //   hidden behind its surface.
 // * The point is accepted if min_views images agree. The view itself counts as one image. A
-//   neighbour counts if it agrees and its pixel is not used yet. With `two_if_undisputed` one such
-//   neighbour is enough under two conditions: no neighbour disagrees, and two pixels lie in a piece
-//   of surface of their maps. These are the pixel itself and its counterpart in the first neighbour
-//   that agrees.
-// * A pixel lies in a piece of surface if, of the eight pixels at a distance of two, at least four
-//   lie on the tangent plane of the pixel and at most three do not. Pixels without a depth do not
-//   count. A pixel lies on the tangent plane if its point is nearer to the plane than half of
-//   depth_threshold times the depth of the pixel in the middle.
+//   neighbour counts if it agrees and its pixel is not used yet. With `two_if_undisputed` one
+//   neighbour that counts is enough under three conditions: no neighbour disagrees, the pixel lies
+//   in a piece of surface of its map, and the nearest pixel in the first neighbour that agrees lies
+//   in a piece of surface of the neighbour's map.
+// * A pixel lies in a piece of surface if, of the eight pixels that are 2 px away in x, in y or in
+//   both, at least four lie on the tangent plane of the pixel and at most three do not. Pixels
+//   without a depth do not count. A pixel lies on the tangent plane if its point is nearer to the
+//   plane than half of depth_threshold times the depth of the pixel in the middle.
 // * The supports of an accepted point are the pixel itself and the pixels of the neighbours that
 //   count. The position of the point is the weighted mean of the back-projected supports. The
 //   weights are 1 / (max(1 - confidence, 0.03) depth^2). Colour and normal are means with the same
-//   weights. From then on the supports are used. The pixels of neighbours that see through the
+//   weights. After this, the supports count as used. The pixels of neighbours that see through the
 //   point are discarded, which means that they count as used.
 //
 // So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
 // image) are always filled. A map without normals gets normals from its depths
 // (estimate_map_normals). A pixel without a normal passes every normal test. The cloud is identical
-// for any number of threads. Besides the maps, only one bit per pixel is kept for each view that is
-// still needed. Throws an Error in these cases: a view's image is not in the scene or is given
-// twice, a depth map or a loaded image is empty, or the camera, the normals, the confidences or the
-// image of a map do not have the size of its depths.
+// for any number of threads. The memory is that of the maps, and one bit per pixel for each view
+// that is still needed. Throws an Error in these cases: a view's image is not in the scene or is
+// given twice, a depth map or a loaded image is empty, or the camera, the normals, the confidences
+// or the image of a map do not have the size of its depths.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 
@@ -108,9 +114,9 @@ PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
 
 // The sizes on which the memory of fusion depends.
 struct FusionSize {
-  std::uint64_t pixels = 0;  // of the largest map
+  std::uint64_t pixels = 0;  // number of pixels of the largest map
   std::uint64_t views = 0;
-  std::uint64_t maps = 0;  // in memory at the same time (FuseOptions::max_maps)
+  std::uint64_t maps = 0;  // number of maps in memory at the same time (FuseOptions::max_maps)
   bool colors = false;
 };
 

@@ -57,13 +57,13 @@ struct PixelPoints {
 void back_project(const FusionMap& view, PixelPoints& where);
 
 // The result of comparing the point of a pixel with a neighbour's map:
-//   - cannot see: the point is outside the image or hidden, or the map has no depth there,
+//   - cannot see: the point is outside the neighbour's image or hidden, or its map has no depth
+//     there,
 //   - differs: the neighbour's pixel has the same depth, but another normal,
 //   - joins: the neighbour's pixel has the same depth and normal,
-//   - contradicts: the depth of the neighbour's pixel is larger: the neighbour sees through the
-//     point.
-// Answers of the kinds `joins` and `contradicts` name the neighbour's pixel. An answer takes 4
-// bytes.
+//   - contradicts: the depth of the neighbour's pixel is larger, so that the neighbour sees through
+//     the point.
+// The answers `joins` and `contradicts` contain the neighbour's pixel. An answer takes 4 bytes.
 class Answer {
  public:
   Answer() = default;  // cannot see
@@ -73,7 +73,8 @@ class Answer {
 
   bool cannot_see() const { return code_ == kCannotSee; }
   bool names_pixel() const { return code_ < kDiffers; }
-  // Precondition of both: the answer names a pixel. agrees() is true for joins().
+  // Precondition of agrees() and pixel(): names_pixel(). agrees() is true for `joins` and false for
+  // `contradicts`.
   bool agrees() const { return (code_ & 1u) == 0; }
   std::uint32_t pixel() const { return code_ >> 1; }
 
@@ -83,10 +84,10 @@ class Answer {
   std::uint32_t code_ = kCannotSee;
 };
 
-// Compares the points `asking` of pixels of `reference` with the map of `neighbour`. Fills
-// `answers` in the order of `asking`. Preconditions: `asking` and `answers` have the same length,
-// and back_project() has filled the points. The answers do not depend on whether pixels are already
-// used.
+// Compares each point of `asking` with the map `neighbour`. `asking` holds pixels of `reference`.
+// Fills `answers` in the order of `asking`. Preconditions: `asking` and `answers` have the same
+// length, and back_project() has filled the points. The answers do not depend on whether pixels are
+// already used.
 void ask_neighbour(const FusionMap& reference, const FusionMap& neighbour,
                    const PixelPoints& asking, const FuseOptions& options,
                    std::span<Answer> answers);

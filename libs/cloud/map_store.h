@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of fuse(): keeps maps in memory. The order in which maps are needed is known in advance. So
-// the store can evict the map whose next use is farthest in the future.
+// Part of fuse(): keeps maps in memory. If there are too many, the store evicts the map whose next
+// use is farthest in the future. This is possible because the order of all uses is known in
+// advance. A map is named by its slot, a number from 0.
 #pragma once
 
 #include <functional>
@@ -19,13 +20,14 @@ class MapStore {
   };
   using Load = std::function<FusionMap(std::size_t slot)>;
 
-  // Step i needs the maps of the slots needed[i]. Precondition: the slots of a step are below
-  // `slots` and differ from each other. `load` makes the map of a slot.
+  // Step i needs the maps of the slots needed[i]. `slots`: the number of slots. `load` makes the
+  // map of a slot. Precondition: the slots of a step are below `slots` and differ from each other.
   MapStore(std::vector<std::vector<std::size_t>> needed, std::size_t slots, Limits limits,
            Load load);
 
-  // Loads the missing maps of this step. If there are too many maps, first evicts maps that this
-  // step does not need. Call begin_step() and end_step() in turn, for the steps in ascending order.
+  // Loads the missing maps of the step. If Limits::maps would be exceeded, first evicts maps that
+  // the step does not need. Call begin_step() and end_step() in turn, for the steps in ascending
+  // order.
   void begin_step(std::size_t step);
 
   // Removes the maps that no later step needs.

@@ -11,7 +11,7 @@ namespace axial::cloud {
 // `neighbours` below 3 is raised to 3, and a value above the number of points is reduced. If the
 // point has views, its normal faces the camera of the first view. Otherwise it faces the mean
 // centre of all calibrated cameras. In a cloud of fewer than 3 points the normal is the direction
-// to this centre. Throws an Error for views of images that do not exist.
+// from the point to this mean centre. Throws an Error for views of images that do not exist.
 void estimate_normals(PointCloud& cloud, const Scene& scene, std::size_t neighbours = 16);
 
 }  // namespace axial::cloud

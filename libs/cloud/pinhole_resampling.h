@@ -32,8 +32,8 @@ cv::Mat1f filled(const cv::Mat1f& inverse_depth, float otherwise);
 cv::Mat2f seen_by(const CameraModel& camera, const PinholeView& view,
                   const cv::Mat1f& inverse_depth, cv::Range rows);
 
-// Values of PinholeImage::label. kNothing: the pixel is black, because the photograph has no pixel
-// there or only a transparent one.
+// Values of PinholeImage::label: how the colour of a pixel was found. kNothing: the pixel is black,
+// because the photograph has no pixel there, or because its pixel is transparent.
 inline constexpr std::uint8_t kNothing = 0;
 inline constexpr std::uint8_t kGuess = 128;  // the depth is interpolated between surfaces
 inline constexpr std::uint8_t kExact = 255;  // the depth is that of a surface
@@ -45,9 +45,9 @@ struct PinholeImage {
 
 // Resamples a photograph (B G R) to the pinhole. The result has the size of `view.camera`.
 // `opaque`: empty, or 0 where the photograph is transparent. `camera`: the photograph's camera at
-// the photograph's resolution. `surface`: the result of render_surface(map, view). `guess`: the
-// result of filled(), of any resolution; its inverse depths [1/m] are used for pixels without a
-// surface. Throws an Error if sizes disagree or if `guess` is empty.
+// the photograph's resolution. `surface`: the result of render_surface(map, view) for the
+// photograph's depth map. `guess`: the result of filled(), at any resolution. Pixels without a
+// surface use its inverse depths [1/m]. Throws an Error if sizes disagree or if `guess` is empty.
 PinholeImage resampled(const cv::Mat3b& photograph, const cv::Mat1b& opaque,
                        const CameraModel& camera, const PinholeView& view, const cv::Mat1f& surface,
                        const cv::Mat1f& guess);

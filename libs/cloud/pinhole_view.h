@@ -31,18 +31,18 @@ struct PinholeView {
   }
 };
 
-// Returns the pinhole that replaces `model`, for a scene at distances (lambda) from `near` to `far`
-// [m]. Precondition: 0 < near <= far. If `model` is a pinhole already, the result is the same
-// pinhole. Otherwise:
+// Returns the pinhole that replaces `model`, for surfaces at distances from `near` to `far` [m]
+// along the rays of `model`. Precondition: 0 < near <= far. If `model` is a pinhole already, the
+// result is the same pinhole. Otherwise:
 //
 // * The centre of the pinhole is the point nearest to the rays of the whole image (least squares).
 //   So almost the same surfaces are hidden from both cameras, and the correspondence of their
 //   pixels depends little on depth.
 // * In the centre of the image the pixels of both cameras have the same angular size.
-// * The image is large enough to show everything that `model` sees, with two exceptions. First,
-//   rays more than 70 degrees from the axis are left out. Second, the image reaches no farther from
-//   the centre of the image of `model` than 0.7 times the width of that image to the left and
-//   right, and 0.7 times the height up and down. `whole` is false in both cases.
+// * The image is large enough to show everything that `model` sees, with two exceptions: rays more
+//   than 70 degrees from the axis, and rays beyond the largest image. Let w x h be the image size
+//   of `model`. The largest image reaches 0.7 w to the left and right of the point that the centre
+//   of the image of `model` sees, and 0.7 h up and down. If rays are left out, `whole` is false.
 PinholeView pinhole_for(const CameraModel& model, double near, double far);
 
 }  // namespace axial::cloud

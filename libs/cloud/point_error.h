@@ -19,24 +19,25 @@ struct PointSupport {
   Eigen::Vector3d ray;    // unit vector from the camera to the point
   double pixel;           // width of a pixel of the map at the point, with refraction [m]
   double depth;           // along the pixel's ray [m]
-  double cost;            // of matching: 1 - the map's confidence; 1: unknown
+  double cost;            // matching cost: 1 - the map's confidence; 1: unknown
 };
 
-// Makes the supports of one view in a tenth of the time that exact rays with derivatives need.
-// There are two approximations. The angular size of a pixel comes from a table (error 2 %). Rays
-// start at the camera centre (error below a degree behind a port).
+// Makes the supports of one view. Two approximations save nine tenths of the time of exact rays
+// with derivatives. The angular size of a pixel comes from a table (error 2 %). Rays start at the
+// camera centre (error of their direction behind a port: below one degree).
 class SupportCamera {
  public:
   SupportCamera(const CameraModel& model, const Pose& pose);
 
-  // The support of the map's pixel number y * width + x. `depth` [m] must be above 0. `point`: the
-  // back-projected point of the pixel [m], in the world frame.
+  // The support of the map's pixel (x, y), whose number `pixel` is y * width + x. `depth` [m] must
+  // be above 0. `cost`: PointSupport::cost. `point`: the back-projected point of the pixel [m], in
+  // the world frame.
   PointSupport support(std::uint32_t pixel, double depth, double cost,
                        const Eigen::Vector3d& point) const;
 
  private:
   Eigen::Vector3d centre_;
-  std::uint32_t width_, shift_ = 0, columns_;  // cells of 2^shift_ pixels
+  std::uint32_t width_, shift_ = 0, columns_;  // the table's cells are 2^shift_ x 2^shift_ pixels
   std::vector<float> angles_;                  // angular size of a pixel in each cell [rad]
 };
 
@@ -55,10 +56,10 @@ struct Surroundings {
 // width of the map. The noise is unknown for a map without colours.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
-// The standard deviation of a triangulated point along the unit vector `normal` [m per px]. Each
-// support contributes one pixel to the triangulation. Both coordinates of each pixel have
-// independent errors of 1 px. The result is never larger than the mean depth [m] of the supports,
-// even for parallel rays.
+// The standard deviation of a triangulated point along the unit vector `normal` [m], for errors of
+// 1 px. Each support contributes one pixel to the triangulation. The two coordinates of each pixel
+// have independent errors with a standard deviation of 1 px. The result is never larger than the
+// mean depth [m] of the supports, even for parallel rays.
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
 struct PointError {
@@ -71,11 +72,11 @@ struct PointError {
 // The variance is the sum of three parts:
 //
 // * Relief: matching fits planes to windows of several pixels. Relief that planes cannot follow
-//   raises the cost of even the best match and makes the normals of neighbouring pixels differ. All
-//   maps are smoothed in the same way. So more maps do not reduce this part, but wider angles
-//   between the rays do.
+//   raises the cost of even the best match and makes the normals of neighbouring pixels differ.
+//   More maps do not reduce this part, because all maps are smoothed in the same way. Wider angles
+//   between the rays reduce it.
 // * Scatter: the variance of the supports' points along the normal.
-// * Noise of the photograph: this part matters where there is little texture.
+// * Noise of the photograph, which is large where there is little texture.
 //
 // The confidence is higher if the supports' points are closer to each other. Error and confidence
 // are 0 (unknown) if there are fewer than two supports, or if no support has a known cost.

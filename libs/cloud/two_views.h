@@ -12,24 +12,24 @@
 
 namespace axial::cloud {
 
-// Returns the index of the first neighbour that agrees with the point of pixel `i`. Empty in two
-// cases: no neighbour agrees, or some neighbour sees through the point or shows another normal
-// there. `answers[n][i]`: the answer of neighbour n to pixel `i`.
+// Returns the index of the first neighbour that agrees with the point of pixel `i`. Empty if no
+// neighbour agrees, or if any neighbour sees through the point or shows another normal there.
+// `answers[n][i]`: the answer of neighbour n for pixel `i` (fusion_map.h).
 std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
                                               std::size_t i);
 
-// Tests whether a pixel of a map lies in a piece of surface. Two views may agree by chance on a
-// wrong depth. Around such a pixel the depths usually differ. The map must outlive the object.
+// Tests whether a pixel of a map lies in a piece of surface. The reason: two views may agree by
+// chance on a wrong depth, and the depths around a wrong depth usually differ from it.
 class SurfacePieces {
  public:
-  // `max_distance`: the largest distance of the surrounding points from the pixel's tangent plane,
-  // relative to the pixel's depth.
+  // `max_distance`: the largest distance of a surrounding point from the pixel's tangent plane at
+  // which the point lies on the plane, divided by the pixel's depth. `map` must outlive the object.
   SurfacePieces(const FusionMap& map, float max_distance);
 
-  // True if, of the eight pixels at a distance of two from `pixel`, at least four lie on the
-  // tangent plane of `pixel` and at most three do not. Pixels without a depth do not count. False
-  // if `pixel` has no normal. Only five pixels surround a pixel at the border of the image, and
-  // only three a pixel in a corner. Precondition: `pixel` has a depth.
+  // True if, of the eight pixels that are 2 px away from `pixel` in x, in y or in both, at least
+  // four lie on the tangent plane of `pixel` and at most three do not. Pixels outside the map or
+  // without a depth do not count. False if `pixel` has no normal. Precondition: `pixel` has a
+  // depth.
   bool around(std::uint32_t pixel) const;
 
  private:

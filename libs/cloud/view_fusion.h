@@ -26,13 +26,13 @@ class ViewFusion {
   // `views`: the reference view first, then its neighbours, best first.
   explicit ViewFusion(std::span<const WorkingView> views);
 
-  // Begins a step. Goes through the pixels of the reference view from `pixel` on, and collects the
-  // pixels that have a depth and are not taken. Returns the pixel at which the next call has to
-  // continue, or the number of pixels at the end.
+  // Begins a step. Collects pixels of the reference view that have a depth and are not taken, from
+  // the pixel with the number `pixel` on. Returns the number of the pixel at which the next step
+  // begins. If no pixel is left, this is the number of pixels of the view.
   std::size_t collect(std::size_t pixel);
 
   // Compares the collected pixels with the maps of all neighbours. Finds the collected pixels for
-  // which two views are enough.
+  // which two views are enough (two_views.h).
   void compare(const FuseOptions& options);
 
   // Decides which collected pixels become points, and marks the pixels that support these points as
@@ -57,7 +57,7 @@ class ViewFusion {
   void estimate_errors(PointCloud& cloud) const;
 
   std::vector<WorkingView> views_;
-  std::vector<PixelPoints> where_;            // [0]: collected pixels; others: supports
+  std::vector<PixelPoints> where_;  // [0]: the collected pixels; [v]: supports in views_[v]
   std::vector<std::vector<Answer>> answers_;  // of each neighbour to each collected pixel
   std::vector<std::uint8_t> proved_by_two_;   // per collected pixel: two views are enough; or empty
   std::vector<Support> supports_;             // of point i: [begin_[i], begin_[i + 1])

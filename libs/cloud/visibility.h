@@ -8,13 +8,13 @@
 
 namespace axial::cloud {
 
-// A score per point of scene.points. The more other observations support a point, the higher its
-// score. The scores start at 0. Let p be a point, and take each view of p in a calibrated image.
-// The view defines a cone of rays through p with a diameter of one pixel. Let q be another point in
-// the cone. If the depth of q is more than 1 % larger than the depth of p, the score of q rises by
-// the number of views of q. If the depth of q is more than 1 % smaller, the score of q falls by the
-// number of views of p, because p is seen through q. Throws an Error for views of images that do
-// not exist.
+// Returns a score for each point of scene.points. The more other observations support a point, the
+// higher its score. The scores start at 0 and are changed for each point p and each view of p in a
+// calibrated image. The view defines a cone of rays through p with a diameter of one pixel. Let q
+// be another point in the cone. If the depth of q is more than 1 % larger than the depth of p, the
+// score of q rises by the number of views of q. If the depth of q is more than 1 % smaller, the
+// score of q falls by the number of views of p, because p is seen through q. Throws an Error for
+// views of images that do not exist.
 std::vector<long> visibility_of_points(const Scene& scene);
 
 struct PointScale {

@@ -19,12 +19,11 @@ inline constexpr std::size_t kMapsCompared = 4;
 // reference images, evenly spread over the list of references. Compares the map of each of these
 // images with the image's sparse points, and with the maps of the first three source views that
 // have maps. Logs a line with the numbers. The line is a warning if the maps disagree
-// (AgreementLimits). Writes the numbers to Settings::report unless this path is empty. Changes
-// nothing else.
-// `read_map`: returns the map of a reference image. Up to plan.in_flight threads call `read_map`
-// at the same time.
-// `photometric`: whether the maps are results of the photometric stage. Only then are the maps'
-// confidences scores of matching alone, and a warning tells if the scores are too low.
+// (AgreementLimits in depth/agreement.h). Writes the numbers to Settings::report unless this path
+// is empty. Changes nothing else. `read_map`: returns the map of a reference image; up to
+// plan.in_flight threads call it at the same time. `photometric`: whether the maps are results of
+// the photometric stage. If they are, their confidences are scores of matching alone, and a low
+// median of the scores at the sparse points gives a warning, too.
 void check_agreement(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      bool photometric, const std::function<DepthMap(std::size_t image)>& read_map);
 

@@ -29,10 +29,10 @@ struct WrittenCloud {
 //                              or more see
 //   estimate_scale F > 0       <out>_scale.ply: all points with their sizes; a size is F times the
 //                              mean width of a pixel at the point (cloud::PointScale)
-// The visibility of a point is its value of cloud::visibility_of_points(). Clouds are in the
-// frame of placement_of(). The ports, lenses and offset of a written .mvs file are written beside
-// this file. `project`: the result of load_scene(). Error if the scene has no points, or if an
-// output is a file that was read.
+// The visibility of a point is its value of cloud::visibility_of_points(). Clouds are in the frame
+// of placement_of() (fusion_stage.h). Beside a written .mvs file, its ports, lenses and offset are
+// written. `project`: the result of load_scene(). Error if the scene has no points, or if an output
+// is a file that was read.
 WrittenCloud export_cloud(Project project, const Settings& settings);
 
 }  // namespace axial::densify

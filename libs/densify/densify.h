@@ -11,16 +11,16 @@
 namespace axial::densify {
 
 enum class Result {
-  dense_cloud,     // fused depth maps
-  sparse_cloud,    // depth maps, and the scene's points as the cloud
+  dense_cloud,     // depth maps, and the cloud fused from them
+  sparse_cloud,    // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
   point_export,    // see cloud_exports.h
   neighbour_lists  // see neighbour_lists.h
 };
 
 struct Report {
   Result result = Result::dense_cloud;
-  std::filesystem::path cloud;  // the cloud that was written; empty: none
-  std::size_t points = 0;       // of this cloud
+  std::filesystem::path cloud;  // file of the cloud that was written; empty: none
+  std::size_t points = 0;       // number of points of this cloud
   std::size_t depth_maps = 0;   // number of images whose depth map was made or used
   // Whether no camera has a port or a distorted lens. Only then do OpenMVS's programs read the
   // depth maps and the scene correctly.
@@ -28,22 +28,22 @@ struct Report {
 };
 
 // Makes the depth map of every suitable image of the scene, fuses the maps to a cloud, and writes
-// the maps, the cloud, and the scene with its housing, lenses and offset. Some settings ask for
-// less or for something else: see Settings.
+// the maps, the cloud, and the scene with its housing, lenses and offset. With some settings a run
+// writes other files instead (Result, Settings).
 //
 // * A run that was stopped continues where it ended: depth maps of an earlier run with the same
 //   input and settings are used again (map_stages.h). The result has the same bytes for any
 //   number of threads and any max_memory.
-// * Inputs are never changed. Output files appear when they are complete.
-// * Memory stays below max_memory. Memory does not grow with the number of images, with three
+// * Inputs are never changed. An output file appears under its name only when it is complete.
+// * Memory stays below max_memory, and does not grow with the number of images, with three
 //   exceptions: the scene, one bit per pixel in fusion, and a cloud whose colours or normals are
 //   estimated from the whole cloud (estimate_colors or estimate_normals is 1). Such a cloud is
 //   kept in memory in addition to max_memory.
 // * Progress, results and warnings are logged (base/log.h). `observer` is called once, before
 //   views are selected. It is not called for a point export.
-// * From the call on, and after it, all threads of the process share one heap (share_one_heap()
-//   in base/memory.h), and large blocks come from the system. So call densify() before other
-//   threads start, and make only one run at a time.
+// * Call densify() before other threads start, and make only one run at a time. The reason: the
+//   call makes all threads of the process share one heap (share_one_heap() in base/memory.h), also
+//   after the run.
 //
 // Throws an Error for
 // - a fault of the scene or of a file that belongs to the scene,

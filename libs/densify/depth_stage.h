@@ -17,15 +17,15 @@ std::filesystem::path depth_map_path(const Project& project, const Settings& set
 // Makes the final depth map of every reference image. The stages are, in this order: photometric
 // matching, Settings::geometric_iterations geometric passes, and the adjust filter if
 // Settings::postprocess asks for it. The last stage before the adjust filter also removes
-// unconfirmed depths (weak_texture.h). It then applies the speckle filter and the gap filter,
-// each if Settings::postprocess asks for it.
+// unconfirmed depths (depth/weak_texture.h), and then applies the speckle filter and the gap
+// filter, each if Settings::postprocess asks for it.
 //
 // Every stage reads only complete files of the previous stage, so that a resumed run gives the
-// same bytes. A file is reused only if its side file has the fingerprint of this run and the
-// stage's name. The maps of the first stage, or the latest complete maps of a resumed run, are
-// checked for agreement (agreement_check.h). `plan` says how many images are processed at a time.
-// `existing`: the states of the final map files before the run. Files that are not reused are
-// overwritten, foreign files too: call check_overwriting() before.
+// same bytes. A file is reused only if its side file (io/openmvs/dmap.h) has the fingerprint of
+// this run and the stage's name. The maps of the first stage, or the latest complete maps of a
+// resumed run, are checked for agreement (agreement_check.h). `plan` says how many images are
+// processed at a time. `existing`: the states of the final map files before the run. Files that are
+// not reused are overwritten, also files of other programs. So call check_overwriting() before.
 void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, ImageStore& images);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth maps in the working folder before a run. This program's own maps are resumed and replaced.
-// Maps of other programs are not overwritten unless the settings allow it.
+// Depth maps in the working folder before a run. Maps of this program are used again or replaced.
+// Maps of other programs, called foreign, are not overwritten unless the settings allow it.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace axial::densify {
 
-// The state of each image's map file, one for each image of the scene. Images that are not
-// references count as DmapOrigin::none.
+// One state for each image of the scene: the state of the image's map file. Images that are not
+// references have DmapOrigin::none.
 using ExistingMaps = std::vector<io::DmapStatus>;
 
 ExistingMaps find_existing_maps(const Project& project, const Settings& settings);
 
-// Whether the side file is used when a map of this origin is read. The side file of a foreign map
-// is ignored, because it may be an older file of this program.
+// Whether the side file (io/openmvs/dmap.h) is used when a map of this origin is read. The side
+// file of a foreign map is ignored, because it may belong to an older map of this program.
 io::DmapSide side_to_read(io::DmapOrigin origin);
 
 // Reads the image's final map. The map has no normals if its file contains no normal other than
@@ -34,9 +34,8 @@ DepthMap read_final_map(const Project& project, const Settings& settings, const 
 // foreign map and the possible remedies.
 void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps);
 
-// For runs that make no maps: keeps only images with a map among the references, that is, removes
-// the other images from Project::references. Sets the cameras of the kept images in
-// Project::views to the resolution of their maps. Throws an Error
+// For runs that make no maps: removes images without a map from Project::references. Sets the
+// cameras of the kept images in Project::views to the resolution of their maps. Throws an Error
 // - if no reference has a map,
 // - for a damaged map,
 // - for a foreign map of an image whose camera has a port or a distorted lens,

@@ -13,8 +13,9 @@ namespace axial::densify {
 // Settings::double_precision, double positions in world coordinates.
 io::PlyPlacement placement_of(const Project& project, const Settings& settings);
 
-// Fuses the final depth maps to one cloud and writes the cloud to the file `ply`. The cloud is
-// cropped to the region of interest and has colours and normals, each as the settings ask.
+// Fuses the final depth maps to one cloud and writes the cloud to the file `ply`. The settings
+// decide whether the cloud is cropped to the region of interest, and whether it has colours and
+// normals.
 // Returns the number of points of the cloud. The cloud is written as it grows, unless its colours
 // or normals are estimated from the whole cloud (setting value 1). A log line, and the entry
 // "fusion" in the file Settings::report, tell how many points are supported by only two depth

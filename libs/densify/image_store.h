@@ -15,7 +15,7 @@ namespace axial::densify {
 struct WorkImage {
   cv::Mat1b grey;
   cv::Mat3b color;  // B G R; empty if the settings need no colours
-  cv::Mat1b mask;   // non-zero: match this pixel; empty: all. From labels and alpha
+  cv::Mat1b mask;   // 0: the pixel is not matched; empty: all are matched. See working_mask()
 };
 
 // The sizes on which the memory of a WorkImage depends.
@@ -52,10 +52,10 @@ class ImageStore {
   // Returns WorkImage::mask of an image. Reads no file if the image has neither a mask nor alpha.
   cv::Mat1b mask(std::size_t image);
 
-  // Reads every calibrated image once, up to `at_once` images at the same time, so that errors
-  // show before hours of work. Throws the error of the first bad image in the scene's order.
-  // Reads the images in reverse order, so that the images that are needed first stay in the
-  // cache. Warns if no mask has the label to ignore.
+  // Reads every calibrated image once, so that errors show before hours of work. Up to `at_once`
+  // images are read at the same time. Throws the error of the first bad image in the scene's order.
+  // Warns if no mask has the label to ignore. The images are read in reverse order, so that the
+  // images that are needed first stay in the cache.
   void check_all(std::size_t at_once);
 
  private:

@@ -20,8 +20,8 @@ namespace axial::densify {
 
 using ReadMap = std::function<DepthMap(std::size_t image)>;
 
-// The maps of the previous stage. They are always read from their files and never handed over in
-// memory, because a resumed run must see the same bytes. Thread-safe.
+// The maps of the previous stage. They are always read from their files, even if the previous stage
+// was part of this run, because a resumed run must see the same bytes. Thread-safe.
 class PreviousMaps {
  public:
   // `read`: reads the map of an image from its file. `whole`: get() returns maps with normals and
@@ -31,8 +31,8 @@ class PreviousMaps {
   // Reads the whole map from its file. Does not use the cache.
   DepthMap read(std::size_t image) const { return read_(image); }
 
-  // Returns the map from the cache, after reading it from its file if necessary. The map has no
-  // normals and confidences unless the stage asks for whole maps.
+  // Returns the map from the cache, after reading it from its file if necessary. The map has
+  // normals and confidences only if the constructor got `whole`.
   std::shared_ptr<const DepthMap> get(std::size_t image) { return cache_.get(image); }
 
  private:
@@ -42,44 +42,44 @@ class PreviousMaps {
 
 // One round over all images.
 struct Stage {
-  std::string name;   // in the names of its files, and in their side files
-  std::string title;  // of its progress
-  // Makes the map of an image; called for several images at a time. The first stage has no previous
-  // maps and must not ask for any.
+  std::string name;   // part of the names of the stage's files, and stored in their side files
+  std::string title;  // shown with the progress of the stage
+  // Makes the map of an image. Called for several images at a time. The first stage must not use
+  // `previous`, because there are no previous maps.
   std::function<DepthMap(std::size_t image, PreviousMaps& previous)> make;
-  // PreviousMaps::get() gives maps with normals and confidences, and StageRun::cached_maps limits
-  // its cache instead of cached_depths.
+  // True: PreviousMaps::get() returns maps with normals and confidences, and the capacity of its
+  // cache is StageRun::cached_maps. False: get() returns depths alone, and the capacity is
+  // cached_depths.
   bool whole_maps = false;
 };
 
 // The arguments that all stages share.
 struct StageRun {
-  std::span<const std::size_t> images;  // that get maps, in this order
+  std::span<const std::size_t> images;  // the images that get maps, in this order
   // The file of an image's final map. The map of an earlier stage is in a file with the same name,
   // but with the stage's name before the extension.
   std::function<std::filesystem::path(std::size_t image)> final_file;
   std::string fingerprint;  // of all input of the maps
   // The states of the final files before the run, indexed by image.
   std::span<const io::DmapStatus> existing;
-  std::size_t in_flight = 1;      // images at the same time
-  std::size_t cached_depths = 0;  // capacity of PreviousMaps
-  std::size_t cached_maps = 0;    // the same for stages that ask for whole maps
+  std::size_t in_flight = 1;      // number of images that are processed at the same time
+  std::size_t cached_depths = 0;  // capacity of PreviousMaps; see Stage::whole_maps
+  std::size_t cached_maps = 0;    // capacity of PreviousMaps for stages with whole_maps
   Pictures pictures = Pictures::none;
-  // Called once, to check maps early, because later stages may take hours. If the run makes maps
-  // of the first stage, `check` gets the maps of the first stage, after this stage. Otherwise it
-  // gets the maps of the latest complete stage, before the run makes a map. `first_stage`:
-  // whether `read_map` reads maps of the first stage. May be empty.
+  // Checks maps early, because later stages may take hours. Called once. If the run makes maps of
+  // the first stage, the call comes after the first stage, and `read_map` reads its maps. Otherwise
+  // the call comes before the run makes a map, and `read_map` reads the maps of the latest complete
+  // stage. `first_stage`: whether `read_map` reads maps of the first stage. `check` may be empty.
   std::function<void(bool first_stage, const ReadMap& read_map)> check;
 };
 
 // Runs the stages one after the other. The maps of the last stage are the result.
 //
 // * A file is used again only if its depth map is complete and its side file has the run's
-//   fingerprint and the stage's name. Every other file with the name of a map is made again and
-//   overwritten, also a damaged file or a file of another program.
-// * The run begins after the last stage whose files can all be used again. The files of the
-//   stages before that stage are not needed. In a stage that is not complete, only the missing
-//   maps are made.
+//   fingerprint and the stage's name. Every other file with the name of a map is overwritten by a
+//   new map, also a damaged file or a file of another program.
+// * The run begins after the last stage whose files can all be used again. The files of earlier
+//   stages are not needed. In a stage that is not complete, only the missing maps are made.
 // * Every stage reads only complete files of the previous stage. So a run that was stopped and
 //   continues gives the same bytes as a run without a stop.
 // * The files of a stage are removed when the next stage is complete.

@@ -12,9 +12,9 @@
 
 namespace axial::densify {
 
-// Sets View::mask of all calibrated images. Does nothing but log if masks are not used
-// (Settings::ignore_mask_label is negative). If Settings::mask_folder is set, it is an error if
-// the folder has no mask for an image. Otherwise, an image without a mask is reported in a
+// Sets View::mask of all calibrated images. If masks are not used (Settings::ignore_mask_label is
+// negative), sets nothing and only logs. Error if Settings::mask_folder is set and the folder has
+// no mask for an image. If mask_folder is not set, an image without a mask is reported in a
 // warning, and its View::mask stays empty. A further warning tells how many images have two
 // different masks, of which only one is used.
 void choose_masks(Project& project, const Settings& settings);
@@ -33,7 +33,7 @@ class LabelCheck {
 
  private:
   const int label_;
-  const std::string setting_;  // the name of the setting of the label
+  const std::string setting_;  // the name of `ignore_mask_label` in messages
   std::atomic<bool> seen_ = false;
   std::mutex mutex_;
   std::bitset<65536> others_;

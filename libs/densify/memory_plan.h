@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Shares out the memory that max_memory allows. The plan affects how much is done at a time and
-// how much is cached, but never the result.
+// SPDX-License-Identifier: GPL-3.0-or-later Divides the memory that max_memory allows among the
+// parts of a run. The plan decides how many images are processed at a time and how much is cached.
+// It never affects the result.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ namespace axial::densify {
 struct MemoryPlan {
   std::size_t in_flight = 1;      // images that are matched at the same time
   std::size_t decodes = 1;        // images that are decoded at the same time at the start
-  std::size_t cached_images = 0;  // entries of the ImageStore
-  std::size_t cached_depths = 0;  // depths of the previous stage, for geometric consistency
-  std::size_t cached_maps = 0;    // whole maps of the previous stage
+  std::size_t cached_images = 0;  // capacity of the ImageStore
+  std::size_t cached_depths = 0;  // StageRun::cached_depths (map_stages.h)
+  std::size_t cached_maps = 0;    // StageRun::cached_maps
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
   std::size_t fusion_loads = 1;   // FuseOptions::max_loads
   std::size_t exports = 1;        // images resampled at the same time by the pinhole export
@@ -24,11 +24,10 @@ struct MemoryPlan {
 
 // Returns the plan for the result of load_project(). The plan is sufficient for the project's
 // largest image and for its longest lists of sources and neighbours. A cache has at most 48
-// entries, unless the images in work need more. More entries would hardly help, because images
-// are processed in order, and the memory of a run must not grow with the number of images. Throws
-// an Error if the allowed memory is too little to process one image at a time, or to write the
-// scene while no images are cached. The error names max_memory, its value and the necessary
-// value.
+// entries, unless the images in work need more: the memory of a run must not grow with the number
+// of images, and more entries would hardly help, because images are processed in order. Throws an
+// Error if the allowed memory is too little to process one image at a time, or to write the scene
+// while no images are cached. The error names max_memory, its value and the necessary value.
 MemoryPlan plan_memory(const Project& project, const Settings& settings);
 
 // The least memory [bytes] of a run that processes `in_flight` images at a time, without the

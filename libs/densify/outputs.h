@@ -12,16 +12,16 @@ namespace axial::densify {
 std::vector<std::filesystem::path> scene_files(const Settings& settings);
 
 // Checks the outputs before the scene is read. Throws an Error if the scene, the cloud, the
-// report or a depth map cannot be written. Throws an Error, too, if an output is one of
-// scene_files(). This error names the setting and both files. Also removes unfinished files of
-// stopped runs from the working folder.
+// report or a depth map cannot be written. Throws an Error that names the setting and both files if
+// an output is one of scene_files(). Also removes unfinished files of stopped runs from the working
+// folder.
 void check_outputs(const Settings& settings);
 
-// Checks the outputs when the scene is known. Throws an Error if the scene, its lenses, the
-// cloud, a depth map or a picture of a depth map would replace a photograph, a mask or one of
-// scene_files(). Maps of earlier runs may be replaced, because they are not inputs. Throws an
-// Error, too, if Settings::report or Settings::neighbour_lists_output is one of these inputs, the
-// file of a depth map or picture, or the output scene, its cloud, housing, lenses or offset.
+// Checks the outputs after the scene is read. The inputs are the photographs, the masks and
+// scene_files(); maps of earlier runs are not inputs. Throws an Error if the scene, its lenses, the
+// cloud, a depth map or a picture of a depth map would replace an input. Throws an Error, too, if
+// Settings::report or Settings::neighbour_lists_output would replace an input or another output: a
+// depth map, a picture, or the scene with its cloud, housing, lenses or offset.
 void check_outputs(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

@@ -17,10 +17,10 @@ inline constexpr const char* kPinholeMarker = "pinhole_export.json";
 std::filesystem::path exported_name(const SceneImage& image,
                                     const std::filesystem::path& photographs);
 
-// Removes the files of an earlier export from `folder`. A file stays in two cases: `staging`
-// contains a file with the same relative path, or the file was changed after the earlier export.
-// Warns of changed files that stay. Warns, and removes nothing, if the earlier export has no list
-// of its files. Does nothing if `folder` contains no export.
+// Removes the files of an earlier export from `folder`. `staging`: the folder with the new export.
+// A file stays in two cases: `staging` contains a file with the same relative path, or the file was
+// changed after the earlier export. Warns of changed files that stay. Warns, and removes nothing,
+// if the earlier export has no list of its files. Does nothing if `folder` contains no export.
 void remove_earlier_export(const std::filesystem::path& folder,
                            const std::filesystem::path& staging);
 

@@ -18,8 +18,8 @@
 
 namespace axial::densify {
 
-// One image of the scene at its working resolution. ImageStore has its pixels. Images without
-// calibration have an empty camera.
+// One image of the scene at its working resolution. Its pixels are in ImageStore (image_store.h).
+// Images without calibration have an empty camera.
 struct View {
   std::uint32_t id = 0;  // global id
   CameraModel camera;
@@ -32,11 +32,12 @@ struct View {
 };
 
 struct Project : io::SceneWithCameras {  // the scene also has neighbour scores
-  io::SceneLenses lenses;                // to write beside the output
+  io::SceneLenses lenses;                // lenses that are written beside the output
+  // The next four have one entry for each image of the scene.
   std::vector<ViewPreparation> preparations;
-  std::vector<View> views;                         // one for each image of the scene
-  std::vector<std::vector<ViewScore>> neighbours;  // filtered
-  std::vector<std::vector<ViewScore>> sources;     // chosen for matching
+  std::vector<View> views;
+  std::vector<std::vector<ViewScore>> neighbours;  // results of filter_neighbours()
+  std::vector<std::vector<ViewScore>> sources;     // source views for matching
   std::vector<std::size_t> references;             // images that get a depth map
   int bit_depth = 16;  // number of bits that the values of 16-bit images use
   std::string fingerprint;
@@ -50,17 +51,17 @@ Project load_scene(const Settings& settings);
 // load_project.
 Project load_scene_and_headers(const Settings& settings);
 
-// Loads the scene, reads its images and masks, and selects views. Image and mask files are read
-// for their headers and for the fingerprint. Their pixels are not kept. `observer` is called
-// before views are selected. Throws an Error for a fault of the scene or its housing, for files
-// that are missing or truncated, and for images whose shape differs from their camera's.
-// ImageStore::check_all finds other faults of images.
+// Loads the scene, reads its images and masks, and selects views. Of image and mask files, the
+// headers are kept, and the bytes only enter the fingerprint. `observer` is called before views are
+// selected. Throws an Error for a fault of the scene or its housing, for files that are missing or
+// truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds
+// other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
 
 // Whether no camera has a port or a distorted lens.
 bool all_pinholes(const Project& project);
 
-// The path of the housing file. The file may not exist.
+// The path of the housing file. The file need not exist.
 std::filesystem::path housing_file(const Settings& settings);
 
 // Writes housing, lenses and offset beside the output scene, where later programs look for them.

@@ -5,7 +5,7 @@
 
 namespace axial::densify {
 
-// What is known of a scene before its views are selected.
+// Properties of a scene that are known before its views are selected.
 struct SceneFacts {
   bool behind_ports = false;  // an image is behind a port
   bool own_region = false;    // the scene file contains a region of interest

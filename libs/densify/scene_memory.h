@@ -10,8 +10,8 @@ namespace axial::densify {
 // Estimates, before the scene is read, the memory for reading the scene of settings.input and for
 // scoring its views. The estimate uses the counts of images and points in the files. Throws an
 // Error if the allowed memory is less. The error names max_memory, its value and the least
-// necessary value. A small scene that needs less memory than the program itself passes here. For
-// such a scene, plan_memory() reports the whole need.
+// necessary value. A scene whose estimate is below the memory of the program itself always passes,
+// because plan_memory() checks the whole need later.
 void require_memory_to_read(const Settings& settings);
 
 // The same check for a scene that was read, before its views are scored. The estimate includes

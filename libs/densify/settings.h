@@ -29,23 +29,23 @@ inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
 struct Settings {
   std::filesystem::path input;           // scene (.mvs)
   std::filesystem::path output;          // scene to write (.mvs); its cloud has the extension .ply
-  std::filesystem::path working_folder;  // of the depth maps; base of relative paths in the scene
+  std::filesystem::path working_folder;  // for depth maps; base of relative paths in the scene
   std::filesystem::path housing;         // empty: beside the scene, if there is one
   std::filesystem::path point_cloud;     // empty: the scene's own points
   std::filesystem::path mask_folder;     // empty: the masks that the scene names
   std::filesystem::path neighbour_lists;
   // If not empty, the run only writes the lists of neighbours to this file.
   std::filesystem::path neighbour_lists_output;
-  std::filesystem::path report;                     // agreement of maps, points and cameras (.json)
+  std::filesystem::path report;                     // results of the agreement check (.json)
   std::filesystem::path pinhole_export;             // folder; needs `fuse`
   std::vector<std::filesystem::path> other_inputs;  // the caller's files: never overwritten
 
   int ignore_mask_label = -1;  // below 0: no masks
-  int bit_depth = 0;           // of 16-bit images: 8 to 16; 0: detected
+  int bit_depth = 0;           // bits that 16-bit images use: 8 to 16; 0: detected
 
   CameraChoice camera = CameraChoice::automatic;
-  bool refractive = false;     // a housing is required
-  bool allow_missing = false;  // go on if the housing gives no image a port
+  bool refractive = false;     // true: the run needs a housing
+  bool allow_missing = false;  // no error if the housing gives no image a port
   ProjectionMethod projection = ProjectionMethod::exact;
 
   ResolutionOptions resolution;
@@ -57,23 +57,25 @@ struct Settings {
   int geometric_iterations = 2;
   unsigned postprocess = kSpeckles | kGaps;
 
-  // `normals`, max_maps and max_loads are set by estimate_normals and by the memory plan.
+  // densify() sets the field `normals` by estimate_normals, and max_maps and max_loads by the
+  // memory plan.
   cloud::FuseOptions fusion;
-  bool make_maps = true;         // otherwise existing maps in the working folder are used unchanged
-  bool fuse = true;              // otherwise the sparse points become the cloud
-  bool overwrite_dmaps = false;  // maps of other programs may be overwritten
-  unsigned estimate_colors = 2;  // 0: no, 1: from the nearest view, 2: from all views of a point
+  bool make_maps = true;          // false: existing maps in the working folder are used unchanged
+  bool fuse = true;               // false: the sparse points become the cloud
+  bool overwrite_dmaps = false;   // true: maps of other programs may be overwritten
+  unsigned estimate_colors = 2;   // 0: no, 1: from the nearest view, 2: from all views of a point
   unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps
   RegionMode region = RegionMode::adaptive;
   double roi_border = 0;  // see with_border()
   bool crop_to_roi = true;
-  bool remove_dmaps = false;      // after fusion
-  bool double_precision = false;  // cloud as double, in world coordinates
+  bool remove_dmaps = false;      // remove the depth maps after fusion
+  bool double_precision = false;  // write the cloud as double, in world coordinates
 
-  // Exports of the scene's points instead of densifying (cloud_exports.h); 0: none.
-  int filter_point_cloud = 0;   // below 0
-  int export_number_views = 0;  // N or -N
-  double estimate_scale = 0;    // above 0
+  // The next three ask for an export of the scene's points instead of densifying. For their values
+  // see export_cloud() (cloud_exports.h). 0: no export.
+  int filter_point_cloud = 0;
+  int export_number_views = 0;
+  double estimate_scale = 0;
 
   Pictures pictures = Pictures::none;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory

@@ -23,18 +23,18 @@ ListLengths longest_lists(const Project& project, const Settings& settings);
 
 // Memory [bytes] of the large data, for the largest image.
 struct StageBytes {
-  std::uint64_t scene = 0;        // that is allocated already
-  std::uint64_t write_scene = 0;  // besides `scene`, while it is written
-  std::uint64_t decode = 0;       // while an image is read, without the result
+  std::uint64_t scene = 0;        // of the loaded scene: the memory that is allocated already
+  std::uint64_t write_scene = 0;  // while the scene is written, in addition to `scene`
+  std::uint64_t decode = 0;       // while an image is read, in addition to `image`
   std::uint64_t image = 0;        // WorkImage
   std::uint64_t map = 0;          // DepthMap: depth, normal, confidence
-  std::uint64_t depths = 0;       // of a DepthMap, the depths alone
-  std::uint64_t read_map = 0;     // while a map is read or written, without the map
-  std::uint64_t match = 0;        // matching, with the results
-  std::uint64_t adjust = 0;
-  std::uint64_t fused = 0;     // of a map in fusion
-  std::uint64_t taken = 0;     // fusion's bits of all views
-  std::uint64_t exported = 0;  // while an image is resampled, without cached images
+  std::uint64_t depths = 0;       // the depths of a DepthMap alone
+  std::uint64_t read_map = 0;     // while a map is read or written, in addition to `map`
+  std::uint64_t match = 0;        // matching of one reference, with the resulting map
+  std::uint64_t adjust = 0;       // the adjust filter of one reference
+  std::uint64_t fused = 0;        // one map in fusion
+  std::uint64_t taken = 0;        // fusion: one bit per pixel of all views
+  std::uint64_t exported = 0;     // while an image is resampled, in addition to cached images
 };
 
 StageBytes bytes_of_stages(const Project& project, const Settings& settings,

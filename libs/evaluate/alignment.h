@@ -19,18 +19,19 @@ using axial::Similarity;
 
 // Returns the least-squares similarity (best_similarity) that maps source[i] to target[i]. The
 // scale is 1 unless `with_scale`. Error if `source` and `target` have different lengths or fewer
-// than three points, if a coordinate is not finite, or if the points of one side lie on one line.
-// Points on one line do not determine the rotation about this line. Points count as on one line if
-// relative_width() of them is at most kLineWidth.
+// than three points, if a coordinate is not finite, or if `source` or `target` lies on one line,
+// because the rotation about this line would be unknown. Points lie on one line if their
+// relative_width() is at most kLineWidth (scene/decompositions.h).
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target, bool with_scale = true);
 
 struct CentreAlignment {
   Similarity similarity;
   std::vector<std::string> names;  // images that are in both models
-  std::vector<double> residuals;   // of centres [unit of the reference], ordered as `names`
-  std::vector<double> turns;       // from aligned to reference rotations [rad], ordered as `names`
-  double rms = 0;                  // of `residuals`
+  // `residuals` and `turns` are in the order of `names`.
+  std::vector<double> residuals;  // distances of aligned and reference centres [reference unit]
+  std::vector<double> turns;      // angles between aligned and reference rotations [rad]
+  double rms = 0;                 // of `residuals`
 };
 
 // Returns the similarity that maps the camera centres of `model` to the camera centres of
@@ -39,8 +40,8 @@ struct CentreAlignment {
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
 
 // Reports the images of `reference` that have no partner in the model. Returns one line with the
-// number of these images and the name of the first one. Returns nothing if all have a partner.
-// `alignment`: the result of align_centres for this reference.
+// number of these images and the name of the first one. Returns nothing if all images have a
+// partner. `alignment`: the result of align_centres for this reference.
 std::vector<std::string> not_matched(const CentreAlignment& alignment,
                                      const io::ColmapModel& reference);
 
@@ -49,7 +50,8 @@ std::vector<std::string> not_matched(const CentreAlignment& alignment,
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
                           const LocalFrame& to);
 
-// Apply the similarity to poses, points and normals. Reprojections do not change.
+// Apply the similarity to the poses, points and normals of the argument. The images of the points
+// do not change.
 void apply(const Similarity& similarity, io::ColmapModel& model);
 void apply(const Similarity& similarity, PointCloud& cloud);
 void apply(const Similarity& similarity, Mesh& mesh);

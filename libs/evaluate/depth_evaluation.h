@@ -16,7 +16,8 @@ struct DepthOptions {
   std::size_t histogram_bins = 80;
 };
 
-// A ring around the image centre; radii are fractions of the half diagonal.
+// A ring around the image centre. Its radii `inner` and `outer` are fractions of half the diagonal
+// of the image.
 struct Ring {
   double inner = 0, outer = 0;
   std::size_t count = 0;
@@ -33,10 +34,10 @@ struct DepthEvaluation {
   std::size_t truth_pixels = 0;      // pixels that have a truth
   std::size_t estimated_pixels = 0;  // pixels that have an estimate
   std::size_t compared_pixels = 0;   // pixels that have both
-  double completeness = 0;           // compared / truth
+  double completeness = 0;           // compared_pixels / truth_pixels
   // One score for each tolerance. A pixel is within the tolerance if |error| is at most the
-  // tolerance. Precision is the share of these pixels in the compared pixels. Recall is their share
-  // in the pixels that have a truth.
+  // tolerance. Precision is the number of these pixels divided by compared_pixels. Recall is their
+  // number divided by truth_pixels.
   std::vector<Score> scores;
   std::vector<Ring> rings;
 };
@@ -65,9 +66,9 @@ std::vector<RelativeRing> relative_rings(std::span<const DepthEvaluation> maps, 
 // Returns the true distances at the pixels of a map of size `size`. If the sizes are equal, the
 // result is a copy. Otherwise pixel u of the result lies at (u + 1/2) * scale - 1/2 in the truth,
 // with scale = width of the truth / width of the result. The same holds for rows. The result is
-// interpolated bilinearly in 1/distance, which is nearly linear on a plane. Exception: if one of
-// the four surrounding pixels has no value, or the largest of them exceeds the smallest by more
-// than 5 % (an edge), the result is the nearest pixel of the truth (0 if it has no value).
+// interpolated bilinearly in 1/distance, which is nearly linear on a plane. Exception: the result
+// is the nearest pixel of the truth (0 if it has no value) if one of the four surrounding pixels
+// has no value, or if their largest distance exceeds their smallest by more than 5 % (an edge).
 cv::Mat1f resample_distance(const cv::Mat1f& truth, cv::Size size);
 
 }  // namespace axial::evaluate

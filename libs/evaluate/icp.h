@@ -15,10 +15,10 @@ struct IcpOptions {
   std::size_t samples = 20000;  // points used; all points if the cloud has fewer
   std::uint64_t seed = 1;
   int max_iterations = 100;
-  double trim = 3;  // a step ignores points farther away than trim * median distance
+  double trim = 3;  // a step ignores points farther from the surface than trim * median distance
   // The iteration ends when a step is shorter than stop * radius. The radius is the RMS distance of
-  // the points used from their mean. The length of a step combines rotation [rad] * radius and
-  // translation.
+  // the used points from their mean. The length of a step combines its translation and radius *
+  // rotation [rad].
   double stop = 1e-7;
 };
 
@@ -26,7 +26,7 @@ struct IcpResult {
   Similarity transform;  // from the cloud to the surface; scale 1
   int iterations = 0;
   bool converged = false;
-  double median_before = 0, median_after = 0;  // of the distances of the points used [m]
+  double median_before = 0, median_after = 0;  // of the used points' distances [m]
 };
 
 // Finds the rigid motion that aligns `points` with `surface`. Minimises the squared distances of a

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges a mesh beyond the distances of evaluate_mesh: its normals, its surface where the cameras
-// saw nothing, and its topology.
+// Evaluates properties of a mesh besides the distances of evaluate_mesh(): its normals, its surface
+// where the cameras saw nothing, and its topology.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,14 +25,13 @@ inline constexpr std::array<double, 3> kNormalLimits{10, 20, 30};  // [degrees]
 // point, from 0 to 180 degrees. A face whose orientation is opposite to the truth has an angle of
 // more than 90 degrees.
 struct NormalErrors {
-  std::size_t count = 0;                              // angles; faces without area have none
-  double median = 0;                                  // [degrees]
+  std::size_t count = 0;  // number of angles; faces without area have none
+  double median = 0;      // [degrees]
   std::array<double, kNormalLimits.size()> within{};  // shares of angles up to kNormalLimits
 };
 
-// Statistics of the samples of the mesh that lie near seen surface. The place of a sample is the
-// nearest point of the truth. A sample belongs to this part if at least CloudOptions::least_views
-// views see its place.
+// Statistics of the seen samples of the mesh. The place of a sample is the nearest point of the
+// truth. A sample is seen if at least CloudOptions::least_views views see its place.
 struct SeenPart {
   double share = 0;             // of the area of the mesh
   DistanceStatistics accuracy;  // as CloudEvaluation::accuracy
@@ -40,8 +39,8 @@ struct SeenPart {
   NormalErrors normals;
 };
 
-// Shares of the area of the mesh that the views do not support. The three classes are disjoint. The
-// place of a sample is the nearest point of the truth.
+// The area of the mesh that the views do not support, in three disjoint classes. Each number is a
+// share of the area of the mesh. The place of a sample is the nearest point of the truth.
 struct UnseenArea {
   double no_view = 0;    // no view sees the place
   double few_views = 0;  // some views see the place, but fewer than CloudOptions::least_views

@@ -13,11 +13,10 @@
 
 namespace axial::evaluate {
 
-// In the JSON, the recall of a class without places is null, and so are the mean, median, RMS and
-// shares of a class without points. Two fields are never null: "share" (of all points) and
-// "within_1_2_3". The "ratio" of a strip is null if `least` is 0. Lengths are metres in the JSON
-// and millimetres in the tables. `tolerances` [m]: the tolerances from which the classes were made,
-// in the same order.
+// In the JSON, the recall of a class without places is null. The mean, median, RMS and shares of a
+// class without points are null, too, except for "share" (of all points) and "within_1_2_3". The
+// "ratio" of a strip is null if `least` is 0. Lengths are metres in the JSON and millimetres in the
+// tables. `tolerances` [m]: the tolerances from which the classes were made, in the same order.
 nlohmann::ordered_json to_json(std::span<const RecallOfViews> classes);
 nlohmann::ordered_json to_json(std::span<const RecallOfThickness> classes);
 nlohmann::ordered_json to_json(std::span<const ErrorsOfViews> classes);

@@ -13,9 +13,9 @@
 
 namespace axial::evaluate {
 
-// The colour of an error in all error pictures: OpenCV's "turbo" map from dark violet (0) through
-// blue, cyan, green and yellow to dark red (`upper` and beyond). Black for an error that is not
-// finite.
+// The colour of an error in all error pictures, by OpenCV's colour map "turbo": dark violet for 0,
+// then blue, cyan, green and yellow, and dark red for `upper` and larger errors. Black for an error
+// that is not finite.
 Rgb error_color(float error, double upper);
 std::vector<Rgb> error_colors(std::span<const float> errors, double upper);
 
@@ -34,8 +34,8 @@ Viewpoint viewpoint_of(const View& view, int width);
 
 // Returns an orthographic viewpoint. The viewing direction is the principal axis along which the
 // points extend least. If there are normals, the viewing direction is opposite to their mean. The
-// points fill 95 % of the picture's width or height, whichever limits the scale. The outermost
-// hundredth of the points at each end of an image axis may lie outside.
+// points fill 95 % of the picture's width or height, whichever limits the scale. Along each image
+// axis, 1 % of the points at either end may lie outside the picture.
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Locates errors in depth maps by classes of pixels, and shows whether depths are biased towards
-// whole pixels of a source view.
+// Divides the errors of depth maps among classes of pixels, and shows whether depths are biased
+// towards whole pixels of a source view.
 #pragma once
 
 #include <array>
@@ -53,9 +53,10 @@ struct ClassifiedMap {
   PixelClassMap classes;
 };
 
-// True if |error| is more than 2 % of the true distance (default of PixelClassOptions::jump - 1).
-// Most points with gross errors lie on another surface or on no surface. A mean that includes gross
-// errors says nothing about the other errors. `error` and `truth`: [m].
+// True if |error| is more than 2 % of the true distance: the default of PixelClassOptions::jump,
+// minus 1. `error` and `truth`: [m]. Gross errors are counted apart, because a mean that includes
+// them says nothing about the other errors. Most points with gross errors lie on another surface or
+// on no surface.
 bool is_gross(float error, float truth);
 
 // The values |estimate - truth| [m] of the pixels that have an estimate and a truth.
@@ -72,7 +73,7 @@ struct ClassErrors {
   std::size_t truth_pixels = 0, compared_pixels = 0;
   std::size_t gross_pixels = 0;  // compared pixels with a gross error
   double median = 0;             // of |estimate - truth| [m]; 0 without compared pixels
-  double mean = 0;               // of the errors that are not gross [m]; 0 without any
+  double mean = 0;               // of the errors that are not gross [m]; 0 without such errors
 };
 
 // Returns the errors of each class, from `edge` to `open`. A class contains its pixels of all maps.
@@ -90,10 +91,10 @@ struct PhaseErrors {
 // neighbours (DepthMap::ids) that is among `maps`. Maps without such a neighbour are left out. The
 // true position is the image of the pixel's true point in the source view. The position is measured
 // along one image axis: the axis along which a change of depth moves the image more. The shift
-// is the depth error times the derivative of the position by the depth. Two kinds of pixels are
-// left out: pixels whose true point is not visible in the source view, and pixels with a shift of
-// more than half a pixel, which have other causes. A bias by interpolation, or by rounding in the
-// projection, appears as a wave over the fractional part.
+// is the depth error times the derivative of the position by the depth. Pixels are left out if
+// their true point is not visible in the source view. Pixels with a shift of more than half a pixel
+// are left out, because such shifts have other causes. A bias by interpolation, or by rounding in
+// the projection, appears as a wave over the fractional part.
 std::vector<PhaseErrors> errors_by_phase(std::span<const ClassifiedMap> maps, std::size_t bins);
 
 }  // namespace axial::evaluate

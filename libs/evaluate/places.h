@@ -43,7 +43,7 @@ Places draw_places(const Mesh& truth, const Surface& surface, std::span<const Vi
 
 // Recall of the places that `least` to `most` views see.
 struct RecallOfViews {
-  std::uint32_t least = 0, most = 0;  // most 0: or more
+  std::uint32_t least = 0, most = 0;  // most 0: no upper limit
   std::size_t places = 0;
   std::vector<double> recall;  // share of places within each tolerance; 0 without places
 };
@@ -55,12 +55,13 @@ struct RecallOfViews {
 std::vector<RecallOfViews> recall_by_views(const Places& places, std::span<const float> distances,
                                            std::span<const double> tolerances, std::uint32_t least);
 
-// Recall of the places on thin structures whose thickness [px] is in [least, most). If only `most`
-// is 0, the thickness is `least` or more. If both are 0, the places are not on thin structures.
+// Recall of the places on thin structures whose thickness [px] is in [least, most). If `most` is 0
+// and `least` is not, there is no upper limit. If both are 0, the places are not on thin
+// structures.
 struct RecallOfThickness {
   double least = 0, most = 0;  // [px]
   std::size_t places = 0;
-  std::vector<double> recall;  // as RecallOfViews
+  std::vector<double> recall;  // as RecallOfViews::recall
 };
 
 // Returns the recall by thickness of the structure, in seven classes. Let s = sqrt(2). The classes

@@ -20,15 +20,15 @@ struct PointUncertainty {
 
 // Errors of the points that were fused from `least` to `most` depth maps.
 struct ErrorsOfViews {
-  std::uint32_t least = 0, most = 0;  // most 0: or more
+  std::uint32_t least = 0, most = 0;  // most 0: no upper limit
   std::size_t points = 0;
-  double share = 0;  // of all points
-  double mean = 0, median = 0;
-  double gross_share = 0;      // share of these points farther from the truth than `gross`
-  std::vector<double> within;  // share of these points within each tolerance
+  double share = 0;             // `points` divided by the number of all points
+  double mean = 0, median = 0;  // of the distances to the truth [m]
+  double gross_share = 0;       // share of these points farther from the truth than `gross`
+  std::vector<double> within;   // share of these points within each tolerance
 };
 
-// Returns three classes: points that were fused from up to 2, exactly 3, and 4 or more depth maps.
+// Returns three classes of points: fused from up to 2 depth maps, from 3, and from 4 or more.
 // `views`: number of depth maps of each point. `distances`: from each point to the truth [m].
 // `tolerances` and `gross`: [m].
 std::vector<ErrorsOfViews> errors_by_views(std::span<const std::uint32_t> views,
@@ -57,7 +57,7 @@ struct NormalisedErrors {
 
 // Normalised errors of the points that were fused from `least` to `most` depth maps.
 struct NormalisedErrorsOfViews {
-  std::uint32_t least = 0, most = 0;  // most 0: or more
+  std::uint32_t least = 0, most = 0;  // most 0: no upper limit
   NormalisedErrors errors;
 };
 

@@ -10,10 +10,10 @@
 
 namespace axial::evaluate {
 
-// Returns `count` random points on the mesh, uniform by area. The surface is cut into `count`
-// pieces of equal area, in the order of its faces, and each piece gets one random point. The same
-// seed gives the same points. `faces`, unless null, receives the face of each sample. Error if the
-// total area is 0 or not finite, or if a face index is out of range.
+// Returns `count` random points on the mesh, uniform by area. The faces, in their order, are
+// divided into `count` parts of equal area, and each part gets one random point. The same seed
+// gives the same points. `faces`, unless null, receives the face of each sample. Error if the total
+// area is 0 or not finite, or if a face index is out of range.
 std::vector<Eigen::Vector3f> sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed,
                                             std::vector<std::uint32_t>* faces = nullptr);
 

@@ -29,10 +29,10 @@ struct ImagePairs {
 };
 
 // Pairs the calibrated images of two scenes. The rules are, in this order:
-// 1. By name. Images are candidates for each other if their paths have the same file name. Of
-//    several candidates, the best one has the most equal folders directly before the file name. If
-//    two candidates are equally good, there is no best one. Two images are a pair if each is the
-//    best candidate of the other.
+// 1. By name. An image of one scene is a candidate for an image of the other scene if their paths
+//    have the same file name. The best candidate has the most equal folders directly before the
+//    file name. If two candidates are equally good, there is no best candidate. Two images are a
+//    pair if each is the best candidate for the other.
 // 2. By order, if rule 1 gives fewer than three pairs. The k-th calibrated image of `scene` and the
 //    k-th calibrated image of `reference` are a pair.
 // Error if rule 2 is needed and the numbers of calibrated images differ.

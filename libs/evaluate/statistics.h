@@ -39,7 +39,8 @@ Histogram histogram(std::span<const float> distances, double upper, std::size_t 
 
 // Precision is the share of the reconstruction that is within the tolerance of the truth. Recall is
 // the share of the truth that is within the tolerance of the reconstruction. The F-score is their
-// harmonic mean. A distance equal to the tolerance counts as within it. A share of nothing is 0.
+// harmonic mean. A distance equal to the tolerance is within the tolerance. If there are no
+// distances, the share is 0.
 struct Score {
   double tolerance = 0;
   double precision = 0, recall = 0, f_score = 0;

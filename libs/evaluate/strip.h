@@ -26,17 +26,17 @@ struct Strip {
   double least = 0, most = 0;
 };
 
-// Error unless there are at least three views and their centres form a strip. Centres form a strip
-// if relative_width() of them is at most 1/4.
+// Error unless there are at least three views and their centres form a strip, which means that the
+// relative_width() of the centres (scene/decompositions.h) is at most 1/4.
 void require_strip(std::span<const View> views);
 
 // Cuts the strip into pieces and counts the points and places in each piece. The direction of the
-// strip is the principal axis along which the camera centres extend most, away from the first
-// camera. The strip covers the whole extent of the places in this direction. A piece is at most
-// 1/5 of the mean spacing of the views long. Pieces with few places, at the ends of the strip, are
-// left out of `least`, `most` and the mean density: they have fewer than half of the places of the
-// median piece. Error as for require_strip, or if the views are so close together that more than
-// 1e5 pieces would be needed.
+// strip is the principal axis along which the camera centres extend most. It points away from the
+// first camera. The strip covers the whole extent of the places in this direction. The length of a
+// piece is at most 1/5 of the mean spacing of the views. Pieces with fewer than half of the places
+// of the median piece, at the ends of the strip, are left out of `least`, `most` and the mean
+// density. Error as for require_strip, or if the views are so close together that more than 1e5
+// pieces would be needed.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 

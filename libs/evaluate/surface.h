@@ -31,16 +31,17 @@ class Surface {
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
-  // Returns the nearest point of the surface. The distance to the triangles, which are float, is
-  // computed in double. The hierarchy only prunes, so the result is exact up to rounding.
+  // Returns the nearest point of the surface. The result is exact up to rounding: distances to
+  // triangles are computed in double, and Embree's hierarchy only excludes triangles that are too
+  // far away.
   ClosestPoint closest(const Eigen::Vector3d& point) const;
 
   // The unit normal of a face; zero for a face without area.
   Eigen::Vector3d face_normal(std::uint32_t face) const;
 
   // True if a triangle crosses the open segment from `from` to `to`. The first part of the segment
-  // (`skip`, a fraction of its length) is left out, so that a point on the surface does not hide
-  // itself.
+  // does not count, so that a point on the surface does not hide itself. `skip`: the length of this
+  // part divided by the length of the segment.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
 
  private:

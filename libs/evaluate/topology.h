@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts the elements of a triangle mesh, and its faults: properties that a surface does not have.
+// Counts the elements of a triangle mesh, and its faults, such as edges that are not manifold.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct Topology {
   std::size_t border_edges = 0;  // edges of one face
   std::size_t border_loops = 0;  // connected parts of the border; border edges connect at vertices
   std::size_t components = 0;    // connected parts of the mesh; faces connect over common edges
-  // Edges of two faces whose orientations differ: both faces pass the edge in the same direction.
+  // Edges of two faces with different orientations: both faces list the edge in the same direction.
   std::size_t inconsistent_edges = 0;
   std::size_t self_intersecting_faces = 0;  // as self_intersecting_faces()
 };

@@ -18,8 +18,8 @@ inline Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& p, const Eigen:
   return a + along * ab;
 }
 
-// The point of the closed triangle that is nearest to p. A triangle without area counts as its
-// edges.
+// The point of the closed triangle that is nearest to p. Of a triangle without area, the nearest
+// point of its edges is returned.
 inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
                                            const std::array<Eigen::Vector3d, 3>& corners) {
   const auto& [a, b, c] = corners;
@@ -28,7 +28,8 @@ inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p,
   const Eigen::Vector3d d = p - a;
   const Eigen::Vector3d normal = e1.cross(e2);
   const double normal2 = normal.squaredNorm();
-  const double u = d.cross(e2).dot(normal);  // barycentric coordinates of p's foot, times normal2
+  // u, v: barycentric coordinates of the projection of p onto the plane, times normal2.
+  const double u = d.cross(e2).dot(normal);
   const double v = e1.cross(d).dot(normal);
   const bool inside = normal2 > 0 && u >= 0 && v >= 0 && u + v <= normal2;
   Eigen::Vector3d best = a;

@@ -9,7 +9,7 @@
 
 namespace axial::evaluate {
 
-// The points x with normal.dot(x) == offset; above it, normal.dot(x) is larger.
+// The points x with normal.dot(x) == offset. Above the plane, normal.dot(x) is larger.
 struct Plane {
   Eigen::Vector3d normal{0, 0, 1};  // unit
   double offset = 0;
@@ -18,17 +18,19 @@ struct Plane {
 };
 
 struct GroundOptions {
-  int up_axis = 2;  // 0, 1, 2: the normal is at most 45 degrees from this axis or its opposite
-  // Distance up to which a point lies on the ground. 0: 1/200 of the diagonal of the mesh's box.
+  // 0, 1, 2: x, y, z. The angle of the normal with this axis or its opposite is at most 45 degrees.
+  int up_axis = 2;
+  // Points up to this distance from the plane lie on the ground [m]. 0: 1/200 of the diagonal of
+  // the bounding box of the mesh.
   double threshold = 0;
   std::uint64_t seed = 1;
 };
 
-// Returns the plane that has the most area of the mesh within `options.threshold` of it. The area
-// is estimated with samples of the mesh. The search is RANSAC (M. Fischler and R. Bolles, 1981). A
-// least-squares fit to the samples within the threshold then refines the plane. `above`: a point on
-// the upper side of the plane, such as a camera. Error if no plane has a normal in the wanted
-// direction (GroundOptions::up_axis), or as for sample_surface.
+// Returns the plane with the largest area of the mesh at distances up to `options.threshold`. The
+// area is estimated with samples of the mesh. The search is RANSAC (M. Fischler and R. Bolles,
+// 1981). A least-squares fit to the samples within the threshold then refines the plane. `above`: a
+// point on the upper side of the plane, such as a camera. Error if no plane has a normal in the
+// wanted direction (GroundOptions::up_axis), or as for sample_surface.
 Plane ground_plane(const Mesh& mesh, const Eigen::Vector3d& above, const GroundOptions& options);
 
 // Returns the volume between the mesh and the plane, above the plane. Every face is clipped at the

@@ -17,16 +17,16 @@
 
 namespace axial::experiments {
 
-using Words = std::vector<std::string>;  // of a command line
+using Words = std::vector<std::string>;  // words of a command line
 
 struct Chain {
-  std::filesystem::path work;  // where the steps keep their folders
-  unsigned max_threads = 0;    // of each program; 0: all cores
+  std::filesystem::path work;  // the folder that contains the folders of the steps
+  unsigned max_threads = 0;    // number of threads of each program; 0: all cores
 };
 
-// Returns the fingerprints of all programs of the chain. The inputs of a result that is measured
-// with the chain must contain these fingerprints. Error if a program does not lie beside the
-// running program.
+// Returns the fingerprints of all programs of the chain. If a part (experiment.h) uses the chain,
+// Part::inputs must contain these fingerprints. Error if a program does not lie beside the running
+// program.
 Json programs_of_the_chain();
 
 // Options of SimulateUnderwater. The options of the port in `port` replace those of the preset.
@@ -36,15 +36,15 @@ struct SceneOptions {
   int samples = 2;                                       // rays along each side of a pixel
   double fov_degrees = 80, scale = 1, relief = 1, coarseness = 1;
   std::string medium = "both";  // "air", "water" or "both"
-  bool truth = true;            // keeps true distances; true normals are removed
-  Words port;                   // "--tilt-degrees", "3"
-  Words more;                   // other options; they replace numbers and `truth` of the same name
+  bool truth = true;            // keep true distances; true normals are always removed
+  Words port;                   // options of the port: "--tilt-degrees", "3"
+  Words more;                   // more options; they take precedence over numbers and `truth`
 };
 // Returns the words of SimulateUnderwater's command line, without the output folder.
 Json to_json(const SceneOptions& options);
 
-// A scene with ground truth: images in `folder`/air and `folder`/water. Later steps keep their
-// folders in it, too.
+// A scene with ground truth. Its images are in `folder`/air and `folder`/water. Later steps keep
+// their folders in `folder`, too.
 struct SimulatedScene {
   std::filesystem::path folder;
 
@@ -66,7 +66,7 @@ refractive::FlatPort<double> port_of(const SimulatedScene& scene);
 struct Calibration {
   std::string model = "PINHOLE";
   std::string parameters;  // "fx,fy,cx,cy,..." [px], in COLMAP's pixel convention
-  bool refine = false;     // otherwise the lens is fixed
+  bool refine = false;     // true: COLMAP refines the lens; false: the lens is fixed
 };
 // Returns the lens of the scene in air. COLMAP does not refine the lens.
 Calibration true_lens(const SimulatedScene& scene);
@@ -82,7 +82,7 @@ Calibration calibration_of(const std::filesystem::path& colmap_model);
 // COLMAP found poses for fewer than three images.
 struct ColmapPoses {
   std::filesystem::path model;  // aligned with the true camera centres, in metres
-  std::size_t images = 0;       // registered
+  std::size_t images = 0;       // number of images for which COLMAP found poses
   double centre_rms = 0;        // [m], RMS error of the aligned camera centres
 };
 // Computes poses for the photographs of `medium` ("air" or "water") with COLMAP. The results lie in
@@ -93,13 +93,14 @@ ColmapPoses colmap_poses(const Chain& chain, const std::string& name, const Simu
 
 struct DenseOptions {
   std::filesystem::path housing;  // empty: no port is known
-  Words more;                     // for DensifyPointCloud
-  // If no image can be matched: true: densified() returns an empty path; false: Error.
+  Words more;                     // more options of DensifyPointCloud
+  // What densified() does if no image can be matched. true: it returns an empty path. false: Error.
   bool or_nothing = false;
 };
 // Computes depth maps and a dense cloud from the photographs of `medium` ("air" or "water") and the
-// poses of the COLMAP model `model`. Returns their folder, which is the folder `name` of the scene.
-// With `options.or_nothing`, returns an empty path if no image can be matched.
+// poses of the COLMAP model `model`. Returns the folder of the depth maps and the cloud, which is
+// the folder `name` of the scene. With `options.or_nothing`, returns an empty path if no image can
+// be matched.
 std::filesystem::path densified(const Chain& chain, const std::string& name,
                                 const SimulatedScene& scene, const std::filesystem::path& model,
                                 const std::string& medium, const DenseOptions& options);

@@ -8,10 +8,10 @@
 
 namespace axial::experiments {
 
-// The inputs of the parts contain the fingerprints of the programs of the chain. So each function
-// reads the programs. Error if a program cannot be read. The parts run the programs, and throw an
-// Error if a program fails. `chain.work` must belong to the experiment alone, because its parts
-// replace and remove folders there. `quick`: few views and small images, for tests.
+// The three functions below read the programs of the chain, because the inputs of the parts contain
+// the fingerprints of the programs. Error if a program cannot be read. The parts run the programs,
+// and throw an Error if a program fails. No other experiment may use `chain.work`, because the
+// parts replace and remove folders in `chain.work`. `quick`: few views and small images, for tests.
 
 // The paper's figures 5 and 6. A scene is reconstructed in air and through a port. The methods
 // through the port are the paper's method, our method, the paper's projection with our warp, and
@@ -22,9 +22,9 @@ Experiment reconstruction(const Chain& chain, bool quick);
 // port.
 Experiment sensitivity(const Chain& chain, bool quick);
 
-// Shows where a refractive model is needed. Compares two reconstructions: with the known port on
-// true poses, and without a port, on COLMAP's poses and with a lens that COLMAP calibrates under
-// water.
+// Shows where a refractive model is needed. Compares two reconstructions of each scene. The first
+// uses the known port and true poses. The second uses no port, COLMAP's poses, and a lens that
+// COLMAP calibrates under water.
 Experiment need(const Chain& chain, bool quick);
 
 }  // namespace axial::experiments

@@ -12,13 +12,13 @@ struct Line {
   std::vector<double> x, y;
 };
 
-// Lines with the same name have the same colour in all panels of a figure only if they have the
-// same order in all panels.
+// The colour of a line depends on its index in `lines`. So lines of the same name should have the
+// same index in all panels of a figure.
 struct LinePanel {
   std::string title, x_title, y_title;
   std::vector<Line> lines;
-  bool logarithmic = false;  // of the y axis
-  bool marked = true;        // a dot at every value
+  bool logarithmic = false;  // whether the y axis is logarithmic
+  bool marked = true;        // whether every value has a dot
 };
 
 // The figure with `columns` panels in each row. Each panel has its legend.
@@ -27,11 +27,12 @@ std::string draw_lines(const std::string& title, const std::vector<LinePanel>& p
 
 struct MapPanel {
   std::string title;
-  std::size_t width = 0;       // of the map
+  std::size_t width = 0;       // number of values in a row
   std::vector<double> values;  // row by row; negative: no value, drawn grey
 };
 
-// All maps with one colour scale from 0 to `highest`, which is drawn beside them.
+// The figure with `columns` panels in each row. All maps have the same colour scale from 0 to
+// `highest`, which is drawn beside the panels. `unit`: the unit of the values.
 std::string draw_maps(const std::string& title, const std::vector<MapPanel>& panels,
                       std::size_t columns, double highest, const std::string& unit);
 

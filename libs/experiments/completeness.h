@@ -14,9 +14,10 @@ namespace axial::experiments {
 struct CompletenessOptions {
   std::string preset = "closeup";      // of SimulateUnderwater
   std::string medium = "water";        // "air" or "water"
-  std::string poses = "true";          // "true"; "colmap": computed from photographs in air
-  std::vector<int> seeds{11, 12, 13};  // of the scenes: at least one, each once
-  // [m]. 0: 2 mm for presets whose name starts with "closeup" or "thicket", otherwise 5 mm.
+  std::string poses = "true";          // "true", or "colmap": computed from photographs in air
+  std::vector<int> seeds{11, 12, 13};  // seeds of the scenes: at least one, each only once
+  // The tolerance of the evaluation [m]. 0: 2 mm for presets whose name starts with "closeup" or
+  // "thicket", otherwise 5 mm.
   double tolerance = 0;
   Words scene, dense;  // more options of SimulateUnderwater and of DensifyPointCloud
 };

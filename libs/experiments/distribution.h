@@ -24,7 +24,7 @@ class Distribution {
       ++beyond_;
   }
 
-  // Adds all of `other`, which has the same bins.
+  // Adds all errors of `other`. Precondition: `other` has the same bins.
   void merge(const Distribution& other);
 
   std::int64_t count() const { return count_; }

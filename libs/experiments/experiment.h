@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 
 struct Part {
   std::string name;               // unique within the experiment, valid as part of a file name
-  Json inputs;                    // everything the result depends on, except the machine
-  std::function<Json()> compute;  // the same bytes for any number of threads, except times
+  Json inputs;                    // everything on which the result depends, except the machine
+  std::function<Json()> compute;  // except for times, the same bytes for any number of threads
 };
 
 struct Document {
@@ -28,11 +28,13 @@ struct Document {
 struct Experiment {
   std::string name;
   std::vector<Part> parts;
-  // Makes the documents from {"experiment", "quick", "parts": {name: {"inputs", "result"}, ...}}.
+  // Makes the documents from the results of all parts. `results` has the form {"experiment",
+  // "quick", "parts": {name: {"inputs", "result"}, ...}}.
   std::function<std::vector<Document>(const Json& results)> documents;
 };
 
-// `quick`: the same parts with fewer samples, for tests.
+// The experiments of the paper's figures and run times. `quick`: the same parts with fewer samples,
+// for tests.
 Experiment figure2(bool quick);
 Experiment runtime(bool quick);
 Experiment figure3(bool quick);

@@ -21,17 +21,18 @@ SceneDistances scene_distances(const SimulatedScene& scene, const std::string& m
 struct EvaluationOptions {
   double tolerance = 0.005;  // [m]
   // A place of the truth counts if at least `min_views` cameras under water see it. The default is
-  // the default of --number-views-fuse.
+  // that of DensifyPointCloud's option --number-views-fuse.
   std::size_t min_views = 3;
   bool icp = false;              // aligns the cloud with the truth by a rigid motion first
-  std::size_t samples = 200000;  // of the truth
-  int picture_width = 0;         // 0: no picture
-  double color_max = 0.010;      // [m], error of the last colour in pictures
-  // If the cloud has nothing to measure: true: evaluated() returns null; false: Error.
+  std::size_t samples = 200000;  // number of samples of the truth
+  int picture_width = 0;         // [px]; 0: no picture
+  double color_max = 0.010;      // error of the last colour in pictures [m]
+  // What evaluated() does if the cloud has nothing to measure. true: it returns null. false: Error.
   bool or_nothing = false;
 };
 // Returns the options as inputs of a part (Part::inputs), except `icp` and `or_nothing`. These two
-// options need not be inputs: a part measures with both values, or always with the same value.
+// options are no inputs, because a part measures with both values of the option, or always with the
+// same value.
 Json to_json(const EvaluationOptions& options);
 
 // Measures the cloud in the folder `dense` with EvaluateReconstruction. The scene's cameras under
@@ -41,8 +42,8 @@ Json to_json(const EvaluationOptions& options);
 // - The completeness counts the surface that at least `min_views` of these cameras see.
 // Fields of the result: "points", "mean", "median" and "variance" of the distances of the points to
 // the truth [m, m^2]; "recall" and "f_score" at the tolerance; and, if `picture_width` is above 0,
-// "picture" (PNG in base64). If there is nothing to measure, the result is null with
-// `options.or_nothing`. Otherwise this is an Error.
+// "picture" (PNG in base64). If there is nothing to measure, returns null with
+// `options.or_nothing`, and otherwise throws an Error.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 

@@ -10,13 +10,13 @@
 
 namespace axial::experiments {
 
-// A scene, and the parameter in which it differs from the usual one.
+// A scene, and the parameter in which the scene differs from the usual case.
 struct NeedCase {
   std::string name;    // name of the part
   std::string series;  // name of the varied parameter
-  double value;        // of this parameter, in the unit in its name; 0 if it has no value
+  double value;        // of the parameter, in the unit in `series`; 0 if the parameter has no value
   SceneOptions scene;
-  // The other scene in which the lens was calibrated. Nothing: the lens is calibrated in `scene`.
+  // The scene in which the lens is calibrated. Empty: the lens is calibrated in `scene`.
   std::optional<SceneOptions> calibrated_in;
 
   bool is_usual() const { return name == "usual"; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The errors of warps of a patch, as in the paper's figures 3 and 4. The patch contains every
-// second pixel (texel) of a 9x9 window. A warp maps the patch from one camera behind a flat port to
-// another one. The patch shows a plane. The error e_H of a texel is the distance [px] between the
-// warped texel and its true image. The error e_BH of a patch is the mean of e_H over its texels.
+// second pixel (texel) of a 9x9 window, and shows a plane. A warp maps the patch from a reference
+// camera behind a flat port to a source camera behind a flat port. The error e_H of a texel is the
+// distance [px] between the warped texel and its true image. The error e_BH of a patch is the mean
+// of e_H over its texels.
 #pragma once
 
 #include <array>
@@ -15,9 +16,10 @@
 
 namespace axial::experiments {
 
-// The warps, in the order of the tables. The first five are homographies of virtual cameras. The
-// virtual camera of the reference belongs to the centre of the patch. These warps differ in the
-// virtual scale and in the pixel to which the virtual camera of the source belongs.
+// The warps, in the order of the tables. The first five are homographies between virtual cameras.
+// The virtual camera of the reference belongs to the centre of the patch. The five differ in the
+// scale (focal length f_v) of the virtual cameras, and in the pixel to which the virtual camera of
+// the source belongs. Their comments name the scale, then this pixel.
 enum class Warp : std::size_t {
   kPapers,         // f_v = f; the pixel nearest to the result of Algorithm 1
   kRounded,        // f_v = f; the pixel nearest to the exact projection
@@ -47,7 +49,7 @@ struct PatchErrors {
 class WarpStudy {
  public:
   // Both images have size x size pixels. The middle `fov_size` pixels of the width span the field
-  // of view. 0: all pixels span the field of view.
+  // of view. If `fov_size` is 0, the whole width spans the field of view.
   WarpStudy(const StereoSetup& setup, int size, int fov_size = 0);
 
   // Returns the errors of the patch at `centre` [px] of the first image. Returns nothing if the ray
@@ -81,12 +83,12 @@ struct WarpStatistics {
 struct StudyStatistics {
   std::int64_t centres = 0;
   std::array<WarpStatistics, kWarps> warps;
-  // The next three fields are shares of the centres. Let W be e_BH of kExactCentre: the part of the
-  // error that the homography causes. The part that rounding causes is e_H of the middle texel,
-  // where a homography has no other error.
-  double rounding_over_warp = 0;         // e_H of the middle texel of kRounded is larger than W
-  double papers_rounding_over_warp = 0;  // e_H of the middle texel of kPapers is larger than W
-  double middle_not_least = 0;  // kPapers: another texel has less error than the middle texel
+  // The next three fields are shares of the centres. Let W be e_BH of kExactCentre, which is the
+  // error that the homography causes. Let R be e_H of the middle texel, which is the error that
+  // rounding causes, because a homography has no other error at the middle texel.
+  double rounding_over_warp = 0;         // R of kRounded is larger than W
+  double papers_rounding_over_warp = 0;  // R of kPapers is larger than W
+  double middle_not_least = 0;           // e_H of another texel of kPapers is smaller than R
 
   const WarpStatistics& operator[](Warp w) const { return warps[static_cast<std::size_t>(w)]; }
 };
@@ -99,9 +101,9 @@ StudyStatistics study_statistics(const WarpStudy& study, int step);
 // direction, row by row. The value is -1 where WarpStudy::errors() returns nothing.
 std::vector<double> patch_error_map(const WarpStudy& study, Warp warp);
 
-// Returns e_H [px] of one warp for every texel of every centre, as a map, row by row. The centres
-// range from `border` to size - 1 - border in each direction. The map shows the patches side by
-// side, so the map is kPatchSide times as wide and high as the range of centres. The value is -1
+// Returns e_H [px] of one warp for every texel of the patch of every centre, as a map, row by row.
+// The centres range from `border` to size - 1 - border in each direction. The map shows the patches
+// side by side, so it is kPatchSide times as wide and high as the range of centres. The value is -1
 // where WarpStudy::errors() returns nothing.
 std::vector<double> exploded_error_map(const WarpStudy& study, Warp warp, int border = kPatchReach);
 

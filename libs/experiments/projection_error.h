@@ -8,7 +8,8 @@
 
 namespace axial::experiments {
 
-// Errors in pixels. `missed`: visible points that the method reports as invisible.
+// Errors [px] of one method. `missed`: the number of visible points that the method reports as
+// invisible.
 struct RoundTrips {
   Distribution errors;
   std::int64_t missed = 0;

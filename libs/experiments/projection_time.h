@@ -10,13 +10,14 @@
 
 namespace axial::experiments {
 
-// The order of the projected points. kScattered: anywhere in the image. kReading: runs of 100
-// neighbouring pixels of a row. A search in a table waits for memory if the points are scattered.
+// The order of the projected points. kScattered: each point anywhere in the image. kReading: runs
+// of 100 neighbouring pixels of a row. The order matters because a search in a table waits for
+// memory if the points are scattered.
 enum class Order { kScattered, kReading };
 
 struct TimingOptions {
-  int points = 20000;          // points that each method but "analytic" projects in a repetition
-  int analytic_points = 1000;  // the same for "analytic"; larger values are reduced to `points`
+  int points = 20000;          // points per repetition, for all methods but "analytic"
+  int analytic_points = 1000;  // points per repetition for "analytic"; at most `points`
   int repetitions = 9;         // each repetition runs all methods in turn
 };
 
@@ -24,7 +25,7 @@ struct MethodTime {
   // "exact", "line_search_plain", "line_search_compact", "line_search_tight" or "analytic".
   std::string method;
   double nanoseconds = 0;  // CPU time of a projection, median over the repetitions
-  double ratio = 0;        // time / time of "exact" in the same repetition, median
+  double ratio = 0;        // time / time of "exact" in the same repetition, median of these ratios
   double mean_error = 0;   // [px]
   int points = 0, missed = 0;
 };

@@ -12,22 +12,22 @@ namespace axial::experiments {
 
 // A way from photographs to a dense cloud.
 struct Method {
-  const char* name;   // field of the results
-  const char* title;  // in tables and figures
+  const char* name;   // name of the method's field in the results
+  const char* title;  // title in tables and figures
   bool in_water;      // true: photographs through the port; false: photographs in air
-  Words options;      // of DensifyPointCloud
+  Words options;      // options of DensifyPointCloud
   // True: depth maps on true poses and completeness by the number of cameras are evaluated, too.
   bool judged_closely;
 };
 // Returns all methods, in the order of the tables.
 const std::array<Method, 5>& reconstruction_methods();
 
-// For each of these numbers, completeness is measured for the places that at least this number of
-// cameras see.
+// Completeness is measured once for each of these numbers n, for the places that at least n cameras
+// see.
 inline constexpr std::array<std::size_t, 4> kCompletenessViews{2, 3, 4, 5};
 
-// Return the names of the two parts of a seed. colmap_part(): clouds on COLMAP's poses.
-// true_part(): clouds and depth maps on true poses.
+// Return the names of the two parts of a seed. The part colmap_part() measures clouds on COLMAP's
+// poses. The part true_part() measures clouds and depth maps on true poses.
 std::string colmap_part(int seed);
 std::string true_part(int seed);
 

@@ -32,9 +32,10 @@ std::string phases_table(const Json& results, const Seeds& seeds);
 // Signed errors in rings around the image centre.
 std::string rings_table(const Json& results, const Seeds& seeds);
 
-// Compares our method with the images in air, ring by ring. Let m be the median of the relative
-// error (estimate - truth) / truth in a ring. Let d be the median over the seeds of m of our method
-// minus m in air. Returns the largest |d| over the rings. Rings with few pixels do not count.
+// Compares our method under water with the images in air, ring by ring. Let m be the median of the
+// relative error (estimate - truth) / truth in a ring. Let d be the median, over the seeds, of the
+// difference between m of our method and m in air. Returns the largest |d| over the rings. Rings
+// with few pixels do not count.
 double largest_ring_difference(const Json& results, const Seeds& seeds);
 
 }  // namespace axial::experiments

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's virtual camera with the locally correct scale instead of f_v = f. The scale is a 2x2
-// matrix: behind a flat port the horizontal and the vertical scale differ.
+// The paper's virtual camera, but with the locally correct scale instead of the focal length f_v =
+// f. The scale is a 2x2 matrix, because the horizontal and the vertical scale differ behind a flat
+// port.
 #pragma once
 
 #include <Eigen/LU>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The setups of the paper's simulations: a camera behind a flat port, and a stereo pair of it
-// before a plane. The default values are the paper's, except the refractive indices, which the
-// paper does not give.
+// The setups of the paper's simulations: a camera behind a flat port, and a stereo pair of two such
+// cameras in front of a plane. The default values are the paper's, except the refractive indices,
+// which the paper does not give.
 #pragma once
 
 #include <string>
@@ -18,10 +18,10 @@ using refractive::Vector2;
 using refractive::Vector3;
 
 struct CameraSetup {
-  double fov_degrees = 80;  // horizontal, in air
-  double distance = 0.02;   // d_a, camera centre to glass [m]
-  double thickness = 0.014;
-  double tilt_degrees = 0;  // of the port's normal, towards +x
+  double fov_degrees = 80;   // horizontal, in air
+  double distance = 0.02;    // d_a, camera centre to glass [m]
+  double thickness = 0.014;  // of the glass [m]
+  double tilt_degrees = 0;   // of the port's normal, towards +x
   double n_glass = 1.52;
   double n_water = 1.333;
 };

@@ -11,8 +11,8 @@ namespace axial::experiments {
 // Appends `more`.
 Words& operator+=(Words& words, const Words& more);
 
-// Calls make() to fill `folder`, unless the folder was made with the same `inputs` before. The
-// folder is empty when make() is called. If make() throws, the folder counts as not made, and the
+// Fills `folder` by make(), unless an earlier call has filled it with the same `inputs`. The folder
+// is empty when make() is called. If make() throws, the folder does not count as filled, and the
 // next call removes its content.
 template <class Make>
 void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
@@ -31,7 +31,7 @@ void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
 bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
                  const std::filesystem::path& log, const Words& excuses = {});
 
-// Returns the CPU time [s] of all child processes that have ended.
+// Returns the CPU time [s] of all child processes of this process that have ended.
 double children_seconds();
 
 // Returns the entries of a folder whose paths end in the text `end`, in the order of their names.

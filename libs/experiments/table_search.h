@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Algorithm 1 with other table layouts than refractive/line_search.h, to measure the influence of
-// the layout on time. The smaller the entry of a pixel, the less a search waits for memory.
+// The paper's Algorithm 1 with other table layouts than in refractive/line_search.h, to measure the
+// influence of the layout on time. The smaller the entry of a pixel in the table, the less a search
+// waits for memory.
 #pragma once
 
 #include <cmath>
@@ -11,9 +12,9 @@
 
 namespace axial::experiments {
 
-// The entry of a pixel x as the paper prints it: L(x) = {C_v, X_v, c_v}. C_v (3 numbers) is the
-// origin of the pixel's ray in water, X_v (3) its unit direction, and c_v (2) the principal point
-// of the virtual camera. The entry has 8 numbers.
+// The entry of a pixel x with 8 numbers, as in the paper: L(x) = {C_v, X_v, c_v}. C_v (3 numbers)
+// is the origin of the pixel's ray in water, X_v (3 numbers) the unit direction of the ray, and c_v
+// (2 numbers) the principal point of the virtual camera.
 template <class T>
 struct PlainCell {
   refractive::Vector3<T> centre, direction;
@@ -34,9 +35,9 @@ struct PlainCell {
   }
 };
 
-// The smallest entry for Algorithm 1. An entry has 2 numbers, from the pixel's ray in water:
-// `along`, the distance [m] of the ray's origin C_v from the camera centre along the port's normal
-// n, and `cosine` (beta), the cosine of the angle between the ray's direction and n.
+// The smallest entry for Algorithm 1, with 2 numbers about the pixel's ray in water. `along`: the
+// distance [m] of the ray's origin C_v from the camera centre along the port's normal n. `cosine`:
+// the cosine of the angle between the ray's direction and n (the paper's beta).
 template <class T>
 struct TightCell {
   T along, cosine;
@@ -54,7 +55,7 @@ struct TightCell {
   }
 };
 
-// Projects as LineSearchCamera, with its own table of `Cell`s.
+// Projects like refractive::LineSearchCamera, with a table whose entries have the type Cell.
 template <class T, class Cell>
 class TableSearch {
  public:

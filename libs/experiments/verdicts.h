@@ -8,8 +8,8 @@
 namespace axial::experiments {
 
 struct Verdict {
-  std::string asked;
-  std::string seen;
+  std::string asked;  // the requirement, in words
+  std::string seen;   // the numbers of the experiment, in words
   bool met = false;
 };
 

@@ -9,18 +9,18 @@
 namespace axial::mesh {
 
 struct CleanOptions {
-  double decimate = 1;           // part of the faces to keep, above 0; 1: all
-  std::size_t target_faces = 0;  // number of faces to keep, instead of `decimate`; 0: not given
+  double decimate = 1;           // fraction of the faces to keep, above 0; 1: all
+  std::size_t target_faces = 0;  // number of faces to keep; 0: `decimate` decides
   double spurious = 20;  // remove components with a diameter below this many mean edge lengths
   bool spikes = true;    // remove faces that hang on the mesh by one edge or one corner
   std::size_t close_holes = 30;  // close holes of at most this many edges; 0: none
-  unsigned smooth = 0;           // steps of smoothing
+  unsigned smooth = 0;           // number of smoothing steps
   double edge_length = 0;        // length of the edges after remeshing [m]; 0: no remeshing
 };
 
 struct CleanReport {
   std::size_t removed_components = 0, removed_spikes = 0, closed_holes = 0;
-  std::size_t removed_intersections = 0;  // faces that intersected others to the end
+  std::size_t removed_intersections = 0;  // faces removed in step 7
 };
 
 // Makes `mesh` edge- and vertex-manifold, oriented and free of self-intersections. The steps, in
@@ -37,9 +37,8 @@ struct CleanReport {
 //
 // Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
 // neighbours. Vertices without faces are removed. Colours are lost. `report`: may be null. The
-// result does not depend on the number of threads. Throws an Error if the mesh has no face or only
-// faces that name a vertex twice, if no face is left, or if remeshing would make more than 2^28
-// faces.
+// result does not depend on the number of threads. Throws an Error if no face of `mesh` has three
+// different vertices, if the steps leave no face, or if remeshing would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 }  // namespace axial::mesh

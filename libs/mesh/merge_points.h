@@ -13,8 +13,8 @@
 namespace axial::mesh {
 
 struct MergeOptions {
-  // Two points are merged if their distance is at most this in every image that sees the first
-  // [px]. 0: no points are merged.
+  // The largest distance [px] between the images of two merged points, in every view of the first
+  // of the two points. 0: no points are merged.
   double min_distance = 2.5;
 };
 
@@ -30,12 +30,12 @@ struct MergedPoints {
   std::size_t size() const { return positions.size(); }
 };
 
-// Merges the points of `cloud`. The points with the most views are taken first. Let p be a point
-// that is taken and not absorbed yet. The point p absorbs itself and each point q that is not
-// absorbed yet, under three conditions. First, in each view of p the distance from p to q is at
-// most min_distance [px]. Second, the distance from p to q in space is at most 2 * min_distance
-// times the width of a pixel of the sharpest view at p. Third, if the cloud has normals, the
-// normals of p and q differ by at most 60 degrees.
+// Merges the points of `cloud`. The points with the most views are taken first. A point p that is
+// taken and not absorbed yet absorbs itself, and each other point q that is not absorbed yet and
+// satisfies three conditions. First, in each view of p the distance from p to q is at most
+// min_distance [px]. Second, the distance from p to q in space is at most 2 * min_distance times
+// the width of a pixel of the sharpest view at p. Third, if the cloud has normals, the normals of p
+// and q differ by at most 60 degrees.
 // The position of the result is the weighted mean of the absorbed points. The weight of a point is
 // the sum of its PointCloud::view_weights, or its number of views if the cloud has no weights.
 // Points that no view sees are dropped, unless another point absorbs them. The result is in the

@@ -12,7 +12,7 @@
 
 namespace axial::mesh {
 
-// For every point, the tetrahedra that have the point as a corner. All are in one array.
+// The star of every point: the tetrahedra that have the point as a corner.
 class Stars {
  public:
   Stars(const Tetrahedra& tetrahedra, std::size_t points);
@@ -28,10 +28,10 @@ class Stars {
 };
 
 struct Crossing {
-  std::uint32_t from, to;  // the tetrahedra on both sides, in the order of the walk
-  int facet;               // the facet is opposite of this corner of `from`,
-  int back;                // and opposite of this corner of `to`
-  double distance;         // along the ray [m]
+  std::uint32_t from, to;  // the tetrahedra before and behind the facet, in the order of the walk
+  int facet;               // the number of the corner of `from` opposite of the facet
+  int back;                // the number of the corner of `to` opposite of the facet
+  double distance;         // from the start, along the ray [m]
 };
 
 // Walks from the point `start` along the unit vector `direction`. `start` is a corner of the
@@ -52,13 +52,15 @@ std::uint32_t walk(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f
 
 namespace detail {
 
-// A corner relative to the start of a ray: x and y across the ray, z along it.
+// A corner of a tetrahedron. `at`: its position relative to the start of a ray [m], with x and y
+// across the ray and z along the ray.
 struct Corner {
   std::uint32_t index = 0;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
 };
 
-// The walk's state.
+// The state of a walk: the ray, the current tetrahedron, and the facet through which the ray leaves
+// this tetrahedron.
 class RayWalker {
  public:
   RayWalker(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
@@ -71,14 +73,16 @@ class RayWalker {
 
   std::uint32_t cell() const { return cell_; }
 
-  // The distance from the start at which the ray leaves the tetrahedron.
+  // The distance [m] from the start at which the ray leaves the current tetrahedron.
   double exit_distance() const;
 
-  // Enters the next tetrahedron. Returns false if it is infinite.
+  // Enters the next tetrahedron, and describes the facet between the two in `crossing`. Returns
+  // false if the next tetrahedron is infinite.
   bool step(Crossing& crossing);
 
  private:
-  // An infinite tetrahedron of `star`: the facet of the hull beside it faces the direction most.
+  // Returns the infinite tetrahedron of `star` whose facet of the hull has the outward normal
+  // nearest to the direction of the ray.
   std::uint32_t facing_infinite(std::span<const std::uint32_t> star) const;
   Corner corner_at(std::uint32_t index) const;
 
@@ -101,7 +105,8 @@ std::uint32_t walk(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f
                    double length, Cross&& cross) {
   detail::RayWalker walker(tetrahedra, points, start, direction);
   if (!walker.begin(stars.of(start))) return walker.cell();
-  // By rounding, a walk could go around an edge for ever.
+  // Rounding could make a walk go around an edge for ever. So the walk ends after this number of
+  // steps without progress.
   constexpr int kMostSteps = 256;
   double farthest = 0;
   for (int steps = 0; steps < kMostSteps; ++steps) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entry of this library: makes a mesh from a cloud with views. The steps are those of Labatut,
-// Pons and Keriven 2009 (votes.h). In addition, rays bend at the ports of the cameras.
+// The entry of this library: makes a mesh from a cloud with views. The method is that of Labatut,
+// Pons and Keriven 2009 (votes.h). In addition, the rays of cameras behind ports bend at the port.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,12 @@ struct ReconstructOptions {
   VoteOptions votes;
   // `spurious` also limits the edges of the surface (surface.h).
   CleanOptions clean;
-  bool only_region = false;         // use only points in the scene's region of interest
-  bool crop_to_region = true;       // remove the surface outside of the region, if there is one
-  std::uint64_t max_bytes = 0;      // 0: no limit
-  SettingNames name_of = own_name;  // "max_memory", "merge.min_distance"
+  bool only_region = false;     // use only points in the scene's region of interest
+  bool crop_to_region = true;   // remove the surface outside of the region, if there is one
+  std::uint64_t max_bytes = 0;  // 0: no limit
+  // Errors name max_bytes by name_of("max_memory"), and merge.min_distance by
+  // name_of("merge.min_distance").
+  SettingNames name_of = own_name;
 };
 
 // The memory [bytes] that reconstruct() needs for this number of merged points. The memory of the

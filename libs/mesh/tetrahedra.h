@@ -11,7 +11,7 @@
 namespace axial::mesh {
 
 // The tetrahedra fill the convex hull of the points. In addition, an infinite tetrahedron lies
-// outside of each facet of the hull. It has a corner at infinity.
+// outside of each facet of the hull. One corner of an infinite tetrahedron is at infinity.
 struct Tetrahedra {
   static constexpr std::uint32_t kInfinity = 0xFFFFFFFFu;  // the corner at infinity
   using Four = std::array<std::uint32_t, 4>;
@@ -30,7 +30,8 @@ struct Tetrahedra {
     const Four& all = corners[cell];
     return all[0] == corner ? 0 : all[1] == corner ? 1 : all[2] == corner ? 2 : 3;
   }
-  // The position of `neighbour` among the neighbours of `cell`. Precondition: they are neighbours.
+  // The position of `neighbour` among the neighbours of `cell`. Precondition: the two tetrahedra
+  // are neighbours.
   int place_of_neighbour(std::size_t cell, std::uint32_t neighbour) const {
     const Four& all = neighbours[cell];
     return all[0] == neighbour ? 0 : all[1] == neighbour ? 1 : all[2] == neighbour ? 2 : 3;

@@ -16,9 +16,9 @@ class ViewRays {
  public:
   explicit ViewRays(const Scene& scene);
 
-  // The derivative of the pixel in `image` by the position of `point` [px/m]. `point` and the
-  // derivative are in the frame of the scene. Zero if the image does not see the point.
-  // Precondition: the image is calibrated.
+  // The derivative of the image position of `point` in `image` by the position of `point` [px/m].
+  // `point` is in the frame of the scene. Zero if the image does not see the point. Precondition:
+  // the image is calibrated.
   Eigen::Matrix<float, 2, 3> pixel_motion(std::uint32_t image, const Eigen::Vector3f& point) const;
 
   // The end of the straight part of the ray from `point` to the camera [m]: the place where the ray

@@ -16,9 +16,9 @@
 
 namespace axial::mesh {
 
-// Votes are stored as integers: the number n means n / kVoteScale votes. No number is above
-// kLargestVote; larger sums are reduced to this limit. Integers are used because their sums do not
-// depend on the order in which threads add.
+// Votes are stored as integers: the integer n means n / kVoteScale votes. An integer above
+// kLargestVote is reduced to kLargestVote. Sums of integers do not depend on the order in which
+// threads add.
 inline constexpr std::int32_t kVoteScale = 64;
 inline constexpr std::int32_t kLargestVote = 1 << 28;
 
@@ -32,12 +32,12 @@ struct Votes {
 
 struct VoteOptions {
   bool constant_weight = true;  // every view of a merged point has the weight 1
-  bool weak_support = false;    // free_space_support (weak_support.h)
-  double thickness_factor = 1;  // multiplies the expected error of a point, 2.5 pixel widths
+  bool weak_support = false;    // also cast the votes of weak_support.h
+  double thickness_factor = 1;  // the expected error of a point is this times 2.5 pixel widths
   double quality_factor = 1;    // multiplies the cost of facets of badly shaped tetrahedra
 };
 
-// The expected error of point i along its rays [m]. It is the sigma in the weights of cast_votes().
+// The expected error of point i along its rays [m]. It is `sigma` in the comment of cast_votes().
 double expected_error(const MergedPoints& points, std::size_t i, const VoteOptions& options);
 
 // Casts the votes of all rays between `points` and the cameras of their views. The points are the
@@ -47,8 +47,8 @@ double expected_error(const MergedPoints& points, std::size_t i, const VoteOptio
 //
 // * The cost of each facet that the ray crosses in front of the point rises by w * (1 - exp(-d^2 /
 //   (2 sigma^2))). The same holds for the facets behind the point, up to d = sigma.
-// * The tetrahedron at the camera's end of the ray gets 100000 votes for outside, which make it
-//   outside with certainty.
+// * The tetrahedron at the camera's end of the ray gets 100000 votes for outside, so that it is
+//   certainly free.
 // * The tetrahedron one sigma behind the point gets w votes for inside.
 //
 // With `weak_support` further votes for inside follow (weak_support.h). At last the cost of each

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces that only few points support, such as surfaces without texture (Jancosek and Pajdla,
-// "Multi-view reconstruction preserving weakly-supported surfaces", CVPR 2011). Where the support
+// Votes that keep surfaces with few points, such as surfaces without texture (Jancosek and Pajdla,
+// "Multi-view reconstruction preserving weakly-supported surfaces", CVPR 2011). Where the evidence
 // of free space falls steeply at a point, the space behind the point is occupied.
 #pragma once
 
@@ -19,18 +19,19 @@ struct Votes;
 
 class WeakSupport {
  public:
-  // Takes the support of free space from `votes`. The support of a tetrahedron is the sum of the
-  // costs of its four facets. The other arguments must outlive the object, but `votes` need not.
+  // Computes the support of free space from `votes`. The support of a tetrahedron is the sum of the
+  // costs of its four facets (Votes::facets). The arguments except `votes` must outlive the object.
   WeakSupport(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
               const Stars& stars, const Votes& votes);
 
   // Compares the support of free space on both sides of the point `start`. The front is the largest
   // support up to 3 `sigma` [m] along the unit vector `direction`, which points to a camera. The
   // back is the mean of the smallest and the largest support up to 4 `sigma` in the opposite
-  // direction. Returns the last tetrahedron behind the point, and the votes for inside that this
-  // tetrahedron gains for a ray of weight 1. If the support falls steeply, the votes are the front
-  // minus the back. Otherwise there are 0 votes. The tetrahedron is Tetrahedra::kInfinity, without
-  // votes, if `start` is no corner of any tetrahedron.
+  // direction. Returns the tetrahedron in which the path in the opposite direction ends, and the
+  // votes for inside that this tetrahedron gains for a ray of weight 1. The support falls steeply
+  // if the back is below a tenth of the front and below 400 votes, and the front minus the back is
+  // above 1000 votes. The votes are then the front minus the back, and otherwise 0. If `start` is
+  // no corner of any tetrahedron, the result is Tetrahedra::kInfinity with 0 votes.
   std::pair<std::uint32_t, double> gain(std::uint32_t start, const Eigen::Vector3d& direction,
                                         double sigma) const;
 

@@ -16,28 +16,27 @@ struct KnownDistance {
   // Between images: indices into Bundle::images. Between points: values of BundlePoint::source.
   std::size_t first = 0, second = 0;
   double metres = 0;  // [m], above 0
-  double sigma = 0;   // [m], above 0
+  double sigma = 0;   // standard deviation [m], above 0
 };
 
 // A known camera centre.
 struct KnownPosition {
-  std::size_t image = 0;
+  std::size_t image = 0;                             // index into Bundle::images
   Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // [m], world frame
-  double sigma = 0;                                  // [m], above 0
+  double sigma = 0;                                  // standard deviation [m], above 0
 };
 
-// Which numbers of a camera (housing_change.h) are unknown, and the standard deviation with which
-// each of them was measured, in the unit of that number. A standard deviation of 0 means that the
-// number was not measured.
+// free: whether each number of a camera (housing_change.h) is unknown. prior_sigma: the standard
+// deviation with which each number was measured, in the number's unit; 0: not measured.
 struct Unknowns {
   std::array<bool, kHousingNumbers> free{};
   std::array<double, kHousingNumbers> prior_sigma{};
 };
 
-struct AdjustOptions : Unknowns {  // for all cameras
-  // The unknowns of cameras behind domes. Empty: cameras behind domes have the same unknowns as
-  // all other cameras. The first three numbers of a dome and of a flat port have different
-  // meanings.
+struct AdjustOptions : Unknowns {  // the unknowns of all cameras; see of_domes
+  // The unknowns of cameras behind domes. Empty: the same as for all other cameras. Domes can have
+  // unknowns of their own, because the first three numbers of a dome and of a flat port have
+  // different meanings.
   std::optional<Unknowns> of_domes;
 
   // The unknowns that apply to `camera`.
@@ -48,8 +47,8 @@ struct AdjustOptions : Unknowns {  // for all cameras
   bool points_known = false;             // points stay where they are and fix the model's place
   bool poses_known = false;              // poses stay where they are and fix the model's place
 
-  double pixel_sigma = 1;  // [px] of the observations: weighs them against the known numbers
-  double loss_sigmas = 2;  // Huber loss: larger errors [pixel_sigma] count linearly
+  double pixel_sigma = 1;  // standard deviation of the observations [px]
+  double loss_sigmas = 2;  // Huber loss: errors above this times pixel_sigma count linearly
   int max_iterations = 100;
 };
 
@@ -82,7 +81,7 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 
 // Standard deviations of the results of bundle adjustment.
 struct Uncertainty {
-  double pixel_sigma = 0;  // [px] of the observations, from their residuals
+  double pixel_sigma = 0;  // of the observations [px], by observed_pixel_sigma()
   // One vector for each camera, in the units of housing_change.h. The standard deviation of a
   // free number is infinite if the observations do not determine the number. Numbers that are not
   // free have 0.

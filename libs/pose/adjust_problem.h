@@ -23,9 +23,9 @@ class AdjustProblem {
 
   ceres::Problem& problem() { return *problem_; }
 
-  // The parameter blocks that the solver changes. Constant blocks are left out. A point block has
-  // 3 numbers. The solver eliminates the blocks of point_blocks(), and no residual may depend on
-  // two of them. Points with a known distance to another point are therefore among
+  // The parameter blocks that the solver changes. Constant blocks are left out. A point block has 3
+  // numbers. The solver eliminates the blocks of point_blocks(), so no residual may depend on two
+  // blocks of point_blocks(). Points with a known distance to another point are therefore among
   // camera_blocks().
   std::vector<double*> camera_blocks();  // images, changes of cameras, points with a known distance
   std::vector<double*> point_blocks();   // all other points

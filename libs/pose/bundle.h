@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The input of refractive bundle adjustment: cameras, poses, points and observations. World frame
-// and metres throughout; pixels with centres at integers.
+// The input of refractive bundle adjustment: cameras, poses, points and observations. Coordinates
+// are in metres in the world frame. Pixel centres are at integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ namespace axial::pose {
 
 struct BundleCamera {
   HousedCamera measured;
-  // The difference between the present and the measured numbers of lens and port.
+  // The present minus the measured numbers of lens and port.
   HousingChange<double> change = HousingChange<double>::Zero();
 
   // The camera with the change applied.
@@ -31,14 +31,14 @@ struct BundleImage {
 
 struct BundlePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::size_t source = 0;  // its id in the model it comes from
+  std::size_t source = 0;  // the point's id in the COLMAP model
 };
 
 struct Observation {
   std::size_t image = 0;
   std::size_t point = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the photograph
-  std::size_t source = 0;  // its index in ColmapImage::points, in the model it comes from
+  std::size_t source = 0;  // index in ColmapImage::points of the COLMAP model
 };
 
 struct Bundle {
@@ -51,8 +51,8 @@ struct Bundle {
 // The cameras of the bundle with their changes applied, in the same order.
 std::vector<PhotographCamera> cameras_now(const Bundle& bundle);
 
-// The index of the point whose source is `source`. Error if no point of the bundle has that source,
-// for example because it was dropped.
+// The index of the point whose BundlePoint::source is `source`. Error if there is no such point,
+// for example because the point was dropped.
 std::size_t point_of(const Bundle& bundle, std::size_t source);
 
 // The number of observations in each image.
@@ -63,7 +63,7 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 // false).
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
-// The same errors, one list for each image; the list is empty for an image without observations.
+// The same errors in one list for each image. The list of an image without observations is empty.
 std::vector<std::vector<double>> reprojection_errors_by_image(const Bundle& bundle);
 
 // Root of the mean of the squared finite errors. 0 if no error is finite.

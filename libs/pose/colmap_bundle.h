@@ -15,7 +15,7 @@ struct ColmapBundle {
   Bundle bundle;
   std::vector<io::ColmapCamera> lenses;  // per bundle camera: the lens in air; ids count from 1
   std::vector<std::string> ports;        // per bundle camera: the name of its port
-  std::size_t unseen = 0;                // observations left out, without a direction of the lens
+  std::size_t unseen = 0;  // observations left out because the lens has no direction for the pixel
 };
 
 // Makes a bundle from the poses, points and tracks of `model`. The lenses of `model` are not
@@ -30,22 +30,22 @@ ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapC
                        const io::Housing& housing);
 
 // Two RMS reprojection errors [px] of the tracks of a model: with its cameras behind their ports,
-// and with the same cameras in air. The smaller error tells with which cameras the poses were
-// computed. Both are 0 if the model has no tracks.
+// and with the same cameras in air. The smaller error belongs to the cameras with which the poses
+// were computed. Both are 0 if the model has no tracks.
 struct PortFit {
   double behind_ports = 0, in_air = 0;
 };
 PortFit port_fit(const io::ColmapModel& model);
 
 // Converts a bundle back. `model` is the model from which to_bundle() made the bundle. The result
-// has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one
-// camera for each camera of the bundle, with the lens in air and the port as they are now. Images
-// without observations are left out.
+// has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one camera
+// for each camera of the bundle, with the present lens in air and the present port. Images without
+// observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
-// The present ports of the bundle by camera id, where the ids are those of ColmapBundle::lenses.
+// The present ports of the bundle, as a housing for the camera ids of ColmapBundle::lenses.
 // `measured` is the housing from which the bundle was made. If several cameras share a port, each
-// of them with a change gets a port of its own.
+// camera whose numbers have changed gets a port of its own.
 io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
 
 }  // namespace axial::pose

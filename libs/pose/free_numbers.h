@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of a camera that are under adjustment: their names in options and reports.
+// The free numbers of a camera, which adjust() changes: their names in options and reports.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Sigmas {
   double normal_degrees = 0;
   double distance = 0, centre = 0, thickness = 0;  // [m]
   double index = 0;
-  double focal = 0;  // relative
+  double focal = 0;  // divided by the focal length
 };
 
 // Adds the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
@@ -25,19 +25,20 @@ struct Sigmas {
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
 // Sets the unknowns of `adjust` from `refine`, a comma-separated list of normal, distance,
-// centre, thickness, index and focal. Normal and distance apply to flat ports. Centre applies to
-// domes. The other words apply to all cameras.
+// centre, thickness, index and focal. `normal` and `distance` apply to flat ports, `centre` applies
+// to domes, and the other words apply to all cameras.
 //
 // Throws an Error in these cases:
 // - The list has an unknown word.
-// - Normal or distance is listed and there is no flat port, or centre and there is no dome.
-// - Any word other than focal is listed and some cameras are in air.
+// - `normal` or `distance` is listed and there is no flat port, or `centre` is listed and there is
+//   no dome.
+// - Any word other than `focal` is listed and some cameras are in air.
 // - A standard deviation is negative or not finite, or it is positive and its number is not
 //   listed.
-// - Thickness is listed without a positive standard deviation: its effect looks like that of the
-//   distance.
-// - Distance is listed without a positive standard deviation, and `adjust` has no known
-//   distances, positions, points or poses: photographs show only the ratio of lengths.
+// - `thickness` is listed without a positive standard deviation, because the effects of thickness
+//   and distance look alike.
+// - `distance` is listed without a positive standard deviation, and `adjust` has no known
+//   distances, positions, points or poses, because photographs show only ratios of lengths.
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
 // "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also
@@ -46,7 +47,8 @@ void declare_sigmas(OptionList& list, Sigmas& sigmas);
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of = own_name);
 
-// The words of `refine` for the place of the port: "normal,distance" or "centre".
+// The words of `refine` (set_free_numbers) that free the place of the port: "normal,distance" for a
+// flat port, "centre" for a dome.
 std::string place_words(const refractive::Port<double>& port);
 
 enum class Quantity { angle, place, index, thickness, focal };

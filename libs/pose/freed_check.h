@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// After refractive bundle adjustment: would other numbers of the housing fit the photographs better
-// than the stated numbers?
+// Checks, after refractive bundle adjustment, whether other numbers of the housing would fit the
+// photographs better than the stated numbers.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ namespace axial::pose {
 struct FreedNumber {
   std::string name, unit;
   double stated = 0, found = 0;          // [unit]
-  double rms_stated = 0, rms_found = 0;  // [px]
+  double rms_stated = 0, rms_found = 0;  // RMS reprojection errors with either value [px]
   double deviations = 0;                 // |found - stated| in standard deviations
 };
 
@@ -26,30 +26,30 @@ struct FreedNumber {
 // after the adjustment. If several numbers were freed together, the result is the number that
 // changed most.
 //
-// A number counts only if freeing it lowers the RMS error by at least 7 % and by at least 0.02
-// px, and if it then differs from the stated value by more than 6 standard deviations. Errors of
-// a good lens calibration lower the RMS error by less.
+// A number counts only if freeing it lowers the RMS error by at least 7 % and by at least 0.02 px,
+// and if its adjusted value differs from its stated value by more than 6 standard deviations. With
+// these limits, the small errors of a good lens calibration give no result.
 //
-// Each adjustment uses at most 40 images and 600 points of the refined bundle and runs for at
-// most 20 iterations. The model's scale is held. A wrong port distance is therefore found only if
-// the scale was given. If refraction alone determined the scale, the scale has adapted to the
-// wrong distance.
+// Each adjustment uses at most 40 images and 600 points of the refined bundle and runs for at most
+// 20 iterations. The scale of the model stays constant. A wrong port distance is therefore found
+// only if the scale was given. If refraction alone determined the scale, the scale has already
+// adapted to the wrong distance.
 //
 // Returns nothing if the stated numbers fit, if fewer than 3 images or 20 points are left, if the
 // ports are neither all flat nor all domes, or if an adjustment fails.
 std::optional<FreedNumber> number_that_does_not_fit(const Bundle& refined,
                                                     const AdjustOptions& options);
 
-// The warning that names the number. `scale_sigma`: the relative standard deviation of lengths
-// from the adjustment. If it is 0 or infinite, the warning does not mention lengths. `name_of`
-// gives the name of the setting "refine", the list of numbers to adjust.
+// The warning that names the number `freed`. `scale_sigma`: Uncertainty::scale_sigma, the relative
+// standard deviation of lengths. If it is 0 or infinite, the warning does not mention lengths.
+// `name_of` gives the name of the setting "refine", the list of numbers to adjust.
 std::string warning_of(const FreedNumber& freed, double scale_sigma,
                        SettingNames name_of = own_name);
 
 // One line for each reason that dropped more than a quarter of the observations. Observations
 // that repeat a point in an image are not counted. Only the line about large errors asks the user
-// to check the housing. Too few observations in an image and narrow angles are properties of the
-// survey.
+// to check the housing, because the other reasons (few observations in an image, narrow angles) are
+// properties of the survey.
 std::vector<std::string> dropped_lines(const RefineReport& report, const TrackLimits& limits);
 
 }  // namespace axial::pose

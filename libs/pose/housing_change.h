@@ -25,7 +25,7 @@ inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 template <class T>
 using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
 
-// The measured port or lens changed by `change`. T is double or an automatic-differentiation
+// Return the measured port or lens with `change` added. T is double or an automatic-differentiation
 // scalar.
 template <class T>
 refractive::FlatPort<T> with_change(const refractive::FlatPort<double>& measured,
@@ -71,9 +71,9 @@ HousedCamera with_change(const HousedCamera& measured, const HousingChange<doubl
 // result is zero.
 //
 // Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
-// function theorem, the derivative of its tangents with respect to the numbers is -d(tangents)/dX
-// times the result. Only the ray, which has a closed form, is differentiated, and not the
-// iteration of the projection.
+// function theorem, the derivative of the tangents of this direction with respect to the numbers is
+// -d(tangents)/dX times the result. Only the ray, which has a closed form, is differentiated, and
+// not the iteration of the projection.
 Eigen::Matrix<double, 3, kPortNumbers> ray_by_change(
     const std::optional<refractive::Port<double>>& measured, const HousingChange<double>& change,
     const Eigen::Vector2d& tangents, double lambda);

@@ -16,13 +16,13 @@ namespace axial::pose {
 // tell (port_check.h says when tracks can tell). The points of a bounded sample are triangulated
 // anew. The result is the same for any number of threads.
 //
-// If the tracks fit cameras in air, they may come from photographs in air. Then up to six
-// photographs of `image_folder` decide, and an empty path gives no warning. Exception: the tracks
-// of a model that carries ports always come from photographs taken through these ports.
+// If the tracks fit cameras in air, they may come from photographs in air. In this case up to six
+// photographs of `image_folder` decide. If `image_folder` is empty, there is no warning. Exception:
+// the tracks of a model that carries ports always come from photographs taken through these ports.
 //
-// Poses at too large a scale are not found here. They move the images of points by about a pixel,
-// and patches of photographs hardly show this movement. The depth maps of DensifyPointCloud show
-// it (depth/agreement.h).
+// A too large scale of the poses is not found here. It moves the images of points by about a pixel,
+// and patches of photographs hardly show this movement. The depth maps of DensifyPointCloud show it
+// (depth/agreement.h).
 //
 // Throws no Error. An unsupported lens, an image whose rays do not reach its port, or a
 // photograph that cannot be read gives no warning.

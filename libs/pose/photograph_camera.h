@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera of bundle adjustment: the lens itself, with its distortion, behind a port. Its pixels
-// are pixels of the photograph, with centres at integers. Camera frame, metres.
+// are pixels of the photograph, with centres at integers. Points and rays are in metres in the
+// camera frame.
 #pragma once
 
 #include <optional>
@@ -14,8 +15,8 @@ namespace axial::pose {
 struct HousedCamera {
   lens::Lens lens;
   std::optional<refractive::Port<double>> port = {};  // empty: no port
-  // The field of `lens`. If both focal lengths change by one factor, `reach` stays exact and
-  // `corner` becomes an estimate, which only affects the speed.
+  // The field of `lens`. If both focal lengths are multiplied by the same factor, field.reach stays
+  // exact. field.corner becomes an estimate, which only affects the speed.
   lens::Field field = field_of(lens);
 };
 
@@ -29,7 +30,7 @@ struct PhotographImage {
   Eigen::Vector2d tangents;     // (u, v) of the in-air direction (u, v, 1) of the light
   Eigen::Matrix2d by_tangents;  // d(pixel)/d(tangents)
   refractive::Matrix23<double> tangents_by_point;
-  Eigen::Vector3d origin;  // of the ray in water through the point [m]
+  Eigen::Vector3d origin;  // origin of the ray in water through the point [m]
 };
 
 class PhotographCamera {

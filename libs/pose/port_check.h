@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks, with the tracks alone, whether port, lens, scale and poses belong together.
 //
-// With the right cameras the rays of a point meet, up to the noise of the observations. With
-// another port, lens or scale the rays usually miss one another by far more.
+// With the right cameras the rays of a point meet, up to the noise of the observations. With a
+// wrong port, lens or scale the rays usually miss one another by far more.
 //
-// Tracks do not show a change that moves images by less than the noise. A flat port close to the
-// lens before a distant scene gives nearly the same photographs at any scale of the poses, and so
-// does a dome whose centre is at the lens. A port and a scene that are both twice as large always
-// give the same photographs. Tracks show nothing about photographs other than the photographs in
-// which they were found. Poses may come from photographs in air and be used with photographs
-// under water.
+// Tracks do not show a change that moves images by less than the noise. For example, a flat port
+// close to the lens, with a distant scene, gives nearly the same photographs at any scale of the
+// poses. So does a dome whose centre is at the lens. A port and a scene that are both twice as
+// large always give the same photographs. Tracks also show nothing about other photographs than
+// those in which they were found: poses may come from photographs in air and be used with
+// photographs under water.
 #pragma once
 
 #include <span>
@@ -41,12 +41,12 @@ struct PortChange {
   double value = 1;
 };
 
-// The bundle with the change. Cameras that the change does not apply to stay as they are. A change
-// of the scale moves poses and points.
+// Returns the bundle with the change. Cameras to which the change does not apply stay as they are.
+// A change of the scale moves poses and points.
 Bundle changed(const Bundle& bundle, const PortChange& change);
 
-// The changes that apply to the bundle's cameras and correspond to common errors of users, the
-// likelier ones first.
+// The changes that apply to the bundle's cameras and correspond to common errors of users, in the
+// order of decreasing likelihood.
 std::vector<PortChange> likely_changes(const Bundle& bundle);
 
 // Triangulates the points of the bundle anew and returns the median reprojection error [px] of
@@ -55,26 +55,26 @@ double track_residual(Bundle bundle);
 
 struct PortCheck {
   std::size_t points = 0, observations = 0;
-  double noise = 0;          // [px], expected for right cameras
-  double residual = 0;       // [px], with the cameras as they are
-  double in_air = 0;         // [px], without ports
+  double noise = 0;          // track_residual() that right cameras would have [px]
+  double residual = 0;       // track_residual() with the cameras as they are [px]
+  double in_air = 0;         // track_residual() without ports [px]
   PortChange best;           // the single change that explains the tracks best
-  double best_residual = 0;  // [px], with `best`
+  double best_residual = 0;  // track_residual() with `best` [px]
 
-  // False: too few points or observations for a conclusion.
+  // Whether there are enough points and observations for a conclusion.
   bool tells() const { return points >= 15 && observations >= 60; }
-  // The residual is at most three times the expected noise: with the ports, and in air.
+  // Whether the tracks fit the cameras with their ports, and without ports: the residual is at most
+  // three times the expected noise.
   bool fits() const { return residual <= 3 * noise; }
   bool fits_in_air() const { return in_air <= 3 * noise; }
-  // The change `best` explains the tracks clearly better than the given cameras.
+  // Whether the change `best` explains the tracks clearly better than the given cameras.
   bool explained() const { return best_residual < 0.6 * residual; }
 };
 
 // Compares the bundle with the bundles of likely_changes(). `claimed_errors`: for each point the
-// mean error [px] that the model states, 0 where it states none. The expected noise is their
-// median, but at least 0.5 px: detectors locate features in underwater photographs no more
-// precisely, and a model that states smaller errors is not tested more strictly. If the bundle
-// fits, no changes are tried.
+// mean error [px] that the model states, or 0 if it states none. The expected noise is the median
+// of `claimed_errors`, but at least 0.5 px, because detectors locate features in underwater
+// photographs no more precisely. If the bundle fits, no changes are tried.
 PortCheck check_ports(const Bundle& bundle, std::span<const double> claimed_errors);
 
 // The cause in words, such as "the water's index n_water 1.49 (1.333 fits)". `bundle` is the bundle

@@ -14,20 +14,20 @@ namespace axial::pose {
 struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
-  int rounds = 3;  // of adjusting, then dropping observations that do not fit
+  int rounds = 3;  // a round adjusts, then drops observations that do not fit
 };
 
 struct RefineReport {
-  double rms_before = 0;  // [px], refractive cameras at the initial poses
-  double rms_after = 0;
+  double rms_before = 0;  // RMS reprojection error of refractive cameras at the initial poses [px]
+  double rms_after = 0;   // after the last adjustment [px]
   std::size_t observations_before = 0, observations_after = 0;
   std::size_t repeated = 0;  // dropped as repeated observations of a point in one image
   DropCounts dropped;        // dropped for other reasons
   std::size_t points_before = 0, points_after = 0;
-  AdjustReport last;
-  // The lines of lost_knowledge(). If there are any, known lengths or positions can no longer be
-  // used. If they occur before the last adjustment, refine() ends there, and `rms_after`,
-  // `observations_after` and `points_after` stay 0.
+  AdjustReport last;  // of the last adjustment
+  // The lines of lost_knowledge() (known.h): the reasons why known lengths or positions can no
+  // longer be used. If there is a line before the last adjustment, refine() ends there, and
+  // `rms_after`, `observations_after` and `points_after` stay 0.
   std::vector<std::string> lost;
 };
 
@@ -37,17 +37,17 @@ struct RefineReport {
 // - Three or more known positions place the bundle by a similarity.
 // - The first known distance scales the bundle.
 // - Otherwise a short adjustment is tried for a series of median scene distances from 0.25 to 16
-//   m, and the scale with the smallest error is taken. Refraction depends on the distance in
-//   metres.
+//   m, and the scale with the smallest error is taken. The errors differ because refraction depends
+//   on the distance in metres.
 //
-// Throws an Error if the known distance is zero in the model, or if it names a point that the
+// Throws an Error if the first known distance is zero in the model, or if it names a point that the
 // bundle does not have.
 void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 
 // Adjusts and filters a bundle in metres for `options.rounds` rounds, then once more. The first
-// round uses `options.adjust.pixel_sigma`, and limits of errors four times as wide. Later rounds
-// use observed_pixel_sigma() of the round before. `progress` gets one line for each round. For
-// the standard deviations of the result, call uncertainty() with the refined bundle and
+// round uses `options.adjust.pixel_sigma`, and four times the limit `options.tracks.max_error`.
+// Later rounds use observed_pixel_sigma() of the round before. `progress` gets one line for each
+// round. For the standard deviations of the result, call uncertainty() with the refined bundle and
 // `options.adjust`. Throws an Error if no observation is left.
 RefineReport refine(Bundle& bundle, const RefineOptions& options,
                     const std::function<void(const std::string&)>& progress = {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks whether photographs show what tracks and cameras predict: compares small patches of two
-// photographs around the images of one point. Tracks may come from other photographs of the same
-// views, taken in air. In this case only the photographs tell whether a port is right.
+// photographs around the images of one point. Reason: the tracks may come from other photographs of
+// the same views, taken in air. In this case only the photographs show whether a port is right.
 #pragma once
 
 #include <array>
@@ -26,11 +26,11 @@ class TrackPictures {
   TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
                 const std::filesystem::path& image_folder);
 
-  // The median of the normalised cross-correlations of corresponding patches: 1 for the same
-  // picture, near 0 for unrelated places. at_tracks() centres the patches at the pixels of the
-  // tracks. behind() centres them where the cameras of `bundle` project the points, where
-  // `bundle` is `in_air` with other cameras or at another scale. Nothing if fewer than 30 points
-  // can be compared: their patches must lie in both photographs and have enough texture.
+  // Return the median of the normalised cross-correlations of corresponding patches: 1 for equal
+  // patches, near 0 for unrelated places. at_tracks() centres the patches at the pixels of the
+  // tracks. behind() centres the patches at the projections of the points into the cameras of
+  // `bundle`. `bundle` is `in_air` with other cameras or at another scale. Nothing if fewer than 30
+  // points have patches that lie in both photographs and have enough texture.
   std::optional<double> at_tracks() const;
   std::optional<double> behind(const Bundle& bundle) const;
 

@@ -15,11 +15,10 @@ struct SampleLimits {
   std::size_t seeds = 20;
 };
 
-// A sample of the points that two or more images observe. It holds these points, their
-// observations, and the images and cameras of the observations, within `limits`. A track has at
-// most one observation in each image. The time is linear in the numbers of images and points of
-// the model. The same model gives the same sample, and a model without tracks gives an empty
-// sample.
+// Returns a sample of the points that two or more images observe, with their observations and the
+// images and cameras of these observations, within `limits`. A track has at most one observation in
+// each image. The time is linear in the numbers of images and points of the model. The same model
+// gives the same sample, and a model without tracks gives an empty sample.
 io::ColmapModel sample_tracks(const io::ColmapModel& model, const SampleLimits& limits = {});
 
 // A sample of a bundle: images that are connected by common points, and the points with the most

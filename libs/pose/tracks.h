@@ -14,8 +14,8 @@ namespace axial::pose {
 // for fewer than two rays, for parallel rays, or if the point lies behind the origin of a ray.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
-// Triangulates all points from the rays of their observations. A point for which the function
-// above returns nothing keeps its position.
+// Triangulates all points from the rays of their observations. A point for which triangulate(rays)
+// returns nothing keeps its position.
 void triangulate(Bundle& bundle);
 
 // For each point with several observations in one image, as in the tracks of some engines, keeps
@@ -24,9 +24,9 @@ void triangulate(Bundle& bundle);
 std::size_t drop_repeated(Bundle& bundle);
 
 struct TrackLimits {
-  double max_error = 4;               // [px]
-  double min_angle = 1.5;             // [degrees], of the widest angle between two rays of a point
-  std::size_t min_observations = 30;  // of an image: fewer may fit a wrong pose
+  double max_error = 4;               // of an observation [px]
+  double min_angle = 1.5;             // least widest angle between two rays of a point [degrees]
+  std::size_t min_observations = 30;  // of an image; fewer observations may fit a wrong pose
 };
 
 // Why observations were dropped.

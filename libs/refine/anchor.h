@@ -16,8 +16,9 @@ struct Anchor {
 };
 
 struct AnchorOptions {
-  double weight = 0.25;  // information of the first position / that of the photographs
-  double factor = 1;     // image size of the step / full image size
+  // Information of the first position divided by the information of the photographs.
+  double weight = 0.25;
+  double factor = 1;  // image size of the step / full image size
 };
 
 // The signed distance of every vertex from its first position, along the vertex's normal in `shape`
@@ -32,7 +33,7 @@ std::vector<float> offsets(std::span<const Eigen::Vector3f> vertices,
 // I: `information` of the vertex, the sum of w g^2 (refine.h). m: the median of the positive I.
 // d: `offset` + `displacement`, the distance [mesh units] from the first position to the position
 // that the photographs alone would give the vertex. sigma: 3 / sqrt(I), the standard deviation of
-// the position that the photographs give. All spans have one entry per vertex.
+// this position. weight, factor: fields of `options`. All spans have one entry per vertex.
 //
 // Reasons:
 //   - The first position was matched in the same photographs. Its uncertainty depends on the same

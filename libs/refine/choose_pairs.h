@@ -9,13 +9,13 @@
 
 namespace axial::refine {
 
-// Every view chooses the `max_views` partners with the highest scores, or fewer if fewer candidates
-// have the least score of choose_source_views(). The score is that of scene/view_selection.h, with
-// a sample of the vertices in place of the sparse points. The filter of that header removes
-// candidates that cover less than a tenth of the image, and candidates whose angle is not
-// between 2.5 and 45 degrees. The filter stops when only max(4, 3/4 max_views) candidates remain,
-// so that unsuitable candidates can stay. Returns pairs of indices of views, each pair once. The
-// smaller index is the first of a pair, and the pairs are sorted.
+// Every view chooses up to `max_views` partners, by the functions of scene/view_selection.h, with a
+// sample of the vertices in place of the sparse points. First, filter_neighbours() removes
+// candidates whose area is below a tenth of the image, and candidates whose angle is not between
+// 2.5 and 45 degrees. It stops when only max(4, 3/4 max_views) candidates remain, so that
+// unsuitable candidates can stay. Then choose_source_views() takes the candidates with the highest
+// scores. Returns pairs of indices of views, each pair once. The smaller index is the first of a
+// pair, and the pairs are sorted.
 std::vector<std::pair<std::size_t, std::size_t>> choose_pairs(const Mesh& mesh,
                                                               const ScaledViews& views,
                                                               const Visibility& visibility,

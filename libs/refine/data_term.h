@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The photometric part of the system: the residuals between views, and the change of the residuals
-// when vertices move along their normals.
+// when vertices move along their normals. The symbols e, w and g are those of refine.h.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace axial::refine {
 
-// The contribution of one face to the normal equations of a Gauss-Newton step. The unknowns are the
-// displacements t of the face's three corners, and the equations are matrix * t = right. `matrix`
-// holds the entries 00, 01, 02, 11, 12 and 22 of the symmetric 3 x 3 matrix.
+// The contribution of one face to the normal equations of a Gauss-Newton step: matrix * t = right.
+// The unknowns t are the displacements of the face's three corners. `matrix` holds the entries 00,
+// 01, 02, 11, 12 and 22 of the symmetric 3 x 3 matrix.
 struct FaceEquations {
   std::array<float, 6> matrix{};
   std::array<float, 3> right{};
@@ -50,15 +50,15 @@ class ReferenceView {
   // `reference`: the index of the reference view. Returns the residuals of this pair.
   Residuals add(const Source& source, std::size_t reference, const Visibility& visibility);
 
-  // Adds the sums over all pairs to `equations`, which has one entry per face of the mesh. Faces
-  // that this view sees at a grazing angle (kLeastCosine) get nothing. Call it once, after the last
-  // add().
+  // Adds the sums over all pairs to `equations`, which has one entry per face of the mesh. Nothing
+  // is added for faces that the reference view sees at a grazing angle (kLeastCosine in
+  // visibility.h). Call finish() once, after the last add().
   void finish(std::span<FaceEquations> equations) const;
 
  private:
-  // x, y: the image of a vertex in the source view [px]. motion: the motion of this image [px] when
-  // the vertex recedes by one mesh unit along the ray of the reference view. x is NaN unless both
-  // views see the vertex.
+  // x, y: the image of a vertex in the source view [px]. motion_x, motion_y: the motion of this
+  // image [px] when the vertex moves by one mesh unit along the reference view's ray, away from the
+  // camera. x is NaN unless both views see the vertex.
   struct PairVertex {
     float x, y, motion_x, motion_y;
   };
@@ -77,12 +77,12 @@ class ReferenceView {
   cv::Mat1f picture_;
   cv::Mat1b mask_;
   std::vector<PairVertex> pair_;
-  // Of every pixel in the present pair: the grey level of the source view at the pixel's point on
-  // the mesh (NaN: none), and the derivative of this grey level by the distance of the point along
-  // the ray of the reference view.
+  // For every pixel of the reference view, in the current pair. warped_: the grey level of the
+  // source view at the pixel's point on the mesh (NaN: none). slope_: the derivative of this grey
+  // level by the distance of the point along the ray of the reference view.
   cv::Mat1f warped_, slope_;
-  // Sums over the pairs at every pixel: w g^2 and -w g e. Here g is slope_ times the gain of the
-  // window.
+  // Sums over the pairs for every pixel. weight_: sum of w g^2. pull_: sum of -w g e. Here g is
+  // slope_ times the gain of the window (window_sums.h).
   cv::Mat1f weight_, pull_;
 };
 

@@ -10,12 +10,12 @@ namespace axial::refine {
 // Moves every vertex along its normal in `shape`, by its entry of `displacement` [mesh units].
 // Exceptions, in this order:
 //   - A displacement that is not finite counts as zero.
-//   - A longer step than a third of Shape::edge is reduced to this length.
+//   - A step longer than a third of Shape::edge is reduced to this length.
 //   - If a face turns by more than 60 degrees from its former normal, the steps of its three
-//     corners are halved. All faces are then checked again. There are at most six checks, and after
-//     the sixth check the steps of the corners are set to zero.
-// There is no check after the last shortening, so that a face beside the shortened ones may still
-// turn by more than 60 degrees.
+//     corners are halved, and all faces are checked again. The sixth check is the last: it sets the
+//     steps to zero instead of halving them.
+// After the sixth check, a face beside the corners whose steps became zero may still turn by more
+// than 60 degrees.
 void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
               std::span<const float> displacement);
 
@@ -24,8 +24,9 @@ void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
 // of such faces to the mean of their neighbours' positions before the round. Vertices on borders
 // stay.
 //
-// Reason: folds are narrower than the noise of the cloud. The hidden side of a fold has no
-// measurement, and a step of displace() would push the visible side through the hidden side.
+// Reason: folds are narrower than the noise of the cloud, so they show no detail of the surface. No
+// view measures the hidden side of a fold, and a step of displace() would push the visible side
+// through the hidden side.
 void flatten_folds(Mesh& mesh, const Topology& topology);
 
 }  // namespace axial::refine

@@ -10,21 +10,21 @@ namespace axial::refine {
 
 struct Sizes {
   std::uint64_t vertices = 0, faces = 0, views = 0;
-  std::uint64_t pixels = 0;  // of the largest view
+  std::uint64_t pixels = 0;  // number of pixels of the largest view
 };
 
-// The number of views whose VertexImages are kept in memory: the largest number for which
-// bytes_needed() does not exceed Options::max_bytes, reduced to max(sizes.views, 2) if it is
-// larger. With max_bytes 0, the result is max(sizes.views, 2). Error if two views need more than
-// max_bytes. The message contains Options::name_of("max_memory"), the number of vertices and the
-// missing megabytes.
+// Returns the number of views whose VertexImages are kept in memory: the largest number for which
+// bytes_needed() does not exceed Options::max_bytes, but at most max(sizes.views, 2). With
+// max_bytes 0, the result is max(sizes.views, 2). Error if two views need more than max_bytes. The
+// message contains Options::name_of("max_memory"), the number of vertices and the missing
+// megabytes.
 std::size_t views_to_keep(const Sizes& sizes, const Options& options);
 
 // An estimate of the memory [bytes] of the steps if the VertexImages of `kept` views are kept.
 // Counted: the arrays over vertices and faces, the images of one reference view and the pixels of
-// one source view. Not counted: the mesh, what Pictures holds, the lists of edges while faces are
-// split, and the cleaning of the mesh before and after refine(). The estimate assumes six faces and
-// six neighbours per vertex.
+// one source view. Not counted: the mesh, memory that the function Pictures keeps between calls,
+// the lists of edges while faces are split, and the cleaning of the mesh before and after refine().
+// The estimate assumes six faces and six neighbours per vertex.
 std::uint64_t bytes_needed(const Sizes& sizes, std::uint64_t kept);
 
 }  // namespace axial::refine

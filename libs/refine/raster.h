@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws a mesh into a view, and finds the face and the point on this face that every pixel shows.
+// Draws a mesh into a view: finds for every pixel the face that the pixel shows, and the point on
+// this face.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,8 +16,8 @@ inline constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;
 
 // Depth and face of the nearest surface at every pixel centre, in the size of the view's image.
 struct Raster {
-  cv::Mat1f depth;  // along the ray [mesh units]; infinite where there is no face
-  cv::Mat_<std::int32_t> face_bits;
+  cv::Mat1f depth;                   // along the ray [mesh units]; infinite where there is no face
+  cv::Mat_<std::int32_t> face_bits;  // the bits of face()
 
   std::uint32_t face(int x, int y) const { return static_cast<std::uint32_t>(face_bits(y, x)); }
 };

@@ -7,20 +7,22 @@
 // level of the source view at the projected point is corrected in brightness and contrast, so that
 // mean and variance in windows of 7 x 7 pixels agree with those of the reference view (as in
 // zero-mean normalised cross-correlation). The residual e is the corrected grey level minus the
-// grey level of the reference view. If corner k of the pixel's face moves by t_k along its normal,
-// e changes by sum_k g_k t_k. The factors g_k follow from the image gradient, from the source
-// camera's d(pixel)/dX and from the face. A Gauss-Newton step minimises, over the displacements t
-// of all vertices at once,
+// grey level of the reference view. If each corner k of the pixel's face moves by t_k along its
+// vertex normal, e changes by sum_k g_k t_k. The factors g_k follow from the gradient of the source
+// image, from the source camera's derivative of the pixel by the point, and from the normals of the
+// face and its corners. A Gauss-Newton step minimises, over the displacements t of all vertices at
+// once,
 //
 //       sum over pairs and pixels of w (e + sum_k g_k t_k)^2
 //     + sum over vertices of a_v (t_v + o_v)^2
 //     + smoothness * integral of s (curvature of the displaced surface)^2
 //     + the squares of the slopes between displacements of neighbours (system.h).
 //
-// w: the inverse of the variance of the residuals in the window. Windows that differ between the
-// views, for example by occlusion, count little.
+// w: the inverse of the variance of the residuals in the window. So windows that look different in
+// the two views, for example because of occlusion, count little.
 // o_v: the signed distance along the normal from the vertex's first position to its position before
-// the step. The first position is a measurement, too.
+// the step. The first position is the vertex's position before the first step. It counts as a
+// measurement.
 // a_v: the weight of the first position. The weight grows with the information of the photographs
 // on the vertex, and is small where the photographs contradict the first position (anchor.h).
 // s: a factor that is less than one at edges of the surface (system.h).
@@ -58,34 +60,36 @@ using Pictures = std::function<Picture(std::size_t view)>;
 
 // Which of the two views of a pair is the reference view.
 enum class References {
-  both,         // each of them once
-  alternating,  // the first one and the second one by turns, from step to step
+  both,         // each view once, so that a pair is compared twice
+  alternating,  // `first` in the first step, `second` in the next step, and so on
   first,        // the view with the smaller index
-  second
+  second        // the view with the larger index
 };
 
 struct Options {
   unsigned scales = 2;      // resolutions, from coarse to fine; at least 1
-  double scale_step = 0.5;  // image size of a resolution / that of the next finer resolution
-  unsigned max_views = 8;   // partners of a view that the view chooses; others may choose it, too
+  double scale_step = 0.5;  // image width of a resolution / width of the next finer resolution
+  // The number of partners that a view chooses. More views may choose this view as their partner.
+  unsigned max_views = 8;
   References references = References::both;
   double smoothness = 1000;  // 0: none
   double anchor = 0.25;      // factor of a_v; 0: the first position does not count
-  // Before the first step, a face is split if its area is larger than this value [px^2] in at least
-  // two views that see all three corners. The parts are tested again, in at most six rounds of
-  // splitting. 0: no face is split.
+  // Before the first step, a face is split if its area in the image is larger than this value
+  // [px^2] in at least two views that see all three corners. The parts of a face are tested in the
+  // same way, in at most six rounds of splitting. 0: no face is split.
   double max_face_area = 32;
   // The memory [bytes] that refine() may use besides the mesh and the images of `pictures`. The
-  // need is estimated (memory.h). This limit affects the time, but not the result. 0: no limit.
+  // estimate of bytes_needed() (memory.h) is compared with the limit. The limit affects the time,
+  // but not the result. 0: no limit.
   std::uint64_t max_bytes = 0;
   // Errors name the field max_bytes by name_of("max_memory").
   SettingNames name_of = own_name;
 };
 
-// What was done.
+// The result of refine(), besides the mesh.
 struct Report {
   std::size_t split_faces = 0;  // number of faces that splitting has added
-  std::size_t pairs = 0;        // of views
+  std::size_t pairs = 0;        // number of pairs of views
   std::size_t measured = 0;     // number of vertices that the last step measured
   unsigned steps = 0;           // number of Gauss-Newton steps at all resolutions
   // The median distance of the measured vertices from their positions before the first step [mesh

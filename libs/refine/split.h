@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits the faces of a mesh that is coarser than the pixels.
+// Splits faces, for a mesh whose faces are large compared with the pixels.
 #pragma once
 
 #include <cstddef>

@@ -11,19 +11,22 @@
 
 namespace axial::refine {
 
-// The system of normal equations of the sum in refine.h. A vertex is measured if its sum of w g^2
+// The normal equations of the sum that refine.h explains. A vertex is measured if its sum of w g^2
 // is positive.
 //
-// Smoothness: let n_v be the normal of vertex v, e its Shape::edge and H the mean curvature of the
-// surface at v. The bending at v is b = n_v . (mean of the neighbours - vertex), about H e^2 / 2.
-// The system contains the square of b after the step, with the weight smoothness * area / e^4. The
-// sum over the vertices then approximates smoothness / 4 times the integral of H^2. At edges of the
-// surface, where |b| / e is large, the weight is smaller, as in Cauchy's loss. The weight is zero
-// on borders, and where neither the vertex nor a neighbour is measured.
+// Smoothness: let n_v be the normal of vertex v (Shape::normals), e its Shape::edge, area its
+// Shape::area, and H the mean curvature of the surface at v. The bending at v is b = n_v . (mean of
+// the neighbours - vertex), about H e^2 / 2. The system contains the square of b after the step,
+// with the weight smoothness * area / e^4. The sum over the vertices then approximates smoothness /
+// 4 times the integral of H^2. At edges of the surface, where |b| / e is large, the weight is
+// smaller, as in Cauchy's loss. The weight is zero on borders, and where neither the vertex nor a
+// neighbour is measured.
 //
 // Slopes: let the slope of an edge be the difference between the displacements of its two ends,
 // divided by the length of the edge. The system contains the square of the slope of each edge with
-// a measured end, with the weight 9 / 0.2^2 (system.cpp).
+// a measured end, with the weight 9 / 0.2^2. 0.2 is the expected slope. The factor 9 is the factor
+// by which the residuals of pixels exceed independent residuals in variance, as in sigma of
+// anchor.h.
 class System {
  public:
   // `equations`: one per face of the mesh. `mesh`, `topology` and `shape` must outlive the system.

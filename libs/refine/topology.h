@@ -21,8 +21,8 @@ struct Lists {
 };
 
 struct Topology {
-  Lists faces;               // of every vertex, in ascending order
-  Lists neighbours;          // of every vertex, in ascending order
+  Lists faces;               // for each vertex, its faces in ascending order
+  Lists neighbours;          // for each vertex, its neighbours in ascending order
   std::vector<bool> border;  // the vertex has an edge that does not belong to exactly two faces
 };
 

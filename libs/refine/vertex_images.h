@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The images of all vertices in one view, by the exact projection. Faces are small, so that image
-// positions inside a face can be interpolated between the images of its corners.
+// The images of all vertices in one view, by the exact projection. Positions inside a face are
+// interpolated between the images of its corners, because faces are small.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ namespace axial::refine {
 // The image of one vertex in a view.
 struct VertexImage {
   float x = 0, y = 0;  // [px]
-  float depth = -1;    // distance from the ray's origin [mesh units]; negative: not visible
+  float depth = -1;    // along the ray, from its origin [mesh units]; negative: not visible
   Eigen::Matrix<float, 2, 3, Eigen::RowMajor> by_point;  // d(x, y)/d(vertex) in the mesh's frame
 
   bool visible() const { return depth > 0; }

@@ -16,9 +16,9 @@ namespace axial::refine {
 inline constexpr int kWindowRadius = 3;
 inline constexpr int kBandHeight = 16;  // rows that one thread processes
 
-// The sums over one window, of `count` pixels: r and w are the sums of the reference view's and the
-// warped grey levels, rr, ww and rw the sums of their products. kMiddle is subtracted from all grey
-// levels before they are added, to keep the sums small.
+// The sums over one window with `count` valid pixels. Let a be a grey level of the reference view
+// minus kMiddle, and b the warped grey level minus kMiddle. The sums are r of a, w of b, rr of a^2,
+// ww of b^2, and rw of a b. The subtraction keeps the sums small.
 struct Windows {
   static constexpr float kMiddle = 128;
   // The variance of grey levels that comes from noise and rounding [grey levels^2].
@@ -42,8 +42,8 @@ struct Windows {
     return count >= kLeastPixels && reference_variance() > kNoise / 4 &&
            warped_variance() > kNoise / 4 && correlation() > kLeastCorrelation;
   }
-  // The inverse of the variance of the residuals in the window. The residual is the difference
-  // between the reference view's grey levels and gain() times the warped grey levels.
+  // The inverse of the variance of the residuals in the window. A residual is a grey level of the
+  // reference view minus gain() times the warped grey level, after both means are subtracted.
   float precision() const {
     return 1 / (2 * reference_variance() * std::max(0.0f, 1 - correlation()) + kNoise);
   }

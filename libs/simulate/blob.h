@@ -8,8 +8,8 @@
 
 namespace axial::simulate {
 
-// A rough ellipsoid. Its surface points are centre + turn * (radii o direction) * (1 +
-// relief(direction)), where o multiplies component by component.
+// A rough ellipsoid. Its surface points are centre + turn * (radii o d) * (1 + relief(d)) for all
+// unit vectors d, where o multiplies component by component.
 struct Blob {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Vector3d radii = Eigen::Vector3d::Ones();
@@ -18,7 +18,7 @@ struct Blob {
   std::uint32_t seed = 1;
 
   double relief(const Eigen::Vector3d& unit_direction) const;
-  // True for points at least `margin` [m] below the surface.
+  // True if the point `p` [m] lies inside the body, at least `margin` [m] below the surface.
   bool contains(const Eigen::Vector3d& p, double margin) const;
 };
 

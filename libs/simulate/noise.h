@@ -17,7 +17,8 @@ float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed);
 // gain^k, k = 0, 1, ... Each octave is rotated and shifted, so that the lattice is not visible.
 float fractal_noise(const Eigen::Vector3d& p, std::uint32_t seed, int octaves, float gain);
 
-// The rotation and shift from one octave of `fractal_noise` to the next, without the factor 2.
+// Rotates and shifts a point, as fractal_noise() does between two octaves, but without the doubling
+// of the frequency.
 Eigen::Vector3d turn_octave(const Eigen::Vector3d& p);
 
 // 0 for x below a, 1 for x above b, and a cubic in between.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The path of light from a pixel into the water, one interface after the other, with Snell's law in
-// vector form. The code is independent of `refractive/` on purpose: each checks the other.
+// vector form. The code uses nothing of `refractive/`, so that tests can check the two
+// implementations against each other.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,17 +11,17 @@
 
 namespace axial::simulate {
 
-inline constexpr double kRadians = std::numbers::pi / 180;  // in a degree
+inline constexpr double kRadians = std::numbers::pi / 180;  // radians per degree
 
-// The distortion of a lens, as OpenCV defines it for perspective lenses (k1 k2 p1 p2) and for
-// fisheyes (k1 k2 k3 k4).
+// The distortion of a lens, as OpenCV defines it. `k` holds k1 k2 p1 p2 for perspective lenses, and
+// k1 k2 k3 k4 for fisheyes.
 struct Bend {
   bool fisheye = false;
   std::array<double, 4> k{};
 };
 
-// A lens in air. Without distortion u = focal * x/z + cx and v = focal * y/z + cy. Pixel centres
-// are at integers. Camera axes: x right, y down, z forward.
+// A lens in air. Without distortion, the direction (x, y, z) has the pixel u = focal * x/z + cx, v
+// = focal * y/z + cy. Pixel centres are at integers. Camera axes: x right, y down, z forward.
 struct Lens {
   int width = 0, height = 0;
   double focal = 0;  // [px]
@@ -34,10 +35,10 @@ struct Lens {
 Eigen::Vector2d pixel_of(const Lens& lens, const Eigen::Vector3d& direction);
 Eigen::Vector3d direction_of(const Lens& lens, double u, double v);
 
-// Checks the lens at samples along the border of the image, corners included. Throws an Error
-// that names the coefficients and the pixel unless each sampled pixel has a direction that
-// pixel_of() maps back to the pixel, and the lens does not fold back between the optical axis and
-// this direction. Lenses without distortion pass.
+// Checks the lens at samples along the border of the image, corners included. Each sampled pixel
+// must have a direction that pixel_of() maps back to the pixel, and the lens must not mirror the
+// image between the optical axis and this direction. Otherwise throws an Error that names the
+// coefficients and the pixel. Lenses without distortion pass.
 void check_lens(const Lens& lens);
 
 // Makes a lens with square pixels and the principal point in the image centre. Throws an Error
@@ -53,11 +54,11 @@ struct Dome {
 // A flat port or a dome in the camera frame [m]. A camera without a port is dry.
 struct Port {
   Eigen::Vector3d normal{0, 0, 1};  // unit, from the camera to the water
-  double distance = 0;              // camera centre to the inner plane
-  double thickness = 0;
+  double distance = 0;              // from the camera centre to the inner face of the glass
+  double thickness = 0;             // of the glass
   double n_air = 1, n_glass = 1, n_water = 1;
-  std::optional<Dome> dome = {};  // replaces the planes; normal and distance are not used
-  bool is_surface = false;        // the water surface: the camera may be far above it
+  std::optional<Dome> dome = {};  // if set, normal and distance are not used
+  bool is_surface = false;        // the port is the water surface, possibly far away
 };
 
 // The unit normal of a port that is tilted by the given angle towards the lower right of the image.
@@ -67,9 +68,10 @@ Eigen::Vector3d tilted_normal(double tilt_degrees);
 // - The port is a water surface and the camera is not above it.
 // - The port is no water surface and its distance is outside 0 to 1 m.
 // - The thickness is outside 0 to 1 m.
-// - The inner radius of a dome is not above 0 or is above 1 m, or the camera is outside the dome.
+// - The inner radius of a dome is not above 0 or is above 1 m, or the camera centre is outside the
+//   dome.
 // - A refractive index is outside 1 to 4.
-// - The light of an image corner does not pass the port.
+// - The ray of an image corner does not pass the port.
 void check_port(const Port& port, const Lens& lens);
 
 // The pose of a camera in the world: x_in_camera = rotation * (x_in_world - centre).
@@ -84,9 +86,11 @@ Port surface_port(double level, const View& view, double n_air, double n_water);
 
 // The ray of a pixel in the scene medium.
 struct SceneRay {
-  Eigen::Vector3d start;  // entry into the scene medium: outer face of the glass; dry: the centre
+  // Where the ray enters the scene medium: on the outer face of the glass. Dry: the camera centre.
+  Eigen::Vector3d start;
   Eigen::Vector3d direction;  // unit
-  Eigen::Vector3d on_axis;    // where its line meets the camera's axis (C_v); dry: the centre
+  // Where the line of the ray meets the camera's axis (C_v). Dry: the camera centre.
+  Eigen::Vector3d on_axis;
 };
 
 // Returns the refracted unit direction by Snell's law, or nothing on total reflection.
@@ -95,8 +99,7 @@ std::optional<Eigen::Vector3d> refract(const Eigen::Vector3d& direction,
                                        const Eigen::Vector3d& normal, double n_from, double n_to);
 
 // Returns the ray of pixel (u, v) in the camera frame. `port` is null for a dry camera. Returns
-// nothing if no light passes: the pixel looks away from the port, or the light is totally
-// reflected.
+// nothing if the pixel looks away from the port, or if the light is totally reflected.
 std::optional<SceneRay> trace_pixel(const Lens& lens, const Port* port, double u, double v);
 
 SceneRay to_world(const View& view, const SceneRay& in_camera);

@@ -20,12 +20,12 @@ class RandomSequence {
   std::uint64_t seed_, index_ = 0;
 };
 
-// A camera at `centre` that looks at `target`. `up` [world] points upwards in the image as far as
-// possible.
+// A camera at `centre` that looks at `target`. The direction `up` points upwards in the image as
+// far as possible. All arguments are in the world frame.
 View look_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target,
              const Eigen::Vector3d& up);
 
-// Rotates the camera by up to `degrees` about each of its axes.
+// Rotates the camera about each of its axes by a random angle of up to `degrees`.
 void shake(View& view, double degrees, RandomSequence& random);
 
 // Adds a stalk with a cap that overhangs it on all sides.
@@ -33,21 +33,23 @@ void add_mushroom(Terrain& terrain, double x, double y, double size, RandomSeque
 
 void add_arch(Terrain& terrain, double x, double y, double span_radius, RandomSequence& random);
 
-// Scatters `count` boulders over the rectangle |x| <= half.x, |y| <= half.y. No boulder is
-// centred nearer than `from` to the origin, measured horizontally. Radii are between radii.x and
-// radii.y, up to random factors of the axes, and most radii are small.
+// Scatters `count` boulders over the rectangle |x| <= half.x, |y| <= half.y. The centre of a
+// boulder is at least `from` [m] from the origin, measured horizontally. A radius is between
+// radii.x and radii.y, mostly near radii.x. Random factors then change the three axes of each
+// boulder.
 void scatter(Terrain& terrain, int count, const Eigen::Vector2d& half, double from,
              const Eigen::Vector2d& radii, RandomSequence& random);
 
-// Adds views from above in two rows, along one row and back along the other, at a height of about
-// `height` [m].
+// Adds views that look down from a height of about `height` [m]. The views form two rows: the
+// camera moves along one row, and back along the other.
 void add_two_rows(Preset& preset, int views, double height, RandomSequence& random);
 
 // Adds views around the origin from a distance of about `range` [m]: two thirds in a lower ring,
 // the others in a narrower ring above it.
 void add_two_rings(Preset& preset, int views, double range, RandomSequence& random);
 
-// Make the presets of these names (see presets.h). `preset` must have its lens.
+// Fill `preset` with the presets "thicket", "sand" and "transect" (presets.h), with `views` views.
+// Precondition: preset.lens is set.
 void make_thicket(Preset& preset, std::uint32_t seed, int views);
 void make_sand(Preset& preset, std::uint32_t seed, int views);
 void make_transect(Preset& preset, std::uint32_t seed, int views);

@@ -15,7 +15,7 @@ namespace axial::simulate {
 struct PresetOptions {
   std::string name = "reef";
   std::uint32_t seed = 1;
-  int views = 0;  // 0: the preset's own number
+  int views = 0;  // number of views; 0: the default of the preset
   int width = 1024, height = 768;
   double horizontal_fov_degrees = 80;
   // Factor of the whole scene and of the views' distances. The port is not scaled.
@@ -41,8 +41,8 @@ struct Preset {
 // Makes a preset:
 // - "reef": a survey from above in two rows. The seabed is 2 to 3.5 m away. Small air gap, thick
 //   glass.
-// - "outcrop": views of a mound of bedded rock, 2 to 3 m away, as with a hand-held camera, through
-//   the port of "reef".
+// - "outcrop": views of a mound of bedded rock, 2 to 3 m away, with the irregular poses of a
+//   hand-held camera, through the port of "reef".
 // - "closeup": views around an object with overhangs, 0.5 to 0.9 m away, through a tilted acrylic
 //   port.
 // - "survey": rows of ten views from above. The number of rows follows from the number of views;

@@ -12,14 +12,14 @@
 namespace axial::simulate {
 
 struct Hit {
-  double distance = 0;  // along the unit direction, computed in double with the plane of the face
+  double distance = 0;  // along the ray, to the plane of the face; computed in double
   std::uint32_t face = 0;
   float u = 0, v = 0;      // barycentric weights of the face's second and third corner
   Eigen::Vector3d normal;  // unit normal of the face, by the order of its corners
 };
 
-// Immutable after construction. All queries may run concurrently. One thread builds the tree, so
-// that ties between faces have the same result for any number of threads.
+// Immutable after construction. All queries may run concurrently. One thread builds Embree's tree.
+// So if two faces are equally near, the same face is hit for any number of threads.
 class RayScene {
  public:
   // Copies the mesh. Error for a mesh without faces or a face index out of range.

@@ -12,7 +12,7 @@
 
 namespace axial::simulate {
 
-// The surface point that a shader colours.
+// The argument of a shader: a point on the surface.
 struct SurfacePoint {
   Eigen::Vector3d position;  // world
   Hit hit;
@@ -37,7 +37,9 @@ void add_haze(cv::Mat3f& radiance, double haze);
 // clamped and rounded. The noise depends on (key, pixel, channel) only.
 cv::Mat3b develop(const cv::Mat3f& radiance, double noise, std::uint64_t key);
 
-// The `key` of develop() for the images of a scene.
+// Returns the `key` of develop() for an image. `seed`: of the scene. `view`: index of the image's
+// view. `water`: the image is taken under water. Images that differ in any of the three have
+// different keys.
 std::uint64_t noise_key(std::uint32_t seed, std::size_t view, bool water);
 
 // Ground truth for the ray of each pixel's centre. `distance`: the distance [m] along the ray to

@@ -11,7 +11,7 @@ namespace axial::simulate {
 struct TextureOptions {
   std::uint32_t seed = 1;
   double largest = 1.0;  // size of the largest patches [m]
-  double contrast = 1;   // factor by which a reflectance differs from the sediment's
+  double contrast = 1;   // factor of the differences from the sediment's reflectance
 };
 
 // Returns the reflectance (linear R G B) at the world point `p`. `footprint` is the width of a

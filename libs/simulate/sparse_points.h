@@ -21,9 +21,10 @@ struct SparsePoint {
   std::vector<Observation> observations;  // by increasing view, at least two
 };
 
-// Places points on the surface that the views see: about `per_view` for each view, at jittered
-// grid positions of its image that depend on `seed`. A view observes a point if the point lies in
-// its image and is not occluded. Points with fewer than two observations are dropped.
+// Places points on the surface that the views see: about `per_view` for each view. The points lie
+// on the rays of a grid of pixels in the image of the view. Random numbers, which depend on `seed`,
+// move the grid positions. A view observes a point if the point lies in its image and is not
+// occluded. Points with fewer than two observations are dropped.
 std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader, const Lens& lens,
                                      std::span<const View> views, int per_view, std::uint64_t seed);
 

@@ -11,10 +11,10 @@
 
 namespace axial::simulate {
 
-// The height of the floor [m]. It is the sum of noise, a bowl and ripples. The first octave of
-// the noise has the wavelength `wavelength` and the height `height`, and each further octave has
-// half of both. The bowl rises by `bowl_height` between the distances `bowl_from` and `bowl_to`
-// [m] from the world's origin.
+// The height of the floor [m] is the sum of noise, a bowl and ripples. The first octave of the
+// noise has the wavelength `wavelength` and the height `height`. Each further octave has half the
+// wavelength and half the height of the octave before. The bowl rises by `bowl_height` between the
+// distances `bowl_from` and `bowl_to` [m] from the world's origin.
 //
 // If `layer` is positive, the floor is bedded rock with a ledge at the end of each layer. The dip
 // changes the height of the layers by `dip` metres per metre along x and y.
@@ -35,11 +35,12 @@ struct Terrain {
   Floor floor;
   std::vector<Blob> blobs;
   std::vector<Arch> arches;
-  std::vector<Tube> tubes;  // thin structures, for which the mesh stores a thickness
+  std::vector<Tube> tubes;  // thin structures (TriangleMesh::thickness)
   double cell = 0.01;       // distance between vertices [m]
-  double half_width = 4;    // area meshed at `cell`: |x| <= half_width, |y| <= half_height
+  // The area whose vertices are `cell` apart is |x| <= half_width, |y| <= half_height [m].
+  double half_width = 4;
   double half_height = 3;
-  double skirt = 10;  // width of the border with coarser cells around that area [m]
+  double skirt = 10;  // width of a border with coarser cells around this area [m]
   double relief = 1;  // factor of all heights of the mesh
 };
 

@@ -24,16 +24,17 @@ struct TriangleMesh {
 // Appends `part` to `mesh`.
 void append(TriangleMesh& mesh, const TriangleMesh& part);
 
-// Removes the faces whose three corners are all hidden, and the vertices that no face uses any
-// more. `hidden(p)` is called once for each vertex, in parallel.
+// Removes the faces whose three corners are all hidden, and then the vertices without faces.
+// `hidden(p)` tells whether a vertex at `p` is hidden; it is called once for each vertex, in
+// parallel.
 void remove_hidden(TriangleMesh& mesh, const std::function<bool(const Eigen::Vector3d&)>& hidden);
 
 // Area-weighted unit normals, one for each vertex.
 std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh);
 
-// Makes a grid of rows x columns vertices. Vertex (r, c) is `at(r, c)`, which is called in
-// parallel. The outward normal is (row direction) x (column direction). `wrap_columns` joins the
-// last column to the first.
+// Makes a grid of rows x columns vertices. The position of vertex (r, c) is at(r, c), which is
+// called in parallel. The outward normal is (direction of growing r) x (direction of growing c).
+// With `wrap_columns` the last column is joined to the first.
 TriangleMesh grid_mesh(std::size_t rows, std::size_t columns, bool wrap_columns,
                        const std::function<Eigen::Vector3d(std::size_t, std::size_t)>& at);
 

@@ -16,8 +16,8 @@ struct Tube {
 
 // Makes the mesh of a tube: a ring of vertices at each point of the spine, and a nearly
 // point-like ring beyond each end. All rings have the same number of vertices, from 8 to 48.
-// Within these limits, vertices of the widest ring are at most about `cell` metres apart. The
-// thickness of a vertex is the diameter of the tube there.
+// Within these limits, vertices of the widest ring are at most about `cell` metres apart.
+// TriangleMesh::thickness of a vertex is the diameter of the tube at the vertex.
 TriangleMesh tube_mesh(const Tube& tube, double cell);
 
 }  // namespace axial::simulate

@@ -10,8 +10,8 @@ namespace axial::texture {
 // Returns an empty image if there is no black border. A pixel is dark if all its channels are at
 // most `darkest`. A black border consists of
 //   - the dark pixels that are connected to the image's edge through dark pixels,
-//   - all pixels at most `margin` pixels from these dark pixels, in x and in y, because resampling
-//     and compression mix colours there.
+//   - the pixels that are at most `margin` pixels in x and at most `margin` pixels in y from one of
+//     these dark pixels, because resampling and compression mix colours there.
 cv::Mat1b outside_black_border(const cv::Mat3b& image, int darkest = 4, int margin = 3);
 
 }  // namespace axial::texture

@@ -28,8 +28,8 @@ class ChartField {
   // its value.
   void add_point(const Eigen::Vector2f& at, const Eigen::Vector3f& value);
 
-  // Covers each uncovered pixel that has covered pixels among its eight neighbours. Its value is
-  // the mean of these covered pixels' values.
+  // Covers each uncovered pixel that has at least one covered pixel among its eight neighbours. The
+  // value of the new pixel is the mean of the values of its covered neighbours.
   void widen();
 
   // A value to add at a position.
@@ -38,9 +38,10 @@ class ChartField {
     Eigen::Vector3f value;
   };
 
-  // Adds the solution of Laplace's equation to the values in a strip: the covered pixels that fewer
-  // than `width` steps between covered pixels (up, down, left, right) separate from a sample's
-  // pixel. A sample belongs to its nearest pixel. The solution has these boundary conditions:
+  // Adds the solution of Laplace's equation to the values in a strip. The strip consists of the
+  // covered pixels that fewer than `width` steps reach from the pixel of a sample, which is the
+  // pixel nearest to the sample. A step leads from a covered pixel to a covered pixel above, below,
+  // left or right of it. The solution has these boundary conditions:
   //   - At a pixel with samples, the solution is the mean of the samples.
   //   - At covered pixels beyond the strip, the solution is zero.
   //   - There is no flow through the border of the covered pixels.

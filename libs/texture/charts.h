@@ -35,11 +35,14 @@ struct Node {
 
 struct Charts {
   std::vector<Chart> charts;
-  std::vector<Node> nodes;                            // by chart, then by vertex
-  std::vector<std::uint32_t> chart_of;                // one per face; kNoChart: no view sees it
-  std::vector<std::array<std::uint32_t, 3>> corners;  // one per face: nodes; unused without chart
-  std::vector<std::uint32_t> faces;                   // the faces with a chart, by chart
-  std::vector<std::uint32_t> face_begin;  // those of chart c: [face_begin[c], face_begin[c + 1])
+  std::vector<Node> nodes;              // ordered by chart, then by vertex
+  std::vector<std::uint32_t> chart_of;  // one per face; kNoChart: no view sees it
+  // One per face: the nodes of its corners. No meaning for a face without chart.
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  // The faces with a chart, ordered by chart. The faces of chart c are at [face_begin[c],
+  // face_begin[c + 1]) of `faces`.
+  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> face_begin;
 
   std::span<const std::uint32_t> faces_of(std::size_t chart) const {
     return std::span(faces).subspan(face_begin[chart], face_begin[chart + 1] - face_begin[chart]);
@@ -47,20 +50,21 @@ struct Charts {
 };
 
 // Makes the charts of a labelling. `labels` contains for each face the index of its view, or
-// kNoView (labels.h). `pairs`: of face_pairs(). A chart is a maximal set of faces with the same
-// view that are connected through `pairs`. Charts are in the order of their first faces. The pixels
-// of the nodes are projected by the exact cameras of `views`.
+// kNoView (labels.h). `pairs`: the result of face_pairs(). A chart is a maximal set of faces with
+// the same view that are connected through `pairs`. Charts are in the order of their first faces.
+// Node::pixel is the exact projection of the vertex by the camera of the chart's view.
 Charts make_charts(const Mesh& mesh, std::span<const FacePair> pairs,
                    std::span<const std::uint32_t> labels, std::span<const View> views);
 
-// A common edge of two faces of different charts, chart a and chart b. The order of an edge's two
-// vertices is that of FacePair: `from`, then `to`.
+// An edge between a face of chart a and a face of another chart b.
 struct Seam {
-  std::array<std::uint32_t, 2> a{}, b{};  // the nodes of the edge's two vertices in either chart
+  // The two nodes of the edge in chart a, and in chart b. The first node belongs to the vertex
+  // FacePair::from, and the second to FacePair::to.
+  std::array<std::uint32_t, 2> a{}, b{};
 };
 
-// All seams, in the order of `pairs`. Chart a is that of FacePair::a, and chart b that of
-// FacePair::b. An edge of a face without chart is no seam.
+// Returns all seams, in the order of `pairs`. Chart a of a seam is the chart of the face
+// FacePair::a, and chart b is the chart of FacePair::b. An edge of a face without chart is no seam.
 std::vector<Seam> find_seams(const Charts& charts, const Mesh& mesh,
                              std::span<const FacePair> pairs);
 

@@ -13,16 +13,17 @@
 
 namespace axial::texture {
 
-// A view that sees a face, or a part of the face. Without `whole`, `color` has no meaning.
+// A view that sees a face, or only a part of the face.
 struct Sight {
   std::uint32_t view = 0;
-  float quality = 0;                    // higher is better
-  std::array<std::uint8_t, 3> color{};  // mean colour of the face in this view, B G R
-  bool whole = true;                    // all of the face is seen
+  float quality = 0;  // higher is better
+  // Mean colour of the face in this view, B G R. It has no meaning if `whole` is false.
+  std::array<std::uint8_t, 3> color{};
+  bool whole = true;  // the view sees all of the face
 };
 
-// The sights of all faces in one array; those of face f are at [begin[f], begin[f + 1]), in the
-// order of the views.
+// The sights of all faces in one array. The sights of face f are at [begin[f], begin[f + 1]), in
+// the order of the views.
 struct FaceViews {
   std::vector<std::uint64_t> begin;
   std::vector<Sight> sights;
@@ -34,10 +35,10 @@ struct FaceViews {
 };
 
 struct VisibilityOptions {
-  // Let a path of light have the length L from a point on the mesh to the point where the light
-  // leaves the water. A face that crosses the path less than tolerance * L from the point on the
-  // mesh does not hide that point. The default is the ratio of a pixel's width on the surface to
-  // the distance for a focal length of 1000 px.
+  // A face does not hide a point of the mesh if it crosses the path of light less than tolerance *
+  // L from the point. L is the length of the path from the point to the place where the light
+  // leaves the water. The default is the ratio of a pixel's width on the surface to the distance,
+  // for a focal length of 1000 px.
   double tolerance = 1e-3;
 };
 
@@ -45,19 +46,19 @@ struct VisibilityOptions {
 //   1. The face is turned towards the camera.
 //   2. The corners are inside the image. Corners are projected by the exact camera.
 //   3. All pixels in the face and up to 1.42 px around it are usable (ViewImage::usable).
-//   4. No face hides the corners, or the points of a grid inside a face of 16 px^2 or more. A point
-//      is hidden if a face lies on the path of light from the point to the point where the light
-//      leaves the water (exit_point of the camera).
+//   4. No face hides the corners. If the face has 16 px^2 or more, no face hides the points of a
+//      grid inside it. A point is hidden if a face crosses the path of light from the point to the
+//      place where the light leaves the water (exit_point of the camera).
 //
-// If no view sees all of a face, the face gets the views that see its middle. These views satisfy
-// conditions 2 and 3, and the middle of the face is not hidden. The face may be turned away if its
-// smoothed normal is not.
+// If no view sees all of a face, the face gets the views that see its middle. Such a view satisfies
+// conditions 2 and 3, the middle of the face is not hidden, and the face or its smoothed normal is
+// turned towards the camera.
 //
-// The smoothed normal of a face is the mean of the normals at its three corners. Let c be the
-// cosine of the angle between the smoothed normal and the path of light from the middle of the
-// face. The quality is the area of the face in the image [px^2] times max(0.001, c)^2.
+// The smoothed normal of a face is the mean of the normals at its three corners. The quality is the
+// area of the face in the image [px^2] times max(0.001, c)^2. Here c is the cosine of the angle
+// between the smoothed normal and the path of light from the middle of the face.
 //
-// Calls progress(done, total) with numbers of views. Errors of Occluders and of
+// Calls progress(done, total) with numbers of views. Errors of Occluders (occluders.h) and of
 // `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options = {}, const ProgressSink& progress = {});

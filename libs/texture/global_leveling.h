@@ -17,8 +17,8 @@ struct GlobalLevelingOptions {
   // An edge at the border of a chart has half of this weight. For comparison, the squared
   // difference at an end of a seam has the weight 1.
   double smoothness = 0.01;
-  // Weight of the squared correction itself. It keeps the corrections from drifting along chains of
-  // charts.
+  // Weight of the squared correction itself. This term keeps the corrections from drifting along
+  // chains of charts.
   double smallness = 1e-4;
 };
 
@@ -29,9 +29,10 @@ struct GlobalLevelingOptions {
 //     + smoothness * sum over the edges inside charts of (g_i - g_j)^2
 //     + smallness * sum over the nodes of g^2.
 //
-// a, b: the nodes at the end of the seam. d: the difference of the colours at this end, chart b
-// minus chart a. It is the weighted mean of the samples along the seam (SeamColors). The weight of
-// a sample falls linearly from this end of the seam to zero at the other end.
+// a, b: the nodes of one end of a seam, in chart a and in chart b (Seam). d: the colour of chart b
+// minus the colour of chart a at this end, computed as the weighted mean of the samples along the
+// seam (SeamColors). The weight of a sample falls linearly from this end of the seam to zero at the
+// other end. i, j: the nodes of an edge.
 std::vector<Eigen::Vector3f> level_globally(const Mesh& mesh, const Charts& charts,
                                             std::span<const Seam> seams, const SeamColors& colors,
                                             const GlobalLevelingOptions& options = {});

@@ -15,21 +15,21 @@ namespace axial::texture {
 inline constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
 
 struct LabelOptions {
-  // The weight of a face's quality relative to that of a seam at one of the face's edges (see the
-  // cost in choose_views()). Near 0: as few seams as possible. The larger the ratio,
-  // the more faces get their best view.
+  // The weight of the quality of a face, relative to the weight of a seam at one of its edges (see
+  // the cost in choose_views()). With a ratio near 0 there are as few seams as possible. The larger
+  // the ratio, the more faces get their best view.
   double cost_smoothness_ratio = 0.1;
-  int max_cycles = 3;  // greatest number of expansions of each view
+  int max_cycles = 3;  // at most this number of alpha expansions of each view
 };
 
-// Returns for each face the index of its view, or kNoView for a face that no view sees. For a face,
-// let q be the quality of the chosen view and `best` the highest quality of its views. The labels
-// minimise, approximately, the cost
+// Returns for each face the index of its view, or kNoView for a face that no view sees. The result
+// minimises, approximately, the cost
 //
 //       sum over the faces of 2 * ratio * (1 - q / best)
 //     + the number of pairs of faces with different views,
 //
-// where ratio is cost_smoothness_ratio. Faces with kNoView do not count. The method is alpha
+// where q is the quality of the face's chosen view, `best` the highest quality of the face's views,
+// and ratio is cost_smoothness_ratio. Faces with kNoView do not count. The method is alpha
 // expansion (Boykov, Veksler and Zabih, 2001) with costs rounded to thousandths. Minimum cuts are
 // computed by Boykov and Kolmogorov's library.
 std::vector<std::uint32_t> choose_views(const FaceViews& views, std::span<const FacePair> pairs,

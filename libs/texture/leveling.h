@@ -15,14 +15,15 @@ struct LevelingOptions {
   int strip = 20;  // width of the strip [px]
 };
 
-// Adds the global and the local corrections to the textures of `atlas`, which must be painted and
-// not yet levelled. The global correction is linear inside each face (global_leveling.h).
+// Adds the global and the local corrections to the textures of `atlas`. Precondition: `atlas` is
+// painted (paint() in atlas.h) and not yet levelled. The global correction is linear inside each
+// face (global_leveling.h).
 //
 // The local correction of a chart is the solution of Laplace's equation in a strip along the seams,
 // with these boundary conditions:
-//   - At the seam, it is half of the difference that the global correction leaves, so that both
-//     sides get the mean of their colours.
-//   - At the inner side of the strip, it is zero.
+//   - At the seam, the solution is half of the difference that the global correction leaves, so
+//     that both sides get the mean of their colours.
+//   - At the inner side of the strip, the solution is zero.
 //   - There is no flow through the other borders of the chart.
 // The corrected colours are then the solution of Poisson's equation with the gradients of the
 // photograph (Perez, Gangnet and Blake, 2003).

@@ -18,10 +18,9 @@ class Occluders {
   Occluders(const Occluders&) = delete;
   Occluders& operator=(const Occluders&) = delete;
 
-  // True if a face crosses the segment from `from` to `to`, in the frame of the mesh. The end of
-  // the segment at `to` does not count: a part with `tolerance` (0 to 1) times the length of the
-  // segment. A face therefore does not hide a point `to` that lies on the face. May be called
-  // concurrently.
+  // True if a face crosses the segment from `from` to `to`, in the frame of the mesh. Crossings
+  // near `to` do not count: the segment ends before `to` by `tolerance` (0 to 1) times its length.
+  // A face therefore does not hide a point `to` that lies on the face. May be called concurrently.
   bool between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removes views in which a face has another colour than in the other views, because they show a
-// fish, a hand or a reflection.
+// Removes the views in which a face has another colour than in most views. Such a view shows, for
+// example, a fish, a hand or a reflection.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace axial::texture {
 // Removes the sights of a face whose colour is far from the median colour of the face's sights.
 //
 // For each channel, let s be the robust standard deviation of the sights' colours: 1.4826 times the
-// median absolute deviation. A value below 6 grey levels is raised to 6, because of noise and
+// median absolute deviation. If s is below 6 grey levels, it is raised to 6, because of noise and
 // because views do not show exactly the same points of the surface. Let d^2 be the sum over the
 // channels of ((colour - median) / s)^2. A sight is far from the median if
 // exp(-d^2 / 2) < threshold.

@@ -10,7 +10,7 @@
 namespace axial::texture {
 
 struct PackingOptions {
-  int max_size = 8192;  // of a side of a texture [px]; 0: no limit but that of the packer, 32768
+  int max_size = 8192;  // largest side of a texture [px]; 0: 32768, the packer's limit
   int multiple = 0;     // sides are multiples of this number; 0: powers of two
 };
 
@@ -26,11 +26,11 @@ struct Packing {
   std::size_t scaled_down = 0;  // rectangles with a scale below 1
 };
 
-// The size of a rectangle of the given size at the scale of its place, rounded up to whole pixels.
+// Returns `size` times `place.scale`, rounded up to whole pixels.
 cv::Size size_at(const Place& place, cv::Size size);
 
-// Places rectangles of the given sizes [px], with sides of at least 1. The first rectangle lies in
-// the upper left corner of the first texture.
+// Places rectangles of the given sizes [px], whose sides must be at least 1. The first rectangle
+// lies in the upper left corner of the first texture.
 //
 // A texture is a square at first. Its side is at least as long as the longest side of a rectangle,
 // and so long that the remaining rectangles fill at most 90 % of its area. The side grows step by

@@ -14,8 +14,8 @@ namespace axial::texture {
 
 // Samples along the seams. The samples of seam s are at [begin[s], begin[s + 1]) of `differences`.
 // A seam with n samples has its sample k at (1 - t) * first vertex + t * second vertex, where t =
-// (k + 1/2) / n. There are two samples per pixel of the seam's length in the texture where the seam
-// is longer, and at least two per seam.
+// (k + 1/2) / n. The number n is twice the length of the seam [px], rounded up, and at least 2. The
+// length is the larger of the lengths in the two charts.
 struct SeamColors {
   std::vector<std::uint32_t> begin;
   std::vector<Eigen::Vector3f> differences;  // colour in chart b minus colour in chart a, B G R

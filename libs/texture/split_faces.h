@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Splits faces that are too large for linear texture coordinates. Texture coordinates are linear
-// inside a face. The exact image of a face is not linear, because of perspective, refraction and
-// lens distortion.
+// inside a face, but the exact image of a face is not, because of perspective, refraction and lens
+// distortion.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace axial::texture {
 
 struct SplitOptions {
   double tolerance = 0.25;             // largest error of a linear image inside a face [px]
-  std::size_t max_faces = 20'000'000;  // splitting ends before this number can be exceeded
+  std::size_t max_faces = 20'000'000;  // no round of splitting begins that could exceed this
 };
 
 // Splits edges in the middle, together with the faces at the edges, until the error of each edge is
@@ -26,8 +26,8 @@ struct SplitOptions {
 // The factor 3/4: an error that is quadratic along the edges is, inside a face, at most 4/3 of the
 // largest error at the face's edges.
 //
-// Splitting ends early after 16 rounds, and with a warning in the log before a round after which
-// there could be more than max_faces faces. Faces stay joined along their edges. The parts of a
+// Splitting ends early in two cases: after 16 rounds, or before a round that could give more than
+// max_faces faces (with a warning in the log). Faces stay joined along their edges. The parts of a
 // face take the place of the face in the order of the faces. Vertices keep their indices, and new
 // vertices follow. Returns by how many the number of faces has grown.
 std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {});

@@ -10,12 +10,12 @@ namespace axial::texture {
 
 struct StbRect {
   cv::Size size;
-  std::optional<cv::Point> corner;  // nothing: does not fit
+  std::optional<cv::Point> corner;  // upper left pixel; empty: not placed
 };
 
-// Places rectangles in a texture of the size `texture` [px], as far as the packer finds a place.
-// Sets StbRect::corner, the upper left pixel, of the placed rectangles and leaves the others
-// unchanged. The first rectangle is placed in the upper left corner of the texture if it fits.
+// Places rectangles in a texture of the size `texture` [px]. Sets StbRect::corner of the rectangles
+// for which the packer finds a place, and leaves the other rectangles unchanged. The first
+// rectangle is placed in the upper left corner of the texture if it fits.
 void pack_with_stb(cv::Size texture, std::span<StbRect> rects);
 
 }  // namespace axial::texture

@@ -22,25 +22,26 @@ struct Options {
   LevelingOptions leveling;
   PackingOptions packing;
   double sharpness_weight = 0;    // see paint()
-  Rgb empty_color{255, 127, 39};  // of faces that no view sees, and between the charts
+  Rgb empty_color{255, 127, 39};  // for faces that no view sees, and between the charts
 };
 
 struct Report {
-  std::size_t new_faces = 0;  // by splitting
+  std::size_t new_faces = 0;  // number of faces that splitting has added
   std::size_t unseen_faces = 0;
-  std::size_t outliers = 0;  // pairs of a face and a view
+  std::size_t outliers = 0;  // removed sights: a sight is a pair of a face and a view
   std::size_t charts = 0;
   std::size_t scaled_down = 0;  // charts that were larger than a texture
 };
 
-// Returns the ProgressSink for a stage with the given name. Called at the start of a stage that
-// takes long.
+// Returns the ProgressSink for a stage with the given name. texture_mesh() calls the function at
+// the start of each stage that takes long.
 using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 
 // Returns `mesh` with textures. Each face gets the colours of one of the views that see the face,
 // as chosen by choose_views() (labels.h). A face that no view sees gets Options::empty_color. Faces
-// stay in the same order, and the parts of a split face take its place. Vertices keep their
-// indices, and the vertices that splitting adds follow. `report`, if given, is filled.
+// stay in the same order, and the parts of a split face follow each other at the place of this
+// face. Vertices keep their indices, and the vertices that splitting adds follow. `report`, if
+// given, is filled.
 //
 // Error for a mesh without faces, with a vertex index out of range or with a coordinate that is not
 // finite. Error if no view sees any face. Errors of `images` and of pack() are passed on.

@@ -19,12 +19,12 @@ struct View {
 
 struct ViewImage {
   cv::Mat3b color;   // B G R, of the size of the view's camera
-  cv::Mat1b usable;  // of the same size; 0: the pixel must not be used. Empty: all may be used
+  cv::Mat1b usable;  // size of `color`; 0: the pixel must not be used. Empty: all may be used
 };
 
 // Returns the photograph of view `index`. The function is called concurrently, may be called more
-// than once for each view, and must return the same image each time. The callers hold at most as
-// many images at a time as there are threads.
+// than once for each view, and must return the same image each time. The number of images in memory
+// at the same time is at most the number of threads.
 using ImageSource = std::function<ViewImage(std::size_t index)>;
 
 }  // namespace axial::texture

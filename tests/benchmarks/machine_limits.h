@@ -10,15 +10,17 @@ enum class InstructionSet;  // lanes/scorer.h
 
 namespace axial::benchmarks {
 
-// All values are the best since the program began: a disturbance only slows a measurement.
+// Every value is the best of all measurements since the program began, because disturbances can
+// only slow a measurement.
 
-// Cycles per nanosecond, measured by a chain of additions that take one cycle each.
+// The clock rate of the processor [GHz], measured by a chain of additions that take one cycle each.
 double clock_ghz();
 
-// For one core and one instruction set, with data in the first-level cache.
+// The limits of one core with one instruction set, for data in the first-level cache.
 struct MachineLimits {
-  // 32-bit words from arbitrary places into a register, with the gather instruction (0: the set has
-  // none) or loaded one by one.
+  // The number of 32-bit words that are read from arbitrary places into a vector register per
+  // nanosecond: with the gather instruction (0: the instruction set has none), and loaded one by
+  // one.
   double gathered_words_per_ns = 0, loaded_words_per_ns = 0;
   double float_operations_per_ns = 0;  // multiplications and additions, not fused
 
@@ -27,7 +29,7 @@ struct MachineLimits {
 
 MachineLimits machine_limits(depth::lanes::InstructionSet set);
 
-namespace detail {  // one translation unit for each set of registers
+namespace detail {  // each function has its own translation unit
 MachineLimits scalar_limits();
 MachineLimits baseline_limits();
 MachineLimits avx2_limits();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops of machine_limits.h for one instruction set. Only its translation unit may include this
-// file. Every name has the instruction set in a type.
+// The measuring loops of machine_limits.h, for the instruction set of the translation unit that
+// includes this file. Only the translation units of the instruction sets may include it. Every name
+// contains the instruction set in a type, so that the linker does not mix code of different
+// instruction sets.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +26,8 @@ class LimitKernel {
   using Floats = stdx::simd<float, Abi>;
   using Ints = stdx::rebind_simd_t<std::int32_t, Floats>;
   static constexpr std::size_t kWidth = Floats::size();
-  static constexpr std::size_t kChains = 6;  // of each kind: hides latencies, fits the registers
+  // Independent chains of each operation: enough to hide latencies, few enough for the registers.
+  static constexpr std::size_t kChains = 6;
   static constexpr std::size_t kRounds = 20000;
   static constexpr std::size_t kWords = 4096;  // 16 KiB
   static constexpr std::size_t kIndices = 1024;
@@ -45,7 +48,7 @@ class LimitKernel {
   }
 
  private:
-  // The best of many short runs: other runs may have been disturbed.
+  // Returns the shortest time [ns] of many short runs, because runs may be disturbed.
   static double best_ns(void (*run)()) {
     double best = 1e30;
     for (int i = 0; i < 25; ++i) {
@@ -74,7 +77,8 @@ class LimitKernel {
       return Ints(_mm256_i32gather_epi32(base, static_cast<__m256i>(at), 4));
   }
 
-  // Takes two positions at a time from their register.
+  // Loads the four words at the positions `at`. Two positions at a time are taken from the
+  // register.
   static __m128i load_four(const std::int32_t* base, __m128i at) {
     const auto first = static_cast<std::uint64_t>(_mm_cvtsi128_si64(at));
     const auto second = static_cast<std::uint64_t>(_mm_extract_epi64(at, 1));

@@ -15,24 +15,27 @@ namespace axial::benchmarks {
 inline constexpr int kSourceViews = 5;
 
 struct Survey {
-  std::vector<depth::MatchImage> views;  // the reference first
-  std::vector<DepthMap> maps;            // the truth with typical noise
-  std::vector<Eigen::Vector3f> points;   // sparse, world frame
-  depth::PlaneMap truth;                 // of the reference
+  std::vector<depth::MatchImage> views;  // the reference view, then the source views
+  std::vector<DepthMap> maps;            // of `views`: true depths with typical noise
+  std::vector<Eigen::Vector3f> points;   // sparse points in the world frame
+  depth::PlaneMap truth;                 // true planes of the reference view
   std::vector<const depth::MatchImage*> sources;
   std::vector<const DepthMap*> source_maps;
 
   depth::MatchInput input() const { return {&views[0], sources, points}; }
 };
 
-// Made once and kept in memory. Images of 512 x 384 pixels.
+// Returns the survey, with images of 512 x 384 pixels. The survey is made by the first call and
+// kept in memory.
 const Survey& survey(bool behind_port);
 
-// The true plane at a pixel, changed by at most `depth` (relative) and `turn` [rad].
+// Returns the true plane at pixel (x, y) with random changes: the depth changes by at most the
+// fraction `depth`, and the normal turns by at most `turn` [rad].
 depth::PlaneHypothesis near_truth(const Survey& survey, int x, int y, float depth, float turn,
                                   std::mt19937& random);
 
-// The input of a LaneMatcher, with or without the sources' depth maps.
+// A LaneMatcher for the survey, with its input. `geometric`: whether the input includes the depth
+// maps of the source views.
 template <class Camera>
 class Bench {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board in front of a camera under water, and its corners in the photographs, by the exact
-// projection and with a given noise.
+// Simulated photographs of a board under water: the board's corners by the exact projection, with a
+// given noise.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -49,12 +49,13 @@ struct SurveyOptions {
   double steepest = 35;                   // [degrees]
   double noise = 0;                       // standard deviation per axis [px]
   unsigned seed = 1;
-  // The part of the image that all corners lie in, as shares of its width and height.
+  // All corners lie in this part of the image, as fractions of the width and the height of the
+  // image.
   Eigen::AlignedBox2d within{Eigen::Vector2d(0.01, 0.01), Eigen::Vector2d(0.99, 0.99)};
 };
 
-// The images of the board's corners by the lens behind the port; empty unless all are within the
-// box.
+// Returns the images of the board's corners by the lens behind the port. Empty if a corner is not
+// visible or its image is outside `within` (SurveyOptions::within).
 inline std::vector<Corner> seen_corners(const io::ColmapCamera& lens,
                                         const refractive::Port<double>& port, const Pose& pose,
                                         const Board& board, const Eigen::AlignedBox2d& within) {

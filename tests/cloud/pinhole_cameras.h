@@ -15,7 +15,7 @@ using test::AnalyticScene;
 
 inline constexpr double kNear = 0.5, kFar = 1.6;
 
-// 240 x 180 pixels, 65 degrees wide.
+// A camera without a port, with 240 x 180 pixels and a horizontal field of view of 65 degrees.
 inline CameraModel lens_in_air() {
   CameraModel model = test::dry_camera();
   return model.resized(240, 180);

@@ -12,7 +12,8 @@
 
 namespace axial::evaluate {
 
-// z = height(x, y) over [-size/2, size/2]^2, as cells x cells squares of two triangles each.
+// Returns the surface z = height(x, y) over the square [-size/2, size/2]^2. The square is divided
+// into cells x cells smaller squares with two triangles each.
 inline Mesh height_field(int cells, double size,
                          const std::function<double(double, double)>& height) {
   Mesh mesh;
@@ -41,7 +42,9 @@ inline double ripples(double x, double y) {
   return 0.08 * std::sin(5 * x + 1) * std::cos(4 * y) + 0.05 * std::sin(11 * y + 3 * x);
 }
 
-// A longitude-latitude sphere. With 300 steps its facets are within 6e-5 of the radius.
+// Returns a sphere with faces along circles of longitude and latitude. `steps`: number of faces
+// from pole to pole. With 300 steps, the distance of the faces from the exact sphere is at most
+// 6e-5 times the radius.
 inline Mesh sphere(double radius, int steps) {
   Mesh mesh;
   for (int j = 0; j <= steps; ++j)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readers of files as fuzz tests. A reader gets any bytes. It may refuse them with an axial::Error
-// and with nothing else.
+// Readers of files as fuzz tests. A reader gets arbitrary bytes. It may refuse the bytes only by an
+// axial::Error.
 #pragma once
 
 #include <filesystem>
@@ -19,14 +19,15 @@ struct Reader {
   std::string_view name;  // of the test and of its folder of seeds
   const char* file;       // the name under which the bytes are stored
   // Reads `file` and checks the result. May write other files into the folder of `file`. An Error
-  // says that the bytes are refused; its message must be one line that begins with the name of a
-  // file: of `file`, or of a file that `file` names.
+  // means that the bytes are refused. Its message must be one line that begins with the name of
+  // `file`, or with the name of a file that `file` names.
   void (*read)(const fs::path& file);
-  // Writes a valid file. `variant` counts from 0. Returns false if there is no such variant.
+  // Writes a valid file as a start for the fuzzer. `variant`: 0, 1, ...: selects the content of the
+  // file. Returns false if there is no such variant.
   bool (*write_seed)(const fs::path& file, int variant);
 };
 
-// The readers, by groups of formats.
+// The readers in groups, by format.
 std::span<const Reader> camera_readers();
 std::span<const Reader> colmap_readers();
 std::span<const Reader> dmap_readers();
@@ -42,7 +43,7 @@ inline void require(bool good, const std::string& fault) {
   if (!good) report(fault);
 }
 
-// A file of the same name in the subfolder "again".
+// Returns the path of a file with the same name in the subfolder "again" of the file's folder.
 inline fs::path copy_of(const fs::path& file) {
   return file.parent_path() / "again" / file.filename();
 }
@@ -66,8 +67,9 @@ Value read_copy(const Value& value, const fs::path& file, Read read, Write write
   });
 }
 
-// Reads `file`, writes the value and reads it again. If that value is written, the file must have
-// the same bytes. An Error of the first reading is passed on.
+// Reads a value from `file`, writes it to a copy, reads the copy, and writes the result again. It
+// is a fault if the two written files differ. An Error of the first reading is passed on; a later
+// Error is a fault.
 template <class Read, class Write>
 void read_and_copy(const fs::path& file, Read read, Write write) {
   const auto value = read(file);

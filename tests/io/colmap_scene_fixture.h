@@ -17,7 +17,8 @@ namespace axial::io {
 
 inline constexpr int kWidth = 160, kHeight = 120;
 
-// A smooth picture whose value is known everywhere.
+// The colour of the photographs at the position (x, y) [px], as a formula, so that it is also known
+// between pixels.
 inline cv::Vec3d color_at(double x, double y) {
   return {128 + 100 * std::sin(x * 0.07), 128 + 100 * std::cos(y * 0.05), 40 + x * 0.5 + y * 0.5};
 }

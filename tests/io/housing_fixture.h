@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Housing files, for the tests of reading and writing such files and of attaching ports to images.
+// Examples of housing files, for the tests that read and write such files or attach ports to
+// images.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -51,7 +52,7 @@ class HousingTest : public testing::Test {
     test::put(file_, text);
     return read_housing(file_);
   }
-  // The error for the example with `from` replaced by `to`.
+  // Returns the error of reading kExample with the text `from` replaced by `to`.
   std::string error(const std::string& from, const std::string& to) {
     const std::string message = test::error_of([&] { read(replaced(kExample, from, to)); });
     EXPECT_THAT(message, testing::HasSubstr(file_.string()));

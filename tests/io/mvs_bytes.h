@@ -18,7 +18,7 @@
 
 namespace axial::io {
 
-// Appends the primitives of a file in the order of the format's description.
+// A file in memory. The functions append numbers and texts in the encoding of the format.
 struct Bytes {
   std::string data;
 
@@ -41,8 +41,8 @@ struct Bytes {
   }
 };
 
-// A small scene of two images of one camera and an uncalibrated image. Every field can be made
-// wrong.
+// The fields of a small scene: two images of one camera, and an uncalibrated image. A test can give
+// any field a wrong value.
 struct Description {
   unsigned version = 7;
   unsigned width = 640, height = 480;
@@ -166,7 +166,7 @@ class MvsTest : public testing::Test {
     EXPECT_THAT(message, testing::HasSubstr(file_.string()));
     return message;
   }
-  // The error for the description after `change`.
+  // Returns the error of reading a scene whose description was changed by `change`.
   std::string error(const std::function<void(Description&)>& change) {
     Description d;
     change(d);

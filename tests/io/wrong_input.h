@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wrong input that every reader must survive: truncated files, files with a changed byte, random
-// bytes, empty files. The sanitized build turns a read out of bounds or an absurd allocation into a
-// failure.
+// bytes, empty files. In the build with sanitizers, reads out of bounds and absurd allocations make
+// the test fail.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ bool fails_naming(const std::filesystem::path& file, Run run) {
   return false;
 }
 
-// Every proper prefix of the valid file `bytes`, including the empty one, must be refused, except
-// prefixes with a length in [first_valid, bytes.size()).
+// Checks that a reader refuses the beginnings of the valid file `bytes` with a length of 0 to
+// bytes.size() - 1 bytes. Beginnings of `first_valid` or more bytes are not checked.
 template <class Read>
 void expect_prefixes_refused(const std::filesystem::path& file, std::string_view bytes, Read read,
                              std::size_t first_valid = std::string_view::npos) {
@@ -52,8 +52,9 @@ void expect_prefixes_refused(const std::filesystem::path& file, std::string_view
   EXPECT_FALSE(fails_naming(file, [&] { read(file); })) << "the whole file";
 }
 
-// Files with one changed byte, and files with random bytes after the first `kept` bytes of the
-// valid file, must be read or refused without a crash. At least some must be refused.
+// Checks that a reader reads or refuses damaged files without a crash, and refuses at least a few
+// of them. The files are the valid file `bytes` with one changed byte, random bytes alone, and
+// random bytes after the first `kept` bytes of the valid file.
 template <class Read>
 void expect_damage_survived(const std::filesystem::path& file, const std::string& bytes, Read read,
                             std::size_t kept = 4, int rounds = 400) {

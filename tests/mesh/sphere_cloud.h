@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sphere that six cameras surround, in air or behind flat ports, and points on it with their
+// A sphere, six cameras around it, in air or behind flat ports, and points on the sphere with their
 // views.
 #pragma once
 
@@ -40,8 +40,8 @@ inline Scene cameras_around_sphere(bool behind_ports) {
   return scene;
 }
 
-// Points on the sphere, evenly spread, moved along the normal by `noise` [m] times a normal random
-// number. Each has the views that it faces.
+// Returns evenly spread points on the sphere, moved along the normal by `noise` [m] times a normal
+// random number. The views of a point are the cameras that its surface faces.
 inline PointCloud points_on_sphere(const Scene& scene, std::size_t count, double noise = 0) {
   PointCloud cloud;
   std::mt19937 random(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brute-force facts of a mesh, counted from its faces.
+// Topological properties of a mesh, counted from its faces by brute force.
 #pragma once
 
 #include <array>
@@ -13,8 +13,10 @@ namespace axial::test {
 
 struct MeshFacts {
   std::size_t border_edges = 0;  // edges with one face
-  std::size_t bad_edges = 0;     // edges with more faces, or two faces of other orientation
-  std::size_t bad_vertices = 0;  // vertices whose faces are not connected by edges at them
+  // Edges that two or more faces pass in the same direction: edges of more than two faces, or of
+  // two faces with different orientations.
+  std::size_t bad_edges = 0;
+  std::size_t bad_vertices = 0;  // vertices whose faces do not form one fan
   std::size_t unused_vertices = 0;
   long euler = 0;  // vertices - edges + faces
 };

@@ -14,11 +14,12 @@ inline const io::ColmapCamera kLens{
 // A flat port, tilted by 2 degrees, for all cameras.
 io::Housing housing();
 
-// The image of the in-air direction (u, v, 1) by kLens: COLMAP's formula for OPENCV. Pixel centres
-// at integers.
+// The pixel at which kLens images the in-air direction (u, v, 1), by COLMAP's formula for the model
+// OPENCV. Pixel centres are at integers.
 Eigen::Vector2d seen_by_lens(double u, double v);
 
-// The survey as a COLMAP model whose images the distorting lens has taken.
+// Returns the survey `bundle` as a COLMAP model with the camera kLens: the observations are the
+// pixels of kLens.
 io::ColmapModel model_of(const Bundle& bundle);
 
 }  // namespace axial::pose::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fixture of the tests of RefinePoses on files.
+// The fixture of the tests that run the program RefinePoses.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace axial::pose {
 
-// A survey behind a flat port in the files from which RefinePoses starts: a COLMAP model whose
-// poses absorbed refraction, the lens, and the housing.
+// Writes the input files of RefinePoses for a survey behind a flat port: the housing, the lens, and
+// a COLMAP model whose poses have absorbed refraction.
 class RefinePoses : public test::ProgramTest {
  protected:
   Bundle truth_ = testing::survey(testing::camera_behind(testing::flat_port(2)), {.noise = 0.2});
@@ -26,11 +26,11 @@ class RefinePoses : public test::ProgramTest {
 
   test::Outcome run(const std::string& arguments) const;
 
-  // --scale-from with the true distance of two images.
+  // Returns the option --scale-from with the true distance of two images.
   std::string baseline() const;
 };
 
-// The options for the files of the fixture.
+// The options that name the files of the fixture.
 inline const std::string kInput = "-i . --lens lens/cameras.txt --housing housing.json ";
 
 }  // namespace axial::pose

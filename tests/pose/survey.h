@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A survey with known poses and points, imaged by pinholes behind any port: exact tracks with a
-// given noise.
+// A simulated survey with known poses and points. Its cameras are pinholes behind any port. The
+// tracks are exact up to a given noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,21 +37,22 @@ inline HousedCamera housed(const CameraModel& camera) {
 Pose looking_at(const Eigen::Vector3d& centre, const Eigen::Vector3d& target, double roll);
 
 struct SurveyOptions {
-  double distance = 0.8;  // of the ground [m]
+  double distance = 0.8;  // from the cameras to the ground [m]
   int images = 12;
   int points = 300;
   double noise = 0;  // standard deviation per axis [px]
   unsigned seed = 1;
 };
 
-// Rolled and tilted views over rough ground.
+// Returns a survey of rough ground by tilted cameras that are rotated about their axes.
 Bundle survey(const CameraModel& camera, const SurveyOptions& options);
 
-// As survey(), but `second` takes every second image instead of `first`.
+// Like survey(), but the images are taken by the cameras `first` and `second` in turn.
 Bundle mixed_survey(const CameraModel& first, const CameraModel& second,
                     const SurveyOptions& options);
 
-// Poses and points moved at random: `angle` [rad] and `shift` [m] are standard deviations.
+// Moves poses and points at random. The standard deviations are `angle` [rad] for rotations, and
+// `shift` [m] for positions.
 void disturb(Bundle& bundle, double angle, double shift, unsigned seed);
 
 // Errors of centres and rotations after the best similarity to the truth.

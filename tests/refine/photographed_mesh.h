@@ -42,7 +42,7 @@ class PhotographedMesh {
       }
   }
 
-  // The height of the surface, downwards, below (x, y).
+  // The z coordinate [m] of the surface at (x, y). The z axis points downwards.
   double height(double x, double y) const { return scene.depth({x, y, 0}, {0, 0, 1}); }
 
   // A grid of vertices on the surface, with noise of the standard deviation `noise` [m].
@@ -67,10 +67,11 @@ class PhotographedMesh {
     return result;
   }
 
-  // The median height of the vertices above or below the true surface [m], away from the border.
+  // The median of the distances |z - height(x, y)| [m] of the vertices, without vertices near the
+  // border.
   double error(const Mesh& mesh) const { return median_error(mesh.vertices); }
 
-  // The same of the centres of the faces.
+  // The same for the centres of the faces.
   double error_of_faces(const Mesh& mesh) const {
     std::vector<Eigen::Vector3f> centres;
     for (const auto& [a, b, c] : mesh.faces)

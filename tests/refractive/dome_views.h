@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random views through dome ports. They cover the range of housings for which the project promises
-// accuracy.
+// Random views through dome ports. The views cover the range of housings for which the project
+// promises accuracy.
 #pragma once
 
 #include "refractive/dome_port_camera.h"
@@ -20,8 +20,9 @@ struct DomeView {
   double outer_radius() const { return port.inner_radius + port.thickness; }
 };
 
-// Field of view 50 to 120 degrees, inner radius 30 to 120 mm, glass of 0 to 20 mm. The dome's
-// centre is up to `decentring` times the inner radius away from the lens, in any direction.
+// Returns a random view: field of view 50 to 120 degrees, inner radius 30 to 120 mm, thickness of
+// the glass 0 to 20 mm. The distance from the camera centre to the dome's centre is up to
+// `decentring` times the inner radius, in any direction.
 inline DomeView random_dome_view(Random& random, double decentring = 0.4) {
   DomeView view{1024, 768, lens_with_fov(random.uniform(50, 120), 1024, 768), {}};
   view.lens.cx += random.uniform(-0.02, 0.02) * view.width;

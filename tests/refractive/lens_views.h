@@ -35,14 +35,14 @@ struct LensPortView : LensView {
 using LensFlatView = LensPortView<LensFlatPortCamera, FlatPort<double>>;
 using LensDomeView = LensPortView<LensDomePortCamera, DomePort<double>>;
 
-// Whether every pixel of the image has a direction. A calibration from such images would give a
-// lens that satisfies this.
+// Whether every pixel of the image has a direction. Every lens that was calibrated from its own
+// images satisfies this condition.
 inline bool whole_image_defined(const LensView& view) {
   return view.distorted<double>().shows_all(view.width, view.height);
 }
 
-// Perspective lenses of 50 to 110 degrees field of view with rational radial distortion, both
-// barrel and pincushion.
+// Returns a random perspective lens with a field of view of 50 to 110 degrees and rational radial
+// distortion, barrel or pincushion.
 inline LensView perspective_lens(Random& random) {
   LensView view;
   view.lens = lens_with_fov(random.uniform(50, 110), view.width, view.height);
@@ -64,7 +64,7 @@ inline LensView fisheye_lens(Random& random) {
   return view;
 }
 
-// Lenses of COLMAP's FOV model.
+// Returns a random lens of COLMAP's model FOV.
 inline LensView field_of_view_lens(Random& random) {
   LensView view;
   view.lens = lens_with_fov(random.uniform(60, 110), view.width, view.height);
@@ -75,7 +75,8 @@ inline LensView field_of_view_lens(Random& random) {
   return view;
 }
 
-// Lenses of all kinds, with an arbitrary principal point. Every pixel has a direction.
+// Returns a random lens of any of the kinds above, with a random principal point near the image's
+// centre. Every pixel has a direction.
 inline LensView random_lens(Random& random) {
   for (;;) {
     const double kind = random.uniform(0, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random underwater views for property tests. They cover the range of housings for which the
+// Random underwater views for property tests. The views cover the range of housings for which the
 // project promises accuracy. The seeds are fixed, so that a failure can be reproduced.
 #pragma once
 
@@ -15,7 +15,8 @@
 
 namespace axial::refractive::testing {
 
-// Prints a measured number to standard output, from which the acceptance tests read it.
+// Prints a measured number to standard output. The acceptance tests read the number from the
+// output.
 inline void report(const char* what, double value) {
   std::printf("measured: %s %.3g\n", what, value);
 }
@@ -62,14 +63,15 @@ inline PinholeLens<double> lens_with_fov(double degrees, int width, int height) 
   return {f, f, 0.5 * (width - 1), 0.5 * (height - 1)};
 }
 
-// The paper's housing: by default 2 cm of air, and 1.4 cm of glass.
+// The paper's housing, with 1.4 cm of glass. `distance` [m]: the width of the air gap, by default 2
+// cm.
 inline FlatPort<double> paper_port(double distance = 0.02, double tilt_degrees = 0) {
   return {tilted_normal(tilt_degrees * kDegree, 0), distance, 0.014, 1, 1.52, 1.333};
 }
 
-// Field of view 50 to 110 degrees, tilt 0 to 15 degrees in any direction, 1 to 100 mm of air, glass
-// of 0 to 20 mm with the indices of silica to sapphire, water with the indices of fresh water to
-// deep sea.
+// Returns a random view: field of view 50 to 110 degrees, tilt of the port 0 to 15 degrees in any
+// direction, air gap 1 to 100 mm, glass of 0 to 20 mm with an index between silica and sapphire,
+// and water with an index between fresh water and the deep sea.
 inline View random_view(Random& random, int width = 1024, int height = 768) {
   View view{width, height, lens_with_fov(random.uniform(50, 110), width, height), {}};
   view.lens.cx += random.uniform(-0.02, 0.02) * width;
@@ -88,8 +90,9 @@ inline Vector2<double> random_pixel(Random& random, const View& view) {
   return {random.uniform(0, view.width - 1), random.uniform(0, view.height - 1)};
 }
 
-// A point on the pixel's ray at a range of 0.3 to 10 m from the camera. Empty if the point is not
-// in the water: at a large incidence the path to the water can be longer than 0.3 m.
+// Returns a point on the pixel's ray at a random distance of 0.3 to 10 m from the camera centre.
+// Empty if the point is less than 1 cm behind the glass, because at a large incidence the path to
+// the water can be longer than 0.3 m.
 template <class T>
 std::optional<Vector3<T>> random_point(Random& random, const FlatPortCamera<T>& camera,
                                        const Vector2<T>& pixel) {

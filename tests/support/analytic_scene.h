@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plane with a sphere in front of it, and exact depth maps of this scene for any axial camera.
-// The depth maps come from the intersection of every pixel's ray with the surfaces in closed form.
+// Every pixel's ray is intersected with the surfaces in closed form.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -82,7 +82,7 @@ inline DepthMap exact_map(const AnalyticScene& scene, const CameraModel& model, 
   return map;
 }
 
-// A camera without a port: 96 x 72 pixels, about 65 degrees wide.
+// A camera without a port, with 96 x 72 pixels and a horizontal field of view of about 65 degrees.
 inline CameraModel dry_camera() {
   CameraModel model;
   model.width = 96;

@@ -9,9 +9,9 @@
 
 namespace axial::test {
 
-// Creates an empty folder for the running test. Its name contains the test's name and the process
-// number: tests run in parallel, also those of one fixture, and each test runs a second time in the
-// sanitized build.
+// Creates an empty folder for the running test. The name of the folder contains the name of the
+// test and the process number, because tests run in parallel and may run in two builds at the same
+// time.
 inline std::filesystem::path empty_folder() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   const auto folder = std::filesystem::path(testing::TempDir()) /

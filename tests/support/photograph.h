@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Photographs of a painted plane. The rays of every pixel are intersected with the plane.
+// Photographs of a painted plane, made by intersecting the rays of every pixel with the plane.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,8 @@
 namespace axial::test {
 
 // Renders the plane z = 0 of the world. `paint(x, y)`: brightness of the plane at (x, y), 0 to 1. A
-// pixel is the mean of 3 x 3 rays; if the four corner rays are equal, it takes their value.
+// pixel is the mean of 3 x 3 rays. If the four rays at the corners of this grid have the same
+// brightness, the pixel gets this brightness.
 template <class Paint>
 cv::Mat1b photograph(const CameraModel& model, const Pose& pose, const Paint& paint) {
   constexpr int kSide = 3;
@@ -46,8 +47,9 @@ cv::Mat1b photograph(const CameraModel& model, const Pose& pose, const Paint& pa
   return image;
 }
 
-// A checkerboard whose inner corners lie at multiples of `square`, starting at (0, 0). It has a
-// white margin of one square and lies on grey ground.
+// Returns the brightness of a checkerboard with columns x rows inner corners. The inner corners lie
+// at multiples of `square`, from (0, 0) on. The board has a white margin of one square and lies on
+// grey ground.
 inline auto checkerboard(int columns, int rows, double square) {
   return [=](double x, double y) {
     const double column = std::floor(x / square), row = std::floor(y / square);
@@ -57,7 +59,8 @@ inline auto checkerboard(int columns, int rows, double square) {
   };
 }
 
-// A picture that covers the plane from (0, 0) to (width, height). Outside, the plane is white.
+// Returns the brightness of a picture that covers the plane from (0, 0) to (width, height). The
+// plane is white outside of the picture.
 inline auto picture(const cv::Mat1b& pixels, double width, double height) {
   return [=](double x, double y) {
     const int column = static_cast<int>(std::floor(x / width * pixels.cols));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A floor with a spherical cap and a solid texture. Images and exact depths for any axial camera
-// come from the intersection of its rays with the surface. Tests of the matcher use them, because
-// rendering takes only milliseconds.
+// A floor with a spherical cap and a solid texture. Images and exact depths are rendered for any
+// axial camera, by intersecting its rays with the surface. Rendering takes only milliseconds, so
+// that tests of the matcher can use this scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@
 
 namespace axial::test {
 
-// The floor is z = 2. A sphere of radius 0.5 around (0, 0, 2.2) projects from it. If bar_width is
-// not 0, there is a bar parallel to y in front of them.
+// The floor is the plane z = 2. A sphere of radius 0.5 around (0, 0, 2.2) rises from the floor. If
+// bar_width is not 0, a bar parallel to y lies in front of floor and sphere.
 struct TexturedScene {
   double cell = 0.02;    // size of the finest texture detail [m]
   double bar_width = 0;  // width of the bar at x = -0.15, z = 1.2 [m]
@@ -73,8 +73,8 @@ struct RenderedView {
   cv::Mat1f depth;  // lambda
 };
 
-// Renders with four samples per pixel for the image, and the ray of the pixel's centre for the
-// depth.
+// Renders a view. An image pixel is the mean of four rays. A depth is that of the ray through the
+// pixel's centre.
 inline RenderedView render(const TexturedScene& scene, const CameraModel& model, const Pose& pose) {
   RenderedView view{cv::Mat1b(model.height, model.width), cv::Mat1f(model.height, model.width)};
   std::visit(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A box on a floor with painted patterns, photographed by the simulator through a flat port. The
-// simulator traces light from the pixels with Snell's law and shares no code with the cameras under
-// test.
+// A room: a box on a floor, both with painted patterns, photographed by the simulator through a
+// flat port or a dome. The simulator traces light from the pixels with Snell's law and shares no
+// code with the cameras under test.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -39,7 +39,7 @@ inline Mesh room_mesh() {
   return mesh;
 }
 
-// The mesh with each face split into 4^levels.
+// Returns the mesh with each face split into 4^levels faces.
 inline Mesh refined(Mesh mesh, int levels) {
   for (int k = 0; k < levels; ++k) {
     Mesh finer;
@@ -59,8 +59,8 @@ inline Mesh refined(Mesh mesh, int levels) {
   return mesh;
 }
 
-// The colour R G B in [0, 1] of a point of the room: waves of 10 cm or longer. The box is more
-// reddish than the floor by 0.3.
+// Returns the colour R G B in [0, 1] of a point of the room. The pattern consists of waves of 10 cm
+// or longer. The red of the box is higher than the red of the floor by 0.3.
 inline Eigen::Vector3f pattern(const Eigen::Vector3d& p) {
   const double s = 2 * std::numbers::pi / 0.1;
   const double red = p.z() > 1e-3 ? 0.3 : 0;
@@ -108,7 +108,8 @@ inline CameraModel camera_of(const simulate::Lens& lens, const simulate::Port& p
   return camera;
 }
 
-// A camera 1 m from the middle of the floor, in a direction around the z axis, 35 degrees from it.
+// Returns a camera that looks at the middle of the floor from a distance of 1 m. The direction to
+// the camera is 35 degrees from the z axis, at the azimuth `angle` [rad].
 inline simulate::View room_view(double angle) {
   constexpr double kTilt = 35 * std::numbers::pi / 180;
   simulate::View view;
@@ -120,8 +121,8 @@ inline simulate::View room_view(double angle) {
   return view;
 }
 
-// Photographs by `count` cameras around the room. View v is darker or brighter by the factor
-// exposures[v], where given.
+// Returns photographs by `count` cameras around the room. The brightness of view v is multiplied by
+// exposures[v], if `exposures` is not empty.
 inline Room photograph_room(int count, const std::vector<float>& exposures = {},
                             const simulate::Port& port = room_port()) {
   const Mesh mesh = room_mesh();
@@ -142,7 +143,8 @@ inline Room photograph_room(int count, const std::vector<float>& exposures = {},
   return room;
 }
 
-// The colour R G B [grey levels] of a face at barycentric weights; nothing for an unseen face.
+// Returns the colour R G B [grey levels] of a face at a point, given by barycentric weights.
+// Nothing for a face that no view sees.
 inline std::optional<Eigen::Vector3f> color_at(const TexturedMesh& mesh, std::size_t face,
                                                const Eigen::Vector3f& weights) {
   const auto& uv = mesh.uv[face];
@@ -151,7 +153,7 @@ inline std::optional<Eigen::Vector3f> color_at(const TexturedMesh& mesh, std::si
   return texture::bilinear(mesh.textures[mesh.texture_of[face]], at).reverse();
 }
 
-// Calls visit(face, colour, point) for points inside all faces that are seen.
+// Calls visit(face, colour, point) for three points inside each face that a view sees.
 template <class Visit>
 void for_each_color(const TexturedMesh& mesh, Visit&& visit) {
   for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f)
@@ -167,7 +169,8 @@ void for_each_color(const TexturedMesh& mesh, Visit&& visit) {
     }
 }
 
-// The distances of the colours from the pattern, sorted [grey levels, the largest channel].
+// Returns the errors of the colours in ascending order. An error is the largest difference in a
+// channel between the colour of the mesh and pattern() [grey levels].
 inline std::vector<float> color_errors(const TexturedMesh& mesh) {
   std::vector<float> errors;
   for_each_color(mesh, [&](std::size_t, const Eigen::Vector3f& color, const Eigen::Vector3d& p) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The half-edge mesh of CGAL, with which meshes are mended. This header takes seconds to compile.
+// The half-edge mesh of CGAL, on which clean() works. This header takes seconds to compile.
 #pragma once
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -27,15 +27,16 @@ inline Eigen::Vector3d position(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_i
   return {p.x(), p.y(), p.z()};
 }
 Eigen::Vector3d mean_of_neighbours(const HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex);
-// Moves `vertex` to `to`, rounded to float. A mesh is written as float. So a check of the half-edge
-// mesh holds for the file too.
+// Moves `vertex` to `to`, rounded to float. Meshes are written as float; because of the rounding,
+// checks of the half-edge mesh also hold for the file.
 void move_to(HalfedgeMesh& mesh, HalfedgeMesh::Vertex_index vertex, const Eigen::Vector3d& to);
 
-// simplify.cpp
+// Collapses edges until about `faces` faces are left (Garland and Heckbert's quadrics).
 void decimate(HalfedgeMesh& mesh, std::size_t faces);
+
+// Makes triangles with edges of about `edge_length` [m] (isotropic remeshing).
 void remesh(HalfedgeMesh& mesh, double edge_length);
 
-// untangle.cpp
 // Moves vertices at the same place apart: each moves by 1 % of the way to the mean of its
 // neighbours.
 void separate_copies(HalfedgeMesh& mesh);
@@ -43,9 +44,9 @@ void separate_copies(HalfedgeMesh& mesh);
 // times. Faces that still intersect others are removed, and then spikes are removed. Returns the
 // number of all removed faces.
 std::size_t untangle(HalfedgeMesh& mesh);
-// Removes faces with at least two border edges until no such face is left. Then splits the vertices
-// at which faces meet only in a corner, and moves the copies apart. Returns the number of removed
-// faces.
+// Removes faces with at least two border edges until no such face is left. Then duplicates each
+// vertex at which faces touch without a common edge, and moves the copies apart (separate_copies).
+// Returns the number of removed faces.
 std::size_t remove_spikes(HalfedgeMesh& mesh);
 
 }  // namespace axial::mesh
