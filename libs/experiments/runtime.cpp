@@ -18,7 +18,6 @@
 namespace axial::experiments {
 namespace {
 
-constexpr std::array kMegapixels{2, 4, 6, 8, 10};
 constexpr std::array kOrders{Order::kScattered, Order::kReading};
 constexpr std::array<const char*, 5> kMethods{"exact", "line_search_plain", "line_search_compact",
                                               "line_search_tight", "analytic"};
@@ -30,13 +29,22 @@ const char* order_name(Order order) {
   return order == Order::kScattered ? "scattered" : "reading";
 }
 
-std::string part_name(Order order, int megapixels) {
-  return fmt::format("{}_{}mp", order_name(order), megapixels);
+// The sizes of the images [megapixels], in ascending order.
+std::vector<int> megapixels(bool quick) {
+  return quick ? std::vector{2, 4} : std::vector{2, 4, 6, 8, 10};
+}
+
+std::vector<int> megapixels_of(const Json& results) {
+  return megapixels(results.at("quick").get<bool>());
+}
+
+std::string part_name(Order order, int size) {
+  return fmt::format("{}_{}mp", order_name(order), size);
 }
 
 // The height of an image with aspect ratio 4:3.
-int image_height(int megapixels) {
-  return static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 3 / 4)));
+int image_height(int size) {
+  return static_cast<int>(std::lround(std::sqrt(size * 1e6 * 3 / 4)));
 }
 
 // The processor's name; "" if the system does not give it.
@@ -60,10 +68,10 @@ Json measure(int width, int height, Order order, const TimingOptions& options) {
   return methods;
 }
 
-Part make_part(Order order, int megapixels, const TimingOptions& options) {
-  const int height = image_height(megapixels);
+Part make_part(Order order, int size, const TimingOptions& options) {
+  const int height = image_height(size);
   const int width = static_cast<int>(std::lround(height * 4.0 / 3));
-  return {part_name(order, megapixels),
+  return {part_name(order, size),
           {{"version", 2},
            {"camera", to_json(CameraSetup{})},
            {"width", width},
@@ -85,9 +93,9 @@ LinePanel panel(const Json& results, Order order) {
                   true};
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
     Line line{kTitles[m], {}, {}};
-    for (const int megapixels : kMegapixels) {
-      const Json& result = result_of(results, part_name(order, megapixels));
-      line.x.push_back(megapixels);
+    for (const int size : megapixels_of(results)) {
+      const Json& result = result_of(results, part_name(order, size));
+      line.x.push_back(size);
       line.y.push_back(result.at(kMethods[m]).at("nanoseconds"));
     }
     panel.lines.push_back(line);
@@ -101,14 +109,14 @@ using Row = std::vector<std::string>;
 std::string table(const Json& results, const Row& cell_titles,
                   const std::function<Row(const Json& time)>& cells) {
   std::vector<Row> rows{{"points", "method"}};
-  for (const int megapixels : kMegapixels)
+  for (const int size : megapixels_of(results))
     for (const std::string& title : cell_titles)
-      rows[0].push_back(fmt::format("{} MP{}", megapixels, title));
+      rows[0].push_back(fmt::format("{} MP{}", size, title));
   for (const Order order : kOrders) {
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
       Row row{order_name(order), kTitles[m]};
-      for (const int megapixels : kMegapixels) {
-        const Row more = cells(result_of(results, part_name(order, megapixels)).at(kMethods[m]));
+      for (const int size : megapixels_of(results)) {
+        const Row more = cells(result_of(results, part_name(order, size)).at(kMethods[m]));
         row.insert(row.end(), more.begin(), more.end());
       }
       rows.push_back(row);
@@ -118,7 +126,7 @@ std::string table(const Json& results, const Row& cell_titles,
 }
 
 std::string times_table(const Json& results) {
-  const Json& any = result_of(results, part_name(kOrders[0], kMegapixels[0]));
+  const Json& any = result_of(results, part_name(kOrders[0], megapixels_of(results).front()));
   return table(
              results, {" [ns]", ", of exact"},
              [](const Json& time) -> Row {
@@ -134,21 +142,21 @@ std::string errors_table(const Json& results) {
   });
 }
 
-double ratio(const Json& results, Order order, int megapixels, const char* method) {
-  return result_of(results, part_name(order, megapixels)).at(method).at("ratio_to_exact");
+double ratio(const Json& results, Order order, int size, const char* method) {
+  return result_of(results, part_name(order, size)).at(method).at("ratio_to_exact");
 }
 
 // The paper's measure of its method: how many times faster it is than a polynomial.
 std::string analytic_table(const Json& results) {
   std::vector<Row> rows{{"points", "12th-degree polynomial / line search of"}};
-  for (const int megapixels : kMegapixels) rows[0].push_back(fmt::format("{} MP", megapixels));
+  for (const int size : megapixels_of(results)) rows[0].push_back(fmt::format("{} MP", size));
   rows[0].push_back("the paper, 2 to 10 MP");
   for (const Order order : kOrders) {
     for (std::size_t m = 1; m + 1 < kMethods.size(); ++m) {
       Row row{order_name(order), std::string(kTitles[m]).substr(std::strlen("line search, "))};
-      for (const int megapixels : kMegapixels)
-        row.push_back(significant(ratio(results, order, megapixels, "analytic") /
-                                  ratio(results, order, megapixels, kMethods[m])));
+      for (const int size : megapixels_of(results))
+        row.push_back(significant(ratio(results, order, size, "analytic") /
+                                  ratio(results, order, size, kMethods[m])));
       row.push_back("18 to 34");
       rows.push_back(row);
     }
@@ -158,17 +166,18 @@ std::string analytic_table(const Json& results) {
 
 std::string verdicts(const Json& results) {
   std::vector<Verdict> all;
-  for (const int megapixels : {2, 10}) {
-    const double faster = ratio(results, Order::kScattered, megapixels, "line_search_compact");
+  const std::vector<int> sizes = megapixels_of(results);
+  for (const int size : {sizes.front(), sizes.back()}) {
+    const double faster = ratio(results, Order::kScattered, size, "line_search_compact");
     all.push_back({fmt::format("scattered points, {} MP: exact projection at least 10 times faster "
                                "than the compact line search",
-                               megapixels),
+                               size),
                    significant(faster), faster >= 10});
   }
   double least = HUGE_VAL;
   for (const Order order : kOrders)
-    for (const int megapixels : kMegapixels)
-      least = std::min(least, ratio(results, order, megapixels, "analytic"));
+    for (const int size : megapixels_of(results))
+      least = std::min(least, ratio(results, order, size, "analytic"));
   all.push_back({"exact projection at least 300 times faster than the polynomial, every size",
                  significant(least), least >= 300});
   return verdict_table(all);
@@ -191,8 +200,8 @@ Experiment runtime(bool quick) {
   if (quick) options = {3000, 100, 3};
   Experiment experiment{"runtime", {}, documents};
   for (const Order order : kOrders)
-    for (const int megapixels : kMegapixels)
-      experiment.parts.push_back(make_part(order, megapixels, options));
+    for (const int size : megapixels(quick))
+      experiment.parts.push_back(make_part(order, size, options));
   return experiment;
 }
 
