@@ -18,7 +18,7 @@ struct Facet {
 
 // The corners opposite of corner `i`, counter-clockwise as seen from that corner. The corners of a
 // finite tetrahedron have positive orientation: seen from the last corner, the first three are
-// clockwise.
+// counter-clockwise.
 Triangle corners_of(const Tetrahedra& tetrahedra, const Facet& facet) {
   const Tetrahedra::Four& cell = tetrahedra.corners[facet.cell];
   const std::size_t i = facet.i;
