@@ -30,8 +30,9 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 
 // Writes the mesh and its textures to the files textured_files() and replaces existing files. All
 // files are written under temporary names and then renamed one after the other. If anything fails
-// before that, existing files keep their content. Colours of vertices are left out. Let (x, y) be a
-// texture coordinate of the mesh in pixels of its texture.
+// before that, existing files keep their content. Colours of vertices are left out.
+//
+// Let (x, y) be a texture coordinate of the mesh in pixels of its texture.
 //   - PLY: a comment TextureFile names each texture. The list texcoord of a face holds u and v of
 //     its corners. If there is more than one texture, texnumber is the index of the face's texture.
 //     u = (x + 0.5) / width, v = 1 - (y + 0.5) / height.
