@@ -15,8 +15,8 @@ namespace axial::mesh {
 // The star of every point: the tetrahedra that have the point as a corner, finite and infinite.
 class Stars {
  public:
-  // `points`: the number of points. Precondition: every corner of `tetrahedra` is below it or
-  // kInfinity.
+  // `points`: the number of points. Precondition: every corner of `tetrahedra` is below `points` or
+  // is kInfinity.
   Stars(const Tetrahedra& tetrahedra, std::size_t points);
 
   // The indices of the tetrahedra of the star of `point`, ascending. Empty if the point is no

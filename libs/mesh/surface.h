@@ -13,7 +13,7 @@ namespace axial::mesh {
 // A triangle mesh whose vertices are points of a cloud.
 struct Surface {
   Mesh mesh;
-  std::vector<std::uint32_t> points;  // per vertex of the mesh: index into `points` of the function
+  std::vector<std::uint32_t> points;  // per vertex of the mesh: index into `points` of surface_of()
 };
 
 // Returns the facets between free and occupied tetrahedra as triangles. `occupied` has one entry

@@ -36,7 +36,7 @@ struct VoteOptions {
   bool constant_weight = true;  // the weight of every view is 1; false: MergedPoints::view_weights
   bool weak_support = false;    // cast the votes of weak_support.h in addition
   double thickness_factor = 1;  // expected error of a point, in units of 2.5 pixel widths
-  double quality_factor = 1;    // multiplies the cost of facets of badly shaped tetrahedra
+  double quality_factor = 1;    // factor of shape_cost() in the cost of a facet; 0: none
 };
 
 // The expected error [m] of the merged point number i along its rays: `options.thickness_factor`
@@ -58,7 +58,7 @@ double expected_error(const MergedPoints& points, std::size_t i, const VoteOptio
 //
 // With `weak_support` further votes for inside follow (weak_support.h). At last the cost of each
 // facet rises by quality_factor times shape_cost() (facet_quality.h), so that surfaces through well
-// shaped tetrahedra are preferred.
+// shaped tetrahedra are preferred. `progress` gets the number of points whose rays have been cast.
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
                  const VoteOptions& options = {}, const ProgressSink& progress = {});
 

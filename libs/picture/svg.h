@@ -22,8 +22,8 @@ enum class Anchor { kStart, kMiddle, kEnd };
 std::string png_in_base64(const cv::Mat3b& bgr);
 
 // Collects the elements of a drawing. Later elements are drawn over earlier ones. A colour is a CSS
-// colour such as "#1f77b4" or "red". Colours and kinds must contain no quotes. Texts and tips may
-// contain any characters, which are escaped.
+// colour such as "steelblue" or "rgb(31, 119, 180)". Colours and kinds must contain no quotes.
+// Texts and tips may contain any characters, which are escaped.
 class Svg {
  public:
   // A white drawing of this size.

@@ -24,7 +24,7 @@ struct KnownDistance {
 struct KnownPosition {
   std::size_t image = 0;                             // index into Bundle::images
   Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // the centre [m], world frame
-  double sigma = 0;                                  // standard deviation [m], above 0
+  double sigma = 0;  // standard deviation of each coordinate [m], above 0
 };
 
 // Which numbers of a camera are unknown. housing_change.h lists the numbers by index, with their
@@ -47,8 +47,7 @@ struct AdjustOptions : Unknowns {
   // The unknowns that apply to `camera`.
   const Unknowns& unknowns(const BundleCamera& camera) const;
 
-  // Known lengths and positions enter the cost. With three or more positions, with known points or
-  // with known poses, the pose of the first image is not held constant (see adjust()).
+  // Known lengths and positions enter the cost. adjust() says which poses stay constant.
   std::vector<KnownDistance> distances;
   std::vector<KnownPosition> positions;
   bool points_known = false;  // true: all points stay constant
@@ -74,10 +73,11 @@ struct AdjustReport {
 //
 // Without knowledge of positions, points or poses, the cost does not depend on where the model is
 // in the world. The pose of one image therefore stays constant: of the first image with an
-// observation or with a known distance or position. Exception: with three or more known positions,
-// with known points or with known poses, this pose is not held constant. Poses of images and
-// positions of points that do not enter the cost stay unchanged. The solver runs in one thread,
-// because sums over several threads would depend on the order of the threads.
+// observation or with a known distance or position. Exceptions: with three or more known positions
+// or with known points, this pose is adjusted like all others, and with known poses, all poses stay
+// constant. Poses of images and positions of points that do not enter the cost stay unchanged. The
+// solver runs in one thread, because sums over several threads would depend on the order of the
+// threads.
 //
 // Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
 // deviation of known values or `pixel_sigma` is not positive, if a known distance names a point

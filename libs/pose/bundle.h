@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The input of refractive bundle adjustment: cameras, poses, points and observations. Coordinates
-// are in metres in the world frame. Pixel centres are at integers.
+// are in the world frame, in metres unless a function accepts another unit. Pixel centres are at
+// integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,13 +29,13 @@ struct BundleCamera {
 struct BundleImage {
   std::string name;        // the image's name in the COLMAP model
   std::size_t camera = 0;  // index into Bundle::cameras
-  Pose pose;               // world frame [m]
+  Pose pose;
 };
 
 // A point in the water.
 struct BundlePoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world frame [m]
-  std::size_t source = 0;                              // the point's id in the COLMAP model
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::size_t source = 0;  // the point's id in the COLMAP model
 };
 
 // A measured image of a point.

@@ -16,7 +16,7 @@ namespace axial::pose {
 struct FreedNumber {
   std::string name, unit;                // as in FreeValue (free_numbers.h)
   double stated = 0, found = 0;          // the value before and after it was adjusted [unit]
-  double rms_stated = 0, rms_found = 0;  // RMS reprojection errors with either value [px]
+  double rms_stated = 0, rms_found = 0;  // RMS reprojection errors with these values [px]
   // About |found - stated| in standard deviations: the square root of the decrease of the sum of
   // squared errors, divided by observed_pixel_sigma() after the adjustment.
   double deviations = 0;

@@ -12,8 +12,9 @@
 namespace axial::pose {
 
 // The numbers of a change, by index. "Difference" means the present minus the measured value.
-// - 0 to 2 of a flat port: the tilts of the normal [rad, for small tilts] towards the rows 0 and 1
-//   of axis_from_camera(measured normal), and the difference of the distance [m].
+// - 0 to 2 of a flat port: the tilts of the normal [rad, for small tilts] towards two unit vectors
+//   across it, the rows 0 and 1 of refractive::axis_from_camera(measured normal), in the camera
+//   frame; and the difference of the distance [m].
 // - 0 to 2 of a dome: the difference of the centre [m].
 // - 3: the difference of the refractive index of the water.
 // - 4: the difference of the thickness of the glass [m].
@@ -66,11 +67,11 @@ refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& me
 // The camera with `change` applied to lens and port. HousedCamera::field stays that of `measured`.
 HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change);
 
-// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, in the camera
-// frame. The ray is the refracted ray of the in-air direction (u, v, 1), with (u, v) = `tangents`.
-// Returns the derivative of X [m] with respect to the numbers 0 to 4 of `change` (columns), at
-// constant tangents and lambda. The port is `measured` with `change` applied. Without a port the
-// result is zero.
+// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, which lies on
+// the axis of the port (refractive::AxialRay), in the camera frame. The ray is the refracted ray of
+// the in-air direction (u, v, 1), with (u, v) = `tangents`. Returns the derivative of X [m] with
+// respect to the numbers 0 to 4 of `change` (columns), at constant tangents and lambda. The port is
+// `measured` with `change` applied. Without a port the result is zero.
 //
 // Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
 // function theorem, the derivative of the tangents of this direction with respect to the numbers is

@@ -20,7 +20,7 @@ namespace axial::io {
 using HousingPort =
     std::variant<refractive::FlatPort<double>, refractive::DomePort<double>, WaterSurface>;
 
-// Returns the same port in the wider type.
+// Returns `port` as a HousingPort, with the same values.
 HousingPort to_housing_port(const refractive::Port<double>& port);
 
 // The ports of the images of a scene or a COLMAP model. The name of an image is its path relative
@@ -44,9 +44,10 @@ struct Housing {
   const std::string& port_of(const std::string& image_name, std::uint32_t camera_id) const;
 
   // Returns the port `name` for an image that was taken at `pose`; nothing for "none". A water
-  // surface becomes a flat port for this pose (port_seen_from). Error that starts with `image`, the
-  // name of the image, if the port is not defined, if the camera is not above the water surface, or
-  // if the optical axis does not meet the water surface.
+  // surface, which must be in the frame of `pose`, becomes a flat port for this pose
+  // (port_seen_from in scene/water_surface.h). Error that starts with `image`, the name of the
+  // image, if the port is not defined, if the camera is not above the water surface, or if the
+  // optical axis does not meet the water surface.
   std::optional<refractive::Port<double>> port_at(const std::string& name, const Pose& pose,
                                                   const std::string& image) const;
 
@@ -77,7 +78,7 @@ enum class PortValues { checked, passed_over };
 // Reads a housing file or Calibmar's calibration.yaml (calibmar.h). The port of a calibration.yaml
 // becomes the port of all images. Lengths of ports are in metres. The normal of a flat port and the
 // centre of a dome are in the camera frame. The normal and the point of a water surface are in the
-// world frame.
+// world frame, and the point has the unit of the poses.
 //
 // Error that names the file, the key and the value for an unknown or missing key, a wrong type, a
 // version other than 1, an unknown port type, a port name that is not defined, an index outside 1
@@ -118,8 +119,7 @@ Housing for_images(const Housing& housing, std::span<const NamedCamera> images,
 // (InterfaceCOLMAP therefore writes entries by image.) Warns of entries that match no image, and of
 // a port if more than half of the views of sparse points through it are not possible (the point is
 // not beyond the port) or lead through more than 25 m of water. All messages start with `file`.
-// Preconditions: `housing` is in the frame of `scene` (in_frame in geo_offset.h), and each name in
-// it is defined or "none".
+// Precondition: `housing` is in the frame of `scene` (in_frame in geo_offset.h).
 void attach_ports(Scene& scene, const Housing& housing, const std::string& file);
 
 }  // namespace axial::io

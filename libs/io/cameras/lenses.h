@@ -49,9 +49,9 @@ bool attach_lenses_beside(Scene& scene, const std::filesystem::path& scene_path)
 SceneLenses lenses_of(const Scene& scene, const std::filesystem::path& scene_path);
 
 // Writes the file of the lenses beside the scene. The file is written if a lens is distorted or if
-// `behind_ports` is true. Otherwise an existing file is removed. With `behind_ports` the file is
-// also written without distorted lenses: images behind ports usually have distorted lenses, so a
-// missing file would look like a lost file.
+// `behind_ports` is true. Otherwise an existing file is removed. Error if the file cannot be
+// written. The file is written even without distorted lenses if `behind_ports` is true: images
+// behind ports usually have distorted lenses, so a missing file would look like a lost file.
 void write_lenses_beside(const std::filesystem::path& scene_path, const SceneLenses& lenses,
                          bool behind_ports);
 

@@ -85,9 +85,10 @@ std::filesystem::path find_colmap_model(const std::filesystem::path& folder);
 // accepted, and METASHAPE_FISHEYE of COLMAP-Underwater. Unusual values of ports give warnings
 // (PortValues in housing.h).
 //
-// Error for an unknown camera model, a wrong number of parameters, a value that is not finite, a
-// reference to a camera, image or point that does not exist, an id that occurs twice, two images
-// with the same name, a truncated file, or a folder without a complete model.
+// Error that names the file or the folder for an unknown camera model, a wrong number of
+// parameters, a value that is not finite, a reference to a camera, image or point that does not
+// exist, an id that occurs twice, two images with the same name, a truncated file, or a folder
+// without a complete model.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
 // Reads only the cameras. `path` is the folder of a model, a text file or a .bin file with the

@@ -51,7 +51,8 @@ struct PlyPlacement {
   bool world = false;  // see above
 };
 
-// The properties that a file of a cloud has for each point besides its position.
+// The properties that a file of a cloud has for each point besides its position. `views` stands for
+// view_indices.
 struct CloudLayout {
   bool colors = false, normals = false, views = false, view_weights = false;
   bool errors = false;  // both properties, error and confidence
@@ -102,8 +103,8 @@ Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
 // Writes a mesh, with its colours if it has any, and replaces an existing file. Error that names
-// the file if there is neither no colour nor one colour for each vertex, or if the file cannot be
-// written. Vertex indices are not checked.
+// the file if the number of colours is neither 0 nor the number of vertices, or if the file cannot
+// be written. Vertex indices are not checked.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 

@@ -53,8 +53,9 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
 
-// Reads a textured PLY and the textures beside it. Positions are returned as by the function
-// read_mesh_ply with the same parameters. Error that names the file for a file without a comment
+// Reads a textured PLY and the textures beside it. Positions are returned as stored if `frame` is
+// empty, and otherwise in `frame`, as by read_mesh_ply() (ply.h). Texture coordinates are returned
+// in pixels, as in TexturedMesh. Error that names the file for a file without a comment
 // TextureFile, a face that is not a triangle, a face without texcoord, a texture that is missing or
 // cannot be read, or an index out of range. Other errors as for read_mesh_ply.
 TexturedMesh read_textured_ply(const std::filesystem::path& path,
