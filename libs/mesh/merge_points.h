@@ -12,9 +12,10 @@
 
 namespace axial::mesh {
 
+// Options of merge_points().
 struct MergeOptions {
-  // The largest distance [px] between the images of two merged points, in every view of the first
-  // of the two points. 0: no points are merged.
+  // A point p absorbs another point q only if their images are at most this far apart [px] in every
+  // view of p (see merge_points()). 0: no points are merged.
   double min_distance = 2.5;
 };
 
@@ -22,25 +23,30 @@ struct MergeOptions {
 // of point i have the indices [view_begin[i], view_begin[i + 1]).
 struct MergedPoints {
   std::vector<Eigen::Vector3f> positions;  // weighted means [m], in the frame of the cloud
-  std::vector<float> pixel_widths;         // width of a pixel of the sharpest view at the point [m]
+  std::vector<float> pixel_widths;  // width [m] of a pixel at the point, in its sharpest view
   std::vector<std::size_t> view_begin{0};
   std::vector<std::uint32_t> view_images;  // indices into Scene::images, ascending for each point
-  std::vector<float> view_weights;         // number of absorbed points that the view sees
+  std::vector<float> view_weights;         // per view: number of absorbed points that it sees
 
   std::size_t size() const { return positions.size(); }
 };
 
-// Merges the points of `cloud`. The points with the most views are taken first. A point p that is
-// taken and not absorbed yet absorbs itself, and each other point q that is not absorbed yet and
-// satisfies three conditions. First, in each view of p the distance from p to q is at most
-// min_distance [px]. Second, the distance from p to q in space is at most 2 * min_distance times
-// the width of a pixel of the sharpest view at p. Third, if the cloud has normals, the normals of p
-// and q differ by at most 60 degrees.
+// Merges the points of `cloud`. The points with the most views are taken first, and of points with
+// equally many views the first in the cloud. A point p that is taken and not absorbed yet absorbs
+// itself, and each other point q that is not absorbed yet and satisfies three conditions:
+//
+// - In each view of p that sees p, the images of p and q are at most `min_distance` [px] apart.
+//   This is computed with the derivative of the image position at p.
+// - The distance from p to q in space is at most twice `min_distance` times the width [m/px] of a
+//   pixel at p in its sharpest view.
+// - If the cloud has normals, the normals of p and q differ by at most 60 degrees.
+//
 // The position of the result is the weighted mean of the absorbed points. The weight of a point is
 // the sum of its PointCloud::view_weights, or its number of views if the cloud has no weights.
-// Points that no view sees are dropped, unless another point absorbs them. The result is in the
-// order of a space-filling curve, which depends only on the positions. Preconditions: the cloud has
-// views, and the views are calibrated images of the scene of `rays`.
+// Points that no view sees (their projection is not visible) are dropped, unless another point
+// absorbs them. The result is in the order of a space-filling curve, which depends only on the
+// positions. Preconditions: the cloud has views (view_begin is not empty), and the views are
+// calibrated images of the scene of `rays`.
 MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
                           const MergeOptions& options = {});
 

@@ -12,13 +12,15 @@
 
 namespace axial::mesh {
 
-// The star of every point: the tetrahedra that have the point as a corner.
+// The star of every point: the tetrahedra that have the point as a corner, finite and infinite.
 class Stars {
  public:
+  // `points`: the number of points. Precondition: every corner of `tetrahedra` is below `points` or
+  // is kInfinity.
   Stars(const Tetrahedra& tetrahedra, std::size_t points);
 
-  // The tetrahedra that have the point as a corner. Empty if the point is no corner of any
-  // tetrahedron.
+  // The indices of the tetrahedra of the star of `point`, ascending. Empty if the point is no
+  // corner of any tetrahedron. The result is valid as long as this object.
   std::span<const std::uint32_t> of(std::size_t point) const {
     return std::span(cells_).subspan(begin_[point], begin_[point + 1] - begin_[point]);
   }
@@ -27,16 +29,18 @@ class Stars {
   std::vector<std::uint32_t> begin_, cells_;
 };
 
+// A crossing of a ray and a facet.
 struct Crossing {
   std::uint32_t from, to;  // the tetrahedra before and behind the facet, in the order of the walk
-  int facet;               // the number of the corner of `from` opposite of the facet
-  int back;                // the number of the corner of `to` opposite of the facet
+  int facet;               // the number (0 to 3) of the corner of `from` opposite of the facet
+  int back;                // the number (0 to 3) of the corner of `to` opposite of the facet
   double distance;         // from the start, along the ray [m]
 };
 
-// Walks from the point `start` along the unit vector `direction`. `start` is a corner of the
-// tetrahedra. The walk ends after `length` [m], or when the ray leaves the hull. Calls
-// cross(Crossing) for every facet that the ray crosses. Returns the tetrahedron in which the walk
+// Walks from the point `start`, an index into `points`, along the unit vector `direction`. `stars`
+// are the stars of `tetrahedra`. The walk ends after `length` [m], or when the ray leaves the hull.
+// Calls cross(Crossing) for every facet that the ray crosses, in the order of the walk. Facets that
+// have `start` as a corner are not crossed. Returns the index of the tetrahedron in which the walk
 // ends:
 //
 //   - Tetrahedra::kInfinity if `start` is no corner of any tetrahedron,
@@ -63,21 +67,25 @@ struct Corner {
 // this tetrahedron.
 class RayWalker {
  public:
+  // `start` is an index into `points`, and `direction` a unit vector. `tetrahedra` and `points`
+  // must outlive the object.
   RayWalker(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
             std::uint32_t start, const Eigen::Vector3d& direction);
 
-  // Finds the first tetrahedron of the walk: the tetrahedron of `star` whose cone from the start
-  // contains the direction. Returns false if the direction leaves the hull at once. Then cell() is
-  // infinite, or kInfinity for an empty star.
+  // Finds the first tetrahedron of the walk. `star` is the star of the start. The result is the
+  // tetrahedron of `star` whose cone from the start contains the direction. Returns false if the
+  // direction leaves the hull at once. Then cell() is infinite, or kInfinity for an empty star.
   bool begin(std::span<const std::uint32_t> star);
 
+  // The index of the current tetrahedron.
   std::uint32_t cell() const { return cell_; }
 
   // The distance [m] from the start at which the ray leaves the current tetrahedron.
   double exit_distance() const;
 
-  // Enters the next tetrahedron, and describes the facet between the two in `crossing`. Returns
-  // false if the next tetrahedron is infinite.
+  // Enters the next tetrahedron, and describes the facet between the old and the new tetrahedron in
+  // `crossing`. Returns false if the new tetrahedron is infinite. Precondition: begin() and all
+  // earlier steps have returned true.
   bool step(Crossing& crossing);
 
  private:

@@ -15,27 +15,30 @@
 
 namespace axial::mesh {
 
+// Options of reconstruct().
 struct ReconstructOptions {
   MergeOptions merge;
   VoteOptions votes;
-  // `spurious` also limits the edges of the surface (surface.h).
+  // `clean.spurious` has a second effect: it is the `factor` of surface_without_long_edges()
+  // (surface.h).
   CleanOptions clean;
-  bool only_region = false;     // use only points in the scene's region of interest
-  bool crop_to_region = true;   // remove the surface outside of the region, if there is one
-  std::uint64_t max_bytes = 0;  // 0: no limit
+  bool only_region = false;     // use only points in Scene::region, if there is one
+  bool crop_to_region = true;   // remove faces with a corner outside of Scene::region, if any
+  std::uint64_t max_bytes = 0;  // limit of bytes_needed(); 0: no limit
   // Errors name max_bytes by name_of("max_memory"), and merge.min_distance by
   // name_of("merge.min_distance").
   SettingNames name_of = own_name;
 };
 
-// The memory [bytes] that reconstruct() needs for this number of merged points. The memory of the
-// cloud is not included.
+// The approximate memory [bytes] that reconstruct() needs for `merged_points` points that
+// merge_points() returns. The memory of the cloud, which is freed before, is not included.
 std::uint64_t bytes_needed(std::size_t merged_points);
 
-// Reconstructs the surface that the images of `scene` see in `cloud`. The result is in the frame of
-// scene and cloud, oriented, manifold and free of self-intersections. Parts of the surface without
-// points are left out. The cloud is freed when its points are merged. Logs each step. The result is
-// the same for any number of threads. Throws an Error in these cases:
+// Reconstructs the surface that the images of `scene` see in `cloud`. The views of the cloud are
+// indices into Scene::images. The result is in the frame of scene and cloud, oriented, manifold and
+// free of self-intersections. Parts of the surface without points are left out. The cloud is freed
+// when its points are merged. Logs each step. The result is the same for any number of threads.
+// Throws an Error in these cases:
 //
 // * the cloud has no points or no views,
 // * a view is not a calibrated image of the scene,

@@ -16,12 +16,13 @@
 
 namespace axial::mesh {
 
-// Votes are stored as integers: the integer n means n / kVoteScale votes. An integer above
+// Votes are stored as integers: the integer n means n / kVoteScale votes. An integer or a sum above
 // kLargestVote is reduced to kLargestVote. Sums of integers do not depend on the order in which
 // threads add.
 inline constexpr std::int32_t kVoteScale = 64;
 inline constexpr std::int32_t kLargestVote = 1 << 28;
 
+// The capacities of the cut, as integers (see kVoteScale).
 struct Votes {
   std::vector<std::int32_t> outside;  // per tetrahedron: evidence that it is free space
   std::vector<std::int32_t> inside;   // per tetrahedron: evidence that it is occupied
@@ -30,30 +31,34 @@ struct Votes {
   std::vector<std::array<std::int32_t, 4>> facets;
 };
 
+// Options of cast_votes().
 struct VoteOptions {
-  bool constant_weight = true;  // every view of a merged point has the weight 1
-  bool weak_support = false;    // also cast the votes of weak_support.h
-  double thickness_factor = 1;  // the expected error of a point is this times 2.5 pixel widths
-  double quality_factor = 1;    // multiplies the cost of facets of badly shaped tetrahedra
+  bool constant_weight = true;  // the weight of every view is 1; false: MergedPoints::view_weights
+  bool weak_support = false;    // cast the votes of weak_support.h in addition
+  double thickness_factor = 1;  // expected error of a point, in units of 2.5 pixel widths
+  double quality_factor = 1;    // factor of shape_cost() in the cost of a facet; 0: none
 };
 
-// The expected error of point i along its rays [m]. It is `sigma` in the comment of cast_votes().
+// The expected error [m] of the merged point number i along its rays: `options.thickness_factor`
+// times 2.5 times MergedPoints::pixel_widths. It is `sigma` in the comment of cast_votes().
 double expected_error(const MergedPoints& points, std::size_t i, const VoteOptions& options);
 
-// Casts the votes of all rays between `points` and the cameras of their views. The points are the
-// corners of `tetrahedra`. Let d [m] be the distance along a ray from its point, sigma the
-// expected_error() of the point, and w the weight of the view (1 with constant_weight). Each ray
-// casts these votes:
+// Casts the votes of all rays between `points` and the cameras of their views. `tetrahedra` is
+// delaunay() of the positions of `points`. Points that are no corner, because another point is at
+// the same place, cast no votes. A view that does not see its point casts none. Let d [m] be the
+// distance along a ray from its point, sigma the expected_error() of the point, and w the weight of
+// the view (see VoteOptions::constant_weight). Each ray casts these votes:
 //
-// * The cost of each facet that the ray crosses in front of the point rises by w * (1 - exp(-d^2 /
-//   (2 sigma^2))). The same holds for the facets behind the point, up to d = sigma.
+// * The cost of each facet that the ray crosses in front of the point, with the free side towards
+//   the camera, rises by w * (1 - exp(-d^2 / (2 sigma^2))). The same holds for the facets behind
+//   the point, up to d = sigma.
 // * The tetrahedron at the camera's end of the ray gets 100000 votes for outside, so that it is
 //   certainly free.
 // * The tetrahedron one sigma behind the point gets w votes for inside.
 //
 // With `weak_support` further votes for inside follow (weak_support.h). At last the cost of each
 // facet rises by quality_factor times shape_cost() (facet_quality.h), so that surfaces through well
-// shaped tetrahedra are preferred.
+// shaped tetrahedra are preferred. `progress` gets the number of points whose rays have been cast.
 Votes cast_votes(const Tetrahedra& tetrahedra, const MergedPoints& points, const ViewRays& rays,
                  const VoteOptions& options = {}, const ProgressSink& progress = {});
 

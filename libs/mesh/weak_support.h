@@ -17,21 +17,25 @@ namespace axial::mesh {
 
 struct Votes;
 
+// Computes these votes.
 class WeakSupport {
  public:
   // Computes the support of free space from `votes`. The support of a tetrahedron is the sum of the
-  // costs of its four facets (Votes::facets). The arguments except `votes` must outlive the object.
+  // costs of its four facets (Votes::facets). The support is in votes, not in their integers
+  // (kVoteScale). The arguments except `votes` must outlive the object. Precondition: `votes` holds
+  // the votes of all rays, and no costs of shape yet.
   WeakSupport(const Tetrahedra& tetrahedra, std::span<const Eigen::Vector3f> points,
               const Stars& stars, const Votes& votes);
 
-  // Compares the support of free space on both sides of the point `start`. The front is the largest
-  // support up to 3 `sigma` [m] along the unit vector `direction`, which points to a camera. The
-  // back is the mean of the smallest and the largest support up to 4 `sigma` in the opposite
-  // direction. Returns the tetrahedron in which the path in the opposite direction ends, and the
-  // votes for inside that this tetrahedron gains for a ray of weight 1. The support falls steeply
-  // if the back is below a tenth of the front and below 400 votes, and the front minus the back is
-  // above 1000 votes. The votes are then the front minus the back, and otherwise 0. If `start` is
-  // no corner of any tetrahedron, the result is Tetrahedra::kInfinity with 0 votes.
+  // Compares the support of free space on both sides of the point number `start`. The front is the
+  // largest support up to 3 `sigma` [m] along the unit vector `direction`, which points to a
+  // camera. The back is the mean of the smallest and the largest support up to 4 `sigma` in the
+  // opposite direction. Returns the index of the tetrahedron in which the path in the opposite
+  // direction ends, and the votes for inside that this tetrahedron gains for a ray of weight 1. The
+  // support falls steeply if the back is below a tenth of the front and below 400 votes, and the
+  // front minus the back is above 1000 votes. The votes are then the front minus the back, and
+  // otherwise 0. If `start` is no corner of any tetrahedron, the result is Tetrahedra::kInfinity
+  // with 0 votes.
   std::pair<std::uint32_t, double> gain(std::uint32_t start, const Eigen::Vector3d& direction,
                                         double sigma) const;
 

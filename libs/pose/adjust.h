@@ -13,88 +13,102 @@ namespace axial::pose {
 // A known length between two camera centres or between two points.
 struct KnownDistance {
   enum class Between { images, points } between = Between::images;
-  // Between images: indices into Bundle::images. Between points: values of BundlePoint::source.
+  // The two ends. Between images: indices into Bundle::images. Between points: values of
+  // BundlePoint::source.
   std::size_t first = 0, second = 0;
-  double metres = 0;  // [m], above 0
+  double metres = 0;  // the length [m], above 0
   double sigma = 0;   // standard deviation [m], above 0
 };
 
 // A known camera centre.
 struct KnownPosition {
   std::size_t image = 0;                             // index into Bundle::images
-  Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // [m], world frame
-  double sigma = 0;                                  // standard deviation [m], above 0
+  Eigen::Vector3d metres = Eigen::Vector3d::Zero();  // the centre [m], world frame
+  double sigma = 0;  // standard deviation of each coordinate [m], above 0
 };
 
-// free: whether each number of a camera (housing_change.h) is unknown. prior_sigma: the standard
-// deviation with which each number was measured, in the number's unit; 0: not measured.
+// Which numbers of a camera are unknown. housing_change.h lists the numbers by index, with their
+// units. `free`: true if adjust() may change the number. `prior_sigma`: the standard deviation with
+// which the number was measured, in the unit of the number; 0: not measured. It is used for free
+// numbers only.
 struct Unknowns {
   std::array<bool, kHousingNumbers> free{};
   std::array<double, kHousingNumbers> prior_sigma{};
 };
 
-struct AdjustOptions : Unknowns {  // the unknowns of all cameras; see of_domes
-  // The unknowns of cameras behind domes. Empty: the same as for all other cameras. Domes can have
-  // unknowns of their own, because the first three numbers of a dome and of a flat port have
-  // different meanings.
+// What adjust() knows and what it may change. The members of Unknowns apply to all cameras, with
+// the exception `of_domes`.
+struct AdjustOptions : Unknowns {
+  // The unknowns of cameras behind domes. Empty: the unknowns of this struct apply to them as to
+  // all other cameras. Domes can have unknowns of their own, because the first three numbers of a
+  // dome and of a flat port have different meanings.
   std::optional<Unknowns> of_domes;
 
   // The unknowns that apply to `camera`.
   const Unknowns& unknowns(const BundleCamera& camera) const;
 
+  // Known lengths and positions enter the cost. adjust() says which poses stay constant.
   std::vector<KnownDistance> distances;
-  std::vector<KnownPosition> positions;  // three or more also fix the model's place
-  bool points_known = false;             // points stay where they are and fix the model's place
-  bool poses_known = false;              // poses stay where they are and fix the model's place
+  std::vector<KnownPosition> positions;
+  bool points_known = false;  // true: all points stay constant
+  bool poses_known = false;   // true: all poses stay constant
 
-  double pixel_sigma = 1;  // standard deviation of the observations [px]
-  double loss_sigmas = 2;  // Huber loss: errors above this times pixel_sigma count linearly
-  int max_iterations = 100;
+  double pixel_sigma = 1;    // standard deviation of the x and of the y of an observation [px]
+  double loss_sigmas = 2;    // Huber loss: errors above this times pixel_sigma count linearly
+  int max_iterations = 100;  // of the solver
 };
 
+// How the solver ended.
 struct AdjustReport {
-  bool converged = false;
-  int iterations = 0;
-  double initial_cost = 0, final_cost = 0;  // half the sum of squares, after the Huber loss
+  bool converged = false;                   // false: it stopped at max_iterations
+  int iterations = 0;                       // including the evaluation of the start
+  double initial_cost = 0, final_cost = 0;  // half the cost of adjust()
 };
 
 // Refractive bundle adjustment: changes the poses, the points and the free numbers of the cameras
-// to minimize the cost. The cost is the sum of the squared reprojection errors of the exact
-// projection (with Huber loss, in units of `pixel_sigma`) and of the squared deviations from
-// known distances, positions and measured numbers (in their standard deviations).
+// (BundleCamera::change) to minimize the cost, from their present values. The cost is the sum of
+// the squared reprojection errors of the exact projection (with Huber loss, in units of
+// `pixel_sigma`) and of the squared deviations from known distances, positions and measured numbers
+// (in their standard deviations).
 //
-// The pose of the first image with observations stays constant, unless three known positions,
-// known points or known poses fix the model's place. The solver runs in one thread, because sums
-// over several threads would depend on the order of the threads.
+// Without knowledge of positions, points or poses, the cost does not depend on where the model is
+// in the world. The pose of one image therefore stays constant: of the first image with an
+// observation or with a known distance or position. Exceptions: with three or more known positions
+// or with known points, this pose is adjusted like all others, and with known poses, all poses stay
+// constant. Poses of images and positions of points that do not enter the cost stay unchanged. The
+// solver runs in one thread, because sums over several threads would depend on the order of the
+// threads.
 //
-// Throws an Error if a number of a port is free for a camera in air, if a known length, a
-// standard deviation of known values or `pixel_sigma` is not positive, if a known distance names
-// a point that the bundle does not have, if the bundle has no observations, or if the solver
-// fails.
+// Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
+// deviation of known values or `pixel_sigma` is not positive, if a known distance names a point
+// that the bundle does not have, if the bundle has no observations, or if the solver fails. After
+// an Error, the bundle is unchanged. Precondition: all indices are in their range.
 AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
 
 // Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
-// be the number of observations, S the sum of their squared errors, and U the number of unknowns.
-// The result is sqrt(S / max(1, 2 N - U)), and at least 1e-9 px. Infinite errors count with the
-// mean square of the finite errors.
+// be the number of observations, S the sum of their squared errors, and U the number of unknowns: 6
+// for each pose of an image with observations, except constant poses; 3 for each point, unless
+// points are known; and 1 for each free number of each camera. The result is sqrt(S / max(1, 2 N -
+// U)), and at least 1e-9 px. Infinite errors count with the mean square of the finite errors.
 double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options);
 
-// Standard deviations of the results of bundle adjustment.
+// Standard deviations of the results of bundle adjustment: the result of uncertainty().
 struct Uncertainty {
   double pixel_sigma = 0;  // of the observations [px], by observed_pixel_sigma()
-  // One vector for each camera, in the units of housing_change.h. The standard deviation of a
-  // free number is infinite if the observations do not determine the number. Numbers that are not
-  // free have 0.
+  // One vector for each camera of the bundle, in their order, with the numbers and units of
+  // housing_change.h. The standard deviation of a free number is infinite if nothing determines the
+  // number. Numbers that are not free have 0.
   std::vector<HousingChange<double>> camera_sigmas;
-  // The relative standard deviation of the scale. It is computed for one length: the distance
-  // between the first image with observations and the observed image farthest from it. Infinite
-  // if nothing determines the scale, for example for cameras in air. 0 if poses are known.
+  // The relative standard deviation of the scale. It is computed for one length: the distance from
+  // the first image with an observation or with a known distance or position to the farthest other
+  // image of this kind. Infinite if there is no such length, or if nothing determines the scale,
+  // for example for cameras in air. 0 if poses are known.
   double scale_sigma = 0;
 };
 
-// First-order standard deviations of the result of adjust(), from the normal equations with the
-// points eliminated. Precondition: adjust() was called for `bundle` with the same `options`. The
-// observations are weighted with their observed standard deviation and not with
+// Returns the first-order standard deviations of the result of adjust(), from the normal equations
+// with the points eliminated. Precondition: adjust() was called for `bundle` with the same
+// `options`. The observations are weighted with their observed standard deviation and not with
 // `options.pixel_sigma`.
 Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options);
 

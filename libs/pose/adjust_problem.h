@@ -12,36 +12,41 @@
 
 namespace axial::pose {
 
-// The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the
-// order of the bundle. The blocks of the known distances, of the known positions and of the
-// measured numbers of cameras follow.
+// The Ceres problem of a bundle. Its first residual blocks belong to the observations, in the order
+// of the bundle. The blocks of the known distances, of the known positions and of the measured
+// numbers of cameras follow, in this order.
 class AdjustProblem {
  public:
   // Both arguments must outlive this object. The constructor does not change the bundle. Throws
   // the errors of adjust() for invalid arguments.
   AdjustProblem(const Bundle& bundle, const AdjustOptions& options);
 
+  // The problem. This object owns it.
   ceres::Problem& problem() { return *problem_; }
 
-  // The parameter blocks that the solver changes. Constant blocks are left out. A point block has 3
-  // numbers. The solver eliminates the blocks of point_blocks(), so no residual may depend on two
-  // blocks of point_blocks(). Points with a known distance to another point are therefore among
-  // camera_blocks().
-  std::vector<double*> camera_blocks();  // images, changes of cameras, points with a known distance
+  // The parameter blocks that the solver changes. Constant blocks are left out. A block of a pose
+  // has the numbers of PoseNumbers (observation_cost.h), a block of changes those of HousingChange,
+  // and a block of a point the 3 coordinates of its position. The solver eliminates the blocks of
+  // point_blocks(), so no residual may depend on two blocks of point_blocks(). Points with a known
+  // distance to another point are therefore among camera_blocks().
+  std::vector<double*> camera_blocks();  // poses, changes of cameras, points with a known distance
   std::vector<double*> point_blocks();   // all other points
 
-  // The index of the first image with observations. Its pose is constant unless something else
-  // fixes the model's place (see adjust()).
+  // The index of the first image for which is_observed() is true; 0 if there is none. adjust() says
+  // when its pose is constant.
   std::size_t anchor() const;
+  // True if the image has an observation or a known distance or position.
   bool is_observed(std::size_t image) const {
     return problem_->HasParameterBlock(poses_[image].data());
   }
 
+  // The parameter block of the pose of an image, and of the changes of a camera. Both exist in the
+  // problem only if a residual depends on them.
   double* image_block(std::size_t image) { return poses_[image].data(); }
   double* change_block(std::size_t camera) { return changes_[camera].data(); }
 
-  // Writes the adjusted poses, points and changes to `bundle`, which is the bundle of the
-  // constructor or a copy of it.
+  // Writes the present values of the parameter blocks, as poses, points and changes, to `bundle`,
+  // which is the bundle of the constructor or a copy of it.
   void write_back(Bundle& bundle) const;
 
  private:

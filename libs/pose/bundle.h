@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The input of refractive bundle adjustment: cameras, poses, points and observations. Coordinates
-// are in metres in the world frame. Pixel centres are at integers.
+// are in the world frame, in metres unless a function accepts another unit. Pixel centres are at
+// integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,33 +15,38 @@
 
 namespace axial::pose {
 
+// A camera, which several images may share.
 struct BundleCamera {
-  HousedCamera measured;
-  // The present minus the measured numbers of lens and port.
+  HousedCamera measured;  // lens in air and port, as measured before the adjustment
+  // The present minus the measured numbers of lens and port (housing_change.h lists them).
   HousingChange<double> change = HousingChange<double>::Zero();
 
   // The camera with the change applied.
   HousedCamera now() const { return with_change(measured, change); }
 };
 
+// A photograph and its pose.
 struct BundleImage {
-  std::string name;
+  std::string name;        // the image's name in the COLMAP model
   std::size_t camera = 0;  // index into Bundle::cameras
   Pose pose;
 };
 
+// A point in the water.
 struct BundlePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::size_t source = 0;  // the point's id in the COLMAP model
 };
 
+// A measured image of a point.
 struct Observation {
-  std::size_t image = 0;
-  std::size_t point = 0;
+  std::size_t image = 0;                            // index into Bundle::images
+  std::size_t point = 0;                            // index into Bundle::points
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // [px] of the photograph
   std::size_t source = 0;  // index in ColmapImage::points of the COLMAP model
 };
 
+// The input and the result of adjust() (adjust.h).
 struct Bundle {
   std::vector<BundleCamera> cameras;
   std::vector<BundleImage> images;
@@ -48,14 +54,14 @@ struct Bundle {
   std::vector<Observation> observations;
 };
 
-// The cameras of the bundle with their changes applied, in the same order.
+// The cameras of the bundle with their changes applied, in the order of Bundle::cameras.
 std::vector<PhotographCamera> cameras_now(const Bundle& bundle);
 
-// The index of the point whose BundlePoint::source is `source`. Error if there is no such point,
-// for example because the point was dropped.
+// The index into Bundle::points of the point whose BundlePoint::source is `source`. Error if there
+// is no such point, for example because the point was dropped.
 std::size_t point_of(const Bundle& bundle, std::size_t source);
 
-// The number of observations in each image.
+// The number of observations in each image, in the order of Bundle::images.
 std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 
 // The reprojection errors [px of the photograph] of all observations, in the order of the
@@ -63,10 +69,12 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle);
 // false).
 std::vector<double> reprojection_errors(const Bundle& bundle);
 
-// The same errors in one list for each image. The list of an image without observations is empty.
+// The reprojection errors [px of the photograph] in one list for each image, in the order of
+// Bundle::images. Within a list, the errors have the order of the observations. The list of an
+// image without observations is empty.
 std::vector<std::vector<double>> reprojection_errors_by_image(const Bundle& bundle);
 
-// Root of the mean of the squared finite errors. 0 if no error is finite.
+// The square root of the mean of the squared finite `errors`. 0 if no error is finite.
 double root_mean_square(std::span<const double> errors);
 
 }  // namespace axial::pose

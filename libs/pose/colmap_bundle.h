@@ -13,39 +13,48 @@ namespace axial::pose {
 // A bundle, and the parts of a COLMAP model that the bundle itself does not hold.
 struct ColmapBundle {
   Bundle bundle;
-  std::vector<io::ColmapCamera> lenses;  // per bundle camera: the lens in air; ids count from 1
-  std::vector<std::string> ports;        // per bundle camera: the name of its port
+  std::vector<io::ColmapCamera> lenses;  // per bundle camera: its lens in air; ids count from 1
+  std::vector<std::string> ports;        // per bundle camera: the name of its port, or "none"
   std::size_t unseen = 0;  // observations left out because the lens has no direction for the pixel
 };
 
-// Makes a bundle from the poses, points and tracks of `model`. The lenses of `model` are not
-// used. `lenses` holds lenses calibrated in air: if `lenses` has exactly one entry, all cameras
-// of `model` get this lens. Otherwise each camera gets the lens with its own id. `housing` gives
-// the port of each image. The bundle has one camera for each pair of lens and port that occurs.
+// Makes a bundle from the poses, points and tracks of `model`. The lenses of `model` are not used.
+// `lenses` holds lenses calibrated in air: if `lenses` has exactly one entry, all cameras of
+// `model` get this lens. Otherwise each camera gets the lens with its own id. `housing` gives the
+// port of each image. The bundle has one camera for each pair of lens and port that occurs. Its
+// images and points have the order of `model`. Observations whose pixel has no direction in the
+// lens are left out. The frame and the unit of `model` are kept; adjust() needs metres.
 //
-// Throws an Error if a camera has no lens, if the image sizes of a camera and its lens differ, if
-// the model of a lens is not supported, if a port is not defined, or if a camera is behind a
-// water surface.
+// Throws an Error if a camera of an image has no lens, if the image sizes of a camera and its lens
+// differ, if the model of a lens is not supported, if a port is not defined, or if a camera is
+// behind a water surface.
 ColmapBundle to_bundle(const io::ColmapModel& model, std::span<const io::ColmapCamera> lenses,
                        const io::Housing& housing);
 
-// Two RMS reprojection errors [px] of the tracks of a model: with its cameras behind their ports,
-// and with the same cameras in air. The smaller error belongs to the cameras with which the poses
-// were computed. Both are 0 if the model has no tracks.
+// Two RMS reprojection errors [px] of the tracks of a model: with its cameras behind their ports
+// (ColmapCamera::port), and with the same cameras in air. The smaller error belongs to the cameras
+// with which the poses were computed. Both are 0 if the model has no tracks.
 struct PortFit {
   double behind_ports = 0, in_air = 0;
 };
+
+// Returns these two errors for `model`, at its poses and points. Of several observations of a point
+// in one image, the one with the smallest error counts. Errors as for to_bundle().
 PortFit port_fit(const io::ColmapModel& model);
 
-// Converts a bundle back. `model` is the model from which to_bundle() made the bundle. The result
-// has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one camera
-// for each camera of the bundle, with the present lens in air and the present port. Images without
-// observations are left out.
+// Converts a bundle back. `model` is the model from which to_bundle() made the bundle. Points and
+// observations may have been dropped since, but the images must be the same in the same order. The
+// result has the poses, points, tracks and mean reprojection errors [px] of the bundle. It has one
+// camera for each camera of the bundle, with the present lens in air, the present port and the id
+// of ColmapBundle::lenses. Images without observations are left out.
 io::ColmapModel to_model(const ColmapBundle& bundle, const io::ColmapModel& model);
 
 // The present ports of the bundle, as a housing for the camera ids of ColmapBundle::lenses.
 // `measured` is the housing from which the bundle was made. If several cameras share a port, each
-// camera whose numbers have changed gets a port of its own.
+// camera whose numbers have changed gets a port of its own. The name of this port is the old name,
+// an underscore and the camera id. Exception: if all cameras have one and the same port and
+// `measured` has no entries by image, this port becomes the default port, and there are no entries
+// by camera.
 io::Housing to_housing(const ColmapBundle& bundle, const io::Housing& measured);
 
 }  // namespace axial::pose

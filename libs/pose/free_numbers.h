@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The free numbers of a camera, which adjust() changes: their names in options and reports.
+// housing_change.h lists all numbers.
 #pragma once
 
 #include <string>
@@ -11,39 +12,42 @@
 
 namespace axial::pose {
 
-// The standard deviations with which the free numbers were measured. 0: not measured.
+// The standard deviations with which the free numbers were measured. 0: not measured. Distance and
+// normal are those of a flat port, the centre is that of a dome, for each of its coordinates.
 struct Sigmas {
-  double normal_degrees = 0;
+  double normal_degrees = 0;                       // for each of its two tilts
   double distance = 0, centre = 0, thickness = 0;  // [m]
-  double index = 0;
-  double focal = 0;  // divided by the focal length
+  double index = 0;                                // of the refractive index of the water
+  double focal = 0;  // standard deviation of the focal length, divided by the focal length
 };
 
 // Adds the options --normal-sigma, --distance-sigma, --centre-sigma, --thickness-sigma and
-// --index-sigma, bound to `sigmas`. RefinePoses alone adjusts focal lengths and adds --focal-sigma
+// --index-sigma, bound to `sigmas`, which must exist until parse_options() has returned. The
+// defaults are the present values. RefinePoses alone adjusts focal lengths and adds --focal-sigma
 // itself.
 void declare_sigmas(OptionList& list, Sigmas& sigmas);
 
-// Sets the unknowns of `adjust` from `refine`, a comma-separated list of normal, distance,
-// centre, thickness, index and focal. `normal` and `distance` apply to flat ports, `centre` applies
-// to domes, and the other words apply to all cameras.
+// Sets the unknowns of `adjust` (Unknowns and of_domes), whose other members are only read, from
+// `refine`, a comma-separated list of the words normal, distance, centre (or center), thickness,
+// index and focal. An empty list frees no number. `normal` and `distance` apply to flat ports,
+// `centre` applies to domes, and the other words apply to all cameras. The standard deviations of
+// `sigmas` become Unknowns::prior_sigma.
 //
 // Throws an Error in these cases:
 // - The list has an unknown word.
 // - `normal` or `distance` is listed and there is no flat port, or `centre` is listed and there is
 //   no dome.
 // - Any word other than `focal` is listed and some cameras are in air.
-// - A standard deviation is negative or not finite, or it is positive and its number is not
-//   listed.
+// - A standard deviation is negative or not finite, or it is positive and its number is not listed.
 // - `thickness` is listed without a positive standard deviation, because the effects of thickness
 //   and distance look alike.
 // - `distance` is listed without a positive standard deviation, and `adjust` has no known
 //   distances, positions, points or poses, because photographs show only ratios of lengths.
 //
 // Messages name the settings "refine", "normal_sigma", "distance_sigma", "centre_sigma",
-// "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also
-// names "distances" and "poses_known", the settings of AdjustOptions that make lengths known.
-// `name_of` turns a name into the name that the user knows.
+// "thickness_sigma", "index_sigma" and "focal_sigma". A message about an unknown length also names
+// "distances" and "poses_known", the settings of AdjustOptions that make lengths known. `name_of`
+// turns a name into the name that the user knows.
 void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bundle& bundle,
                       AdjustOptions& adjust, SettingNames name_of = own_name);
 
@@ -51,19 +55,23 @@ void set_free_numbers(const std::string& refine, const Sigmas& sigmas, const Bun
 // flat port, "centre" for a dome.
 std::string place_words(const refractive::Port<double>& port);
 
+// The kind of a number. place: a length of the port's position, that is, a distance or a coordinate
+// of a centre.
 enum class Quantity { angle, place, index, thickness, focal };
 
-// One number of a camera.
+// One number of a camera, for reports.
 struct FreeValue {
-  std::size_t number = 0;  // housing_change.h
+  std::size_t number = 0;  // index of the number in housing_change.h
   Quantity quantity = Quantity::place;
-  std::string name, unit;
-  double now = 0, sigma = 0;  // [unit]
+  std::string name, unit;     // for example "distance" and "mm"; a number without unit: ""
+  double now = 0, sigma = 0;  // present value and its standard deviation [unit]
   double scale = 1;           // factor from the unit of housing_change.h to `unit`: 1000 for mm
 };
 
-// The free numbers of `camera` with their present values and their standard deviations. `sigmas`:
-// the entry of Uncertainty::camera_sigmas for this camera.
+// The free numbers of `camera` with their present values and their standard deviations, by
+// ascending FreeValue::number. The value of the focal length is the factor from the measured to the
+// present focal length. `options` tells which numbers are free. `sigmas`: the entry of
+// Uncertainty::camera_sigmas for this camera.
 std::vector<FreeValue> free_values(const BundleCamera& camera, const HousingChange<double>& sigmas,
                                    const AdjustOptions& options);
 

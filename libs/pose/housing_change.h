@@ -11,22 +11,25 @@
 
 namespace axial::pose {
 
-// The numbers of a change, by index:
-// - 0 to 2 of a flat port: the tilts of the normal [rad, for small tilts] towards the rows 0 and
-//   1 of axis_from_camera(measured normal), and the difference of the distance [m].
+// The numbers of a change, by index. "Difference" means the present minus the measured value.
+// - 0 to 2 of a flat port: the tilts of the normal [rad, for small tilts] towards two unit vectors
+//   across it, the rows 0 and 1 of refractive::axis_from_camera(measured normal), in the camera
+//   frame; and the difference of the distance [m].
 // - 0 to 2 of a dome: the difference of the centre [m].
 // - 3: the difference of the refractive index of the water.
 // - 4: the difference of the thickness of the glass [m].
-// - 5: the logarithm of the factor of both focal lengths. Cameras in air have this number alone.
+// - 5: the natural logarithm of the factor from the measured to the present focal lengths, for
+//   both. Cameras in air have this number alone.
 inline constexpr int kHousingNumbers = 6;
-inline constexpr int kPortNumbers = 5;  // the first numbers belong to the port
+inline constexpr int kPortNumbers = 5;  // the numbers 0 to 4 belong to the port
 inline constexpr int kIndexNumber = 3, kThicknessNumber = 4, kFocalNumber = 5;
 
+// The numbers above, in the order of their indices. Zero: as measured.
 template <class T>
 using HousingChange = Eigen::Matrix<T, kHousingNumbers, 1>;
 
-// Return the measured port or lens with `change` added. T is double or an automatic-differentiation
-// scalar.
+// Return the measured port or lens with `change` applied. Numbers that do not belong to it are
+// ignored. Results are not checked. T is double or an automatic-differentiation scalar.
 template <class T>
 refractive::FlatPort<T> with_change(const refractive::FlatPort<double>& measured,
                                     const HousingChange<T>& change) {
@@ -61,14 +64,14 @@ refractive::PinholeLens<T> with_change(const refractive::PinholeLens<double>& me
   return lens;
 }
 
-// The camera with `change` applied to lens and port.
+// The camera with `change` applied to lens and port. HousedCamera::field stays that of `measured`.
 HousedCamera with_change(const HousedCamera& measured, const HousingChange<double>& change);
 
-// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, in the
-// camera frame. The ray is the refracted ray of the in-air direction (u, v, 1), with (u, v) =
-// `tangents`. Returns the derivative of X with respect to the numbers 0 to 4 of `change`, at
-// constant tangents and lambda. The port is `measured` with `change` applied. Without a port the
-// result is zero.
+// Let X be the point at the distance `lambda` [m] from the origin of a ray in water, which lies on
+// the axis of the port (refractive::AxialRay), in the camera frame. The ray is the refracted ray of
+// the in-air direction (u, v, 1), with (u, v) = `tangents`. Returns the derivative of X [m] with
+// respect to the numbers 0 to 4 of `change` (columns), at constant tangents and lambda. The port is
+// `measured` with `change` applied. Without a port the result is zero.
 //
 // Use: the image of a fixed point X is the direction whose ray passes through X. By the implicit
 // function theorem, the derivative of the tangents of this direction with respect to the numbers is

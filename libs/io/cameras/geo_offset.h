@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads and writes the file beside a scene that states the origin of the scene's coordinates. Moves
-// scenes, COLMAP models and housings into the local frame. The files of COLMAP models and housings
-// are always in world coordinates.
+// scenes, COLMAP models and housings into the local frame. A local frame has its origin near the
+// scene, and its axes are parallel to those of the world (LocalFrame). The files of COLMAP models
+// and housings are always in world coordinates.
 #pragma once
 
 #include <filesystem>
@@ -17,27 +18,31 @@ namespace axial::io {
 std::filesystem::path geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Returns the frame whose origin the file beside the scene states; nothing if there is no file.
-// Error that names the file, the key and the value for an unknown key, a version other than 1, or
-// an offset that is not three finite numbers.
+// Error that names the file, the key and the value for an unknown or missing key, a version other
+// than 1, or an offset that is not three finite numbers.
 std::optional<LocalFrame> read_geo_offset_beside(const std::filesystem::path& scene_path);
 
-// Writes the file beside the scene. If `frame` is the world, an existing file is removed instead.
+// Writes the origin of `frame` to the file beside the scene. If `frame` is the world, no file is
+// written and an existing file is removed. Error if the file cannot be written. A failure to remove
+// it is ignored.
 void write_geo_offset_beside(const std::filesystem::path& scene_path, const LocalFrame& frame);
 
 // Moves a scene that was read from `scene_path` into its local frame and returns this frame.
 //
 // If there is a file beside the scene, the scene is already in the frame that the file states and
-// stays unchanged. A warning is given if the cameras are more than 1e5 units from the origin of
-// this frame. If there is no file, the scene is in world coordinates and is moved into
-// frame_of(scene). If frame_of(scene) is not the world, a warning states that the sparse points,
-// which are float, have lost digits.
+// stays unchanged. A warning is given if the cameras are more than 1e5 m from the origin of this
+// frame. If there is no file, the scene is in world coordinates and is moved into frame_of(scene).
+// If frame_of(scene) is not the world, a warning states that the sparse points, which are float,
+// have lost digits. Errors as for read_geo_offset_beside().
 LocalFrame enter_local_frame(Scene& scene, const std::filesystem::path& scene_path);
 
-// Moves a model from world coordinates into the frame near its cameras (frame_of) and returns the
-// frame.
+// Moves a model from world coordinates into the frame that frame_of() chooses for its camera
+// centres and points, and returns this frame. If the model is near the origin of the world, the
+// frame is the world and the model stays unchanged.
 LocalFrame enter_local_frame(ColmapModel& model);
 
-// Moves a model from world coordinates into `frame` (enter) and back (leave).
+// enter() moves the camera centres and the points of a model from world coordinates into `frame`.
+// leave() moves them from `frame` to world coordinates.
 void enter(const LocalFrame& frame, ColmapModel& model);
 void leave(const LocalFrame& frame, ColmapModel& model);
 

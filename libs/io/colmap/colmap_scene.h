@@ -14,55 +14,64 @@
 
 namespace axial::io {
 
+// Where the images of a model are, and what becomes of distorted images.
 struct ColmapImport {
-  std::filesystem::path model_folder;        // for messages
+  std::filesystem::path model_folder;        // messages name it; it is not read
   std::filesystem::path image_folder;        // image names are relative to this folder
-  std::filesystem::path undistorted_folder;  // for undistorted images; created when needed
-  bool undistort = true;  // false: keep the lenses whose distortion the matcher can model
+  std::filesystem::path undistorted_folder;  // for undistorted images; created if needed
+  bool undistort = true;  // false: undistort only where rule 2 below does not apply
 };
 
 // Returns the scene of `model`, with the images in the model's order. For each camera, the first
 // rule that applies is used:
 // 1. Images of pinhole cameras are used as they are.
-// 2. If `import.undistort` is false and lens_distortion describes the lens, the camera keeps its
-//    distorted lens and its images are used as they are.
-// 3. Otherwise the camera is replaced by a pinhole (pinhole_inside), and its images and masks are
-//    resampled into `import.undistorted_folder`. JPEG files with 8 bits and no transparency stay
-//    JPEG. Other files become PNG.
+// 2. If `import.undistort` is false and the matcher can model the lens (lens::lens_distortion), the
+//    camera keeps its distorted lens and its images are used as they are.
+// 3. Otherwise the camera is replaced by a pinhole (pinhole_inside in colmap_lens.h). Its images,
+//    and the masks that find_masks() finds beside them, are resampled into
+//    `import.undistorted_folder`. JPEG files with 8 bits and no transparency stay JPEG. Other files
+//    become PNG.
 //
 // The id of an image is COLMAP's id minus one. Exception: if a COLMAP id is 0, all ids are COLMAP's
 // ids. The views of a sparse point are sorted by image and have confidence 0. If an image occurs
 // more than once in a track, it counts once. The log states how many observations are ignored for
-// this reason.
+// this reason. Ports of the cameras are not used.
+//
+// `undistorting` gets the number of images undistorted so far, `preparing_cameras` the number of
+// cameras for which a rule has been chosen.
 //
 // Memory: one image for each thread is undistorted at a time. The undistortion map of a camera
 // stays in memory from the first to the last image of the camera.
 //
 // Error that names the file, the field and the value, before any file is written, if the model has
-// fewer than two images, an image file is missing or has another size than its camera, two images
-// would be undistorted to the same file, or an undistorted image would replace a photograph.
+// fewer than two images, a lens is not supported, an image file is missing or has another size than
+// its camera, two images would be undistorted to the same file, or an undistorted image would
+// replace a photograph.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
                           const ProgressSink& preparing_cameras = {});
 
-// Returns a housing with the ports of `cameras`, which were read from a file of COLMAP-Underwater
-// or Calibmar. The port of camera 1 is named "camera_1", and so on. Cameras without a port get the
-// default port "none".
+// Returns a housing with the ports of `cameras` (ColmapCamera::port), by camera id. The port of the
+// camera with the id 1 is named "camera_1", and so on. Cameras without a port get the default port
+// "none".
 Housing housing_of(std::span<const ColmapCamera> cameras);
 
-// Reads a housing file and resolves its entries for the images of `model` (for_images).
+// Reads a housing file (read_housing in housing.h) and returns it with entries for the images of
+// `model`, as for_images() makes them. Errors as for these two functions.
 Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
 
 // Returns a housing that gives every image the same port as `housing`, but has only entries by
 // image and no entries by camera id. attach_ports needs this form, because a scene does not contain
 // COLMAP's camera ids. An image that gets the default port has no entry unless another entry would
-// match it. `scene` must have been imported from `model` with `import`. Readers assign a port to an
-// image by the end of the image's path. Error if this rule would give an image a wrong port.
+// match it. Precondition: `scene` is the result of import_colmap_scene() for `model` and `import`.
+// Readers assign a port to an image by the end of the image's path. Error if this rule would give
+// an image a wrong port.
 Housing housing_by_image(const Housing& housing, const ColmapModel& model, const Scene& scene,
                          const ColmapImport& import);
 
-// Returns the entries of `housing` that match no image or camera of the model, for example
-// "images.a.jpg" and "cameras.2".
+// Returns the entries of `housing` that are used for no image of the model, for example
+// "images.a.jpg" and "cameras.2": entries that are the longest match (Housing::entry_of) of no
+// image, and entries of cameras that no image has. Entries by image come first.
 std::vector<std::string> unused_entries(const Housing& housing, const ColmapModel& model);
 
 }  // namespace axial::io

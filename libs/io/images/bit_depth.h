@@ -12,16 +12,20 @@
 
 namespace axial::io {
 
-// Adds the option `--bit-depth` to `list`. Its value is stored in `bit_depth`. The default is 0:
-// the largest value in the photographs determines the number of bits (common_bit_depth).
+// Adds the option `--bit-depth` to `list`. Its value is stored in `bit_depth`, which must exist
+// until parse_options() has returned. The default is the present value of `bit_depth`. 0 means: as
+// many bits as the largest value in all photographs needs (common_bit_depth). The value is not
+// checked here (check_bit_depth).
 void declare_bit_depth(OptionList& list, int& bit_depth);
 
-// Error if `bit_depth` is neither 0 nor from 8 to 16. The message calls the value `setting`.
+// Error if `bit_depth` is neither 0 nor from 8 to 16 (both ends included). The message calls the
+// value `setting`.
 void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 
 // Returns the number of bits (8 to 16) that the values of 16-bit photographs use. in_8_bits needs
 // this number to convert the photographs to 8 bits. `headers[i]` is the header of `photographs[i]`.
-// `asked` is the number of bits that the user asks for, or 0. The first rule that applies is used:
+// `asked` is the number of bits that the user asks for (8 to 16), or 0: the photographs decide. The
+// first rule that applies is used:
 // 1. If no photograph has more than 8 bits, the result is 16. The result then has no effect,
 //    because pixels of 8 bits are not converted. A warning says that `asked` is not used if `asked`
 //    is not 0.
@@ -29,9 +33,10 @@ void check_bit_depth(int bit_depth, const std::string& setting = "bit_depth");
 // 3. Otherwise the result is the number of bits that the largest value in all photographs needs, at
 //    least 8. The log states the result.
 //
-// Messages call `asked` by the name `setting`. Photographs are decoded only under rule 3, and only
-// those of more than 8 bits. They are decoded in parallel, as many at a time as fit into a quarter
-// of the free memory, and at least one. Error for a photograph that cannot be read.
+// Messages call `asked` by the name `setting`. Precondition: check_bit_depth() accepts `asked`.
+// Photographs are decoded only under rule 3, and only those of more than 8 bits. They are decoded
+// in parallel, as many at a time as fit into a quarter of the free memory, and at least one. Error
+// for a photograph that cannot be read.
 int common_bit_depth(std::span<const std::filesystem::path> photographs,
                      std::span<const ImageHeader> headers, int asked,
                      const std::string& setting = "bit_depth");

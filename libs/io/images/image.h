@@ -11,26 +11,28 @@
 
 namespace axial::io {
 
+// The properties of a photograph that are known without its pixels.
 struct ImageHeader {
-  cv::Size size;
+  cv::Size size;       // [px]
   int bits = 8;        // bits of a stored value, rounded up to whole bytes: 8 or 16
   bool alpha = false;  // pixels may be transparent
   unsigned decode_bytes =
       4;  // memory [bytes per pixel] during decoding, for the file, the library and the result
 };
 
+// A decoded photograph.
 struct Photograph {
   cv::Mat pixels;    // B G R, CV_8UC3 or CV_16UC3
-  cv::Mat1b opaque;  // 0: pixel is fully transparent; empty if no pixel is fully transparent
+  cv::Mat1b opaque;  // 0: fully transparent, 255: other; empty: no pixel is fully transparent
 };
 
 // Reads a photograph of 8 or 16 bits. A grey image gives three equal channels. Error for
-// floating-point or signed pixels.
+// floating-point or signed pixels, and for more than 2^30 pixels.
 Photograph read_photograph(const std::filesystem::path& path);
 
-// Return the properties of the photograph that read_photograph would return. The pixels of JPEG,
-// PNG and TIFF files are not decoded, except for a JPEG whose header states no size. Images of
-// other formats are decoded.
+// Return the header or the size of the photograph that read_photograph() would return. The pixels
+// of JPEG, PNG and TIFF files are not decoded, except for a JPEG whose header states no size.
+// Images of other formats are decoded.
 ImageHeader read_image_header(const std::filesystem::path& path);
 cv::Size read_image_size(const std::filesystem::path& path);
 
@@ -38,15 +40,18 @@ cv::Size read_image_size(const std::filesystem::path& path);
 // of the result is included.
 std::uint64_t bytes_needed(const ImageHeader& header);
 
-// Returns the number of bits (8 to 16) that the largest value in `pixels` needs. Values of cameras
-// with 10, 12 or 14 bits are stored in 16 bits.
+// Returns the number of bits (8 to 16) that the largest value in all channels of `pixels` needs.
+// `pixels` has 8 or 16 bits, and for 8 bits the result is 8. Images of 16 bits may use fewer bits,
+// because the values of cameras with 10, 12 or 14 bits are stored in 16 bits.
 int bits_used(const cv::Mat& pixels);
 
-// Converts pixels to 8 bits by keeping the upper 8 of `bits` (8 to 16) bits. A value that needs
-// more than `bits` bits becomes 255. Pixels of 8 bits stay as they are.
+// Converts `pixels` of three channels to 8 bits by keeping the upper 8 of `bits` (8 to 16) bits of
+// each value. A value that needs more than `bits` bits becomes 255. If `pixels` has 8 bits, `bits`
+// has no effect, and the result shares the pixels.
 cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits);
 
-// Reads a photograph and converts it to 8 bits. The upper 8 bits of 16-bit values are kept.
+// Reads a photograph (read_photograph) and converts it to 8 bits. Of values of 16 bits, the upper 8
+// bits are kept. Transparency is ignored.
 cv::Mat3b read_color_image(const std::filesystem::path& path);
 
 // Reads a label image of 8 or 16 bits and returns its labels in 16 bits. The image must have one
@@ -54,19 +59,22 @@ cv::Mat3b read_color_image(const std::filesystem::path& path);
 // palette are the palette indices. Error for other images.
 cv::Mat1w read_label_image(const std::filesystem::path& path);
 
-// Error that names the file `mask` if the aspect ratio of the mask's size `size` differs from the
-// aspect ratio of the image's size `image`. A mask may have another resolution than its image.
+// Error that names the file `mask` if the size of the mask, `size`, has another aspect ratio than
+// the size of its image, `image`. A mask may have another resolution than its image. Differences of
+// the aspect ratio by rounding to whole pixels are accepted (same_shape in scene/resolution.h).
 void check_mask_shape(const std::filesystem::path& mask, cv::Size size, cv::Size image);
 
 // Read and write float TIFF files (ground truth) with one or three channels, without loss. The
 // channels have the same order in memory and in the file. Reading gives an Error for a file with
-// another type of pixels.
+// another type of pixels. Writing gives an Error for pixels that are not float, and for a file that
+// cannot be written.
 cv::Mat1f read_float_tiff(const std::filesystem::path& path);
 cv::Mat3f read_float3_tiff(const std::filesystem::path& path);
 void write_float_tiff(const std::filesystem::path& path, const cv::Mat& image);
 
-// Write an image (B G R or grey). The JPEG `quality` is from 0 to 100. Error if the image cannot be
-// encoded or the file cannot be written.
+// Write an image and replace an existing file. PNG: B G R, B G R alpha or grey, 8 or 16 bits. The
+// JPEG `quality` is from 0 (worst) to 100 (best). Error if the image cannot be encoded or the file
+// cannot be written.
 void write_jpeg(const std::filesystem::path& path, const cv::Mat3b& image, int quality);
 void write_png(const std::filesystem::path& path, const cv::Mat& image);
 

@@ -14,11 +14,12 @@ namespace axial::io {
 // value of the option --export-type, "ply" or "obj". `type_given` is true if the user gave the
 // type. If the user did not give the type and `path` ends in .obj, the type is "obj". The type
 // becomes the extension of the result: it replaces the extensions .ply, .obj and .mvs, and is
-// appended to a path with any other extension.
+// appended to any other path. `type` is not checked.
 std::filesystem::path mesh_file(std::filesystem::path path, std::string type, bool type_given);
 
 // Writes the mesh as OBJ if the extension of `path` is .obj, otherwise as PLY. `frame` is the frame
-// of the mesh's positions. Errors as for write_mesh_ply.
+// of the mesh's positions. Positions are written in `frame`, and the file states its origin unless
+// `frame` is the world. OBJ has no colours. Errors as for write_mesh_ply() and write_mesh_obj().
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh, const LocalFrame& frame);
 
 }  // namespace axial::io

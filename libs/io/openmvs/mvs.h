@@ -8,24 +8,26 @@
 
 namespace axial::io {
 
-// Reads a scene. Relative paths of images and masks in the file start at `working_folder`. All
-// paths in the result are absolute. Ports are not part of the format (see housing.h). If a camera
-// is stored without a resolution (normalised K), the resolution is read from the header of the
-// image file.
+// Reads a scene. Relative paths of images and masks in the file start at `working_folder` (empty:
+// the current folder). All paths in the result are absolute. Ports are not part of the format (see
+// housing.h). If a camera is stored without a resolution (normalised K), the resolution is read
+// from the header of the image file, and a warning states the principal point that is assumed.
 //
-// Error that names the file, the field and the value for a truncated or malformed file, fewer than
-// two images, ids out of range or repeated, values that are not finite, rotation matrices that are
-// not rotations, a focal length that is not positive, a skew, or a native OpenMVS project
-// ("MVS\0").
+// Error that names the file, the field and the value for a truncated or malformed file, a file
+// without platforms, fewer than two images, ids out of range or repeated, values that are not
+// finite, rotation matrices that are not rotations, a focal length that is not positive, a skew, or
+// a native OpenMVS project ("MVS\0").
 Scene read_mvs(const std::filesystem::path& path, const std::filesystem::path& working_folder);
 
-// How write_mvs stores K. `pixels`: in pixels, with the resolution of the image. `normalised`:
-// divided by the longer side of the image, without a resolution, as with OpenMVS's --normalize.
+// How write_mvs() stores the calibration matrix K. `pixels`: in pixels, with the resolution of the
+// image. `normalised`: divided by the longer side of the image, without a resolution, as with
+// OpenMVS's --normalize.
 enum class MvsIntrinsics { pixels, normalised };
 
-// Writes a scene in version 7 of the format. Paths of images and masks below `working_folder` are
-// stored relative to it, other paths are stored whole. Error for fewer than two images, no
-// calibrated image, sparse points that read_mvs refuses, or, with normalised intrinsics, a
+// Writes a scene in version 7 of the format and replaces an existing file. Ports and lens
+// distortions are left out. Paths of images and masks below `working_folder` are stored relative to
+// it, other paths are stored whole. Error for fewer than two images, no calibrated image, sparse
+// points that read_mvs() refuses, a file that cannot be written, or, with normalised intrinsics, a
 // principal point that readers of the file would place elsewhere.
 void write_mvs(const std::filesystem::path& path, const Scene& scene,
                const std::filesystem::path& working_folder,

@@ -29,23 +29,25 @@ PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::p
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 
 // Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
-// read_cloud_of_scene(). The cloud must have the property view_indices, which holds indices of the
-// scene's images. The property view_weights is optional: without it all confidences are 0.
+// read_cloud_of_scene(). `scene` is in `frame`. The cloud must have the property view_indices,
+// which holds indices of the scene's images. The property view_weights is optional: without it all
+// confidences are 0.
 //
 // Error that names the file for a cloud without view_indices, an index of an image that the scene
 // does not have, or a point that is not finite. Other errors as for read_cloud_ply.
 void use_point_cloud(Scene& scene, const LocalFrame& frame, const std::filesystem::path& ply);
 
+// The result of count_point_cloud().
 struct PointSourceCounts {
-  MvsCounts scene;                  // with the points of the cloud
+  MvsCounts scene;                  // after use_point_cloud()
   std::uint64_t reading_bytes = 0;  // lower bound of the memory that use_point_cloud needs [bytes]
 };
 
 // Estimates the counts of a scene after use_point_cloud, from the header and the size of the file
-// `ply`. `scene` holds the counts of the scene before. The number of observations is 0 if it cannot
-// be computed: for an ascii PLY, for a PLY with other elements than vertices, and for a PLY with
-// other lists than view_indices and view_weights. Returns nothing for a file that cannot be read
-// and for a malformed file. In these cases use_point_cloud reports the reason.
+// `ply`. `scene` holds the counts of the scene before. MvsCounts::observations of the result is 0
+// if it cannot be computed: for an ascii PLY, for a PLY with other elements than vertices, and for
+// a PLY with other lists than view_indices and view_weights. Returns nothing for a file that cannot
+// be read and for a malformed file. In these cases use_point_cloud reports the reason.
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene);
 

@@ -11,7 +11,8 @@
 
 namespace axial::io {
 
-// The values of the options as the user gave them.
+// The values of the options --housing, --camera-model, --refractive and --allow-missing, as the
+// user gave them. An empty `housing` means that the option was not given.
 struct SceneOptions {
   std::string housing, camera_model = "auto";
   bool refractive = false, allow_missing = false;
@@ -22,8 +23,9 @@ struct SceneOptions {
 void declare_scene_options(OptionList& list, SceneOptions& options);
 
 // Returns the files of the scene `input`. `input` and `options.housing` may be relative to the
-// working folder of `common`. Messages about these files call settings by the names of these
-// options. Error for an unknown camera model, and for options that contradict each other.
+// working folder of `common`. Messages about these files call settings by the names of the options
+// above. Error for a camera model other than auto, pinhole and flatport. Error if --refractive or
+// --housing is combined with --camera-model pinhole.
 SceneFiles scene_files(const SceneOptions& options, const std::string& input,
                        const CommonOptions& common);
 

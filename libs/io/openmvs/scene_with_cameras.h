@@ -15,6 +15,7 @@
 
 namespace axial::io {
 
+// Which ports the cameras of a scene get.
 enum class PortChoice {
   automatic,  // the ports of the housing file, if there is one
   ignored,    // the housing file is not read
@@ -27,13 +28,14 @@ enum class PortChoice {
 // `name_of` translates these names to the names that the user knows.
 struct SceneFiles {
   std::filesystem::path scene;           // the .mvs file
-  std::filesystem::path working_folder;  // base of relative image paths in the scene
+  std::filesystem::path working_folder;  // relative image paths in the scene start here
   std::filesystem::path housing;         // empty: the housing file beside the scene, if any
   PortChoice ports = PortChoice::automatic;
-  bool allow_missing = false;  // true: if `housing` gives no image a port, warn instead of fail
+  bool allow_missing = false;  // true: warn if `housing` gives no image a port, instead of an Error
   SettingNames name_of = own_name;
 };
 
+// The result of read_scene_with_cameras().
 struct SceneWithCameras {
   Scene scene;                     // in `frame`; cameras have their lenses and ports
   LocalFrame frame;                // the frame of the scene's coordinates
@@ -44,12 +46,14 @@ struct SceneWithCameras {
 // scene. The file need not exist.
 std::filesystem::path housing_file(const SceneFiles& files);
 
-// Reads the scene, moves it into a frame near its cameras (enter_local_frame), and attaches lenses
-// and ports. If the path of an image or a mask does not exist, its part below the working folder is
-// looked up below the scene's folder. The pixels of images are not read. The log states the housing
-// file and the numbers of images with ports and with distorted lenses. Warns if the scene has ports
-// but no file of lenses. Error for a missing or malformed file, and if the ports do not meet
-// `files.ports`.
+// Reads the scene, moves it into a frame near its cameras (enter_local_frame in geo_offset.h), and
+// attaches lenses and ports. If the path of an image or a mask does not exist, its part below the
+// working folder is looked up below the scene's folder. The pixels of images are not read. The log
+// states the housing file and the numbers of images with ports and with distorted lenses. Warns if
+// the scene has ports but no file of lenses. Error for a malformed file, if the scene or the file
+// `files.housing` does not exist, if the ports do not meet `files.ports`, and if the file
+// `files.housing` defines ports but gives no image one. With `files.allow_missing`, the last error
+// is a warning.
 SceneWithCameras read_scene_with_cameras(const SceneFiles& files);
 
 // Writes the files of the housing, the lenses and the offset beside the scene `output`, where later

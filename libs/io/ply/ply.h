@@ -15,7 +15,9 @@ namespace axial::io {
 
 // Reads a cloud. Properties are recognised by their names: x y z, nx ny nz, red green blue (or
 // diffuse_red and so on), view_indices, view_weights. Old (float, uchar) and new (float32, uint8)
-// names of types are accepted. Other elements and properties are skipped.
+// names of types are accepted. Other elements and properties are skipped. Arrays of the result are
+// empty where the file has no such property. Colours are clamped to 0 to 255. Error and confidence
+// of points are not read.
 //
 // Positions are returned as stored. If the file has a line "comment geo_offset X Y Z", the stored
 // positions are relative to the point X Y Z. Otherwise the file does not state their origin.
@@ -29,38 +31,43 @@ PointCloud read_cloud_ply(const std::filesystem::path& path);
 // positions are moved in double precision and then rounded to float.
 PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
-// The origin and the precision of a file's positions.
+// Where the positions of a file are, and their precision.
 struct PlyPlace {
   // The stored first vertex plus the origin of `frame` below; zero if the file has no vertices.
   Eigen::Vector3d first_vertex = Eigen::Vector3d::Zero();
   LocalFrame frame;      // from the comment geo_offset; the world if there is no such comment
-  bool is_float = true;  // true: positions are float32; false: float64
+  bool is_float = true;  // true: x is float32, or there are no vertices; false: another type
 };
 
-// Reads the header and the first vertex. Errors as for read_cloud_ply.
+// Returns the place of the positions of a file. Only the header and the first vertex are
+// interpreted. Errors as for read_cloud_ply().
 PlyPlace ply_place(const std::filesystem::path& path);
 
 // How positions are written. If `world` is true, positions are written as float64 in world
 // coordinates. Otherwise positions are written as float32 in `frame`, and a comment geo_offset
 // states the origin of `frame` unless `frame` is the world.
 struct PlyPlacement {
-  LocalFrame frame;  // of the positions in memory
-  bool world = false;
+  LocalFrame frame;    // of the positions in memory
+  bool world = false;  // see above
 };
 
-// The properties that every point of a cloud has besides its position.
+// The properties that a file of a cloud has for each point besides its position. `views` stands for
+// view_indices.
 struct CloudLayout {
   bool colors = false, normals = false, views = false, view_weights = false;
-  bool errors = false;  // both properties error and confidence
+  bool errors = false;  // both properties, error and confidence
 };
 
 // Writes a cloud of any size in portions. finish() renames a temporary file to `path`. If finish()
-// is not called, no file remains. The order of the properties is that of OpenMVS: x y z, red green
-// blue, nx ny nz, view_indices, view_weights. The properties error and confidence, which OpenMVS
-// does not have, follow. The number of points is known only at the end. The header therefore
-// contains a comment line with blanks that reserve room for the digits of this number.
+// is not called, the destructor removes the temporary file, and an existing file at `path` stays as
+// it is. The order of the properties is that of OpenMVS: x y z, red green blue, nx ny nz,
+// view_indices, view_weights. The properties error and confidence, which OpenMVS does not have,
+// follow. The number of points is known only at the end. The header therefore contains a comment
+// line with blanks that reserve room for the digits of this number.
 class CloudWriter {
  public:
+  // Opens the temporary file. Error if it cannot be written. Precondition: `layout.view_weights` is
+  // true only with `layout.views`.
   CloudWriter(const std::filesystem::path& path, const CloudLayout& layout,
               const PlyPlacement& placement = {});
   ~CloudWriter();
@@ -73,8 +80,8 @@ class CloudWriter {
 
   std::size_t size() const;  // number of points added so far
 
-  // Writes the number of points into the header and renames the temporary file. Error if the file
-  // cannot be written.
+  // Writes the number of points into the header and renames the temporary file. Call it once, after
+  // the last add(). Error if the file cannot be written.
   void finish();
 
  private:
@@ -82,9 +89,9 @@ class CloudWriter {
   std::unique_ptr<File> file_;
 };
 
-// Writes a whole cloud. The file has the properties whose arrays in `cloud` are not empty, with one
-// exception: view_indices and view_weights are written only if `with_views` is true. Errors as for
-// CloudWriter::add.
+// Writes a whole cloud and replaces an existing file. The file has the properties whose arrays in
+// `cloud` are not empty, with one exception: view_indices and view_weights are written only if
+// `with_views` is true. Errors as for CloudWriter::add.
 void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                      bool with_views = true, const PlyPlacement& placement = {});
 
@@ -95,14 +102,17 @@ void write_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
 Mesh read_mesh_ply(const std::filesystem::path& path);
 Mesh read_mesh_ply(const std::filesystem::path& path, const LocalFrame& frame);
 
-// Writes a mesh with its colours, if it has any. Error if there is not one colour for each vertex.
+// Writes a mesh, with its colours if it has any, and replaces an existing file. Error that names
+// the file if the number of colours is neither 0 nor the number of vertices, or if the file cannot
+// be written. Vertex indices are not checked.
 void write_mesh_ply(const std::filesystem::path& path, const Mesh& mesh,
                     const PlyPlacement& placement = {});
 
-// Functions for writers that add other properties to a PLY file. geo_comment returns the header
-// line "comment geo_offset X Y Z" with its newline, or an empty text if the positions are in the
-// world. position_properties returns the header lines of x, y and z. append_position appends the
-// bytes of one position, which is given in `placement.frame`, to `bytes`.
+// Functions for writers of other PLY files. All positions are placed as `placement` demands.
+// geo_comment returns the header line "comment geo_offset X Y Z" with its newline, or an empty text
+// if `placement.world` is true or `placement.frame` is the world. position_properties returns the
+// header lines of x, y and z. append_position appends the bytes of one position, which is given in
+// `placement.frame`, to `bytes`.
 std::string geo_comment(const PlyPlacement& placement);
 const char* position_properties(const PlyPlacement& placement);
 void append_position(std::string& bytes, const Eigen::Vector3f& position,

@@ -9,10 +9,10 @@
 namespace axial::io {
 
 // Transforms the cloud or mesh of `input` by `move` and writes it to `output`, in binary
-// little-endian. Three kinds of vertex properties change. The positions x y z are transformed. The
-// normals nx ny nz are rotated. The float property `error` is a length and is multiplied by the
-// scale. All other properties, all other elements (faces, texture coordinates) and all comments
-// except geo_offset stay as they are.
+// little-endian. An existing file is replaced. Three kinds of vertex properties change. The
+// positions x y z are transformed. The normals nx ny nz are rotated. The float property `error` is
+// a length and is multiplied by the scale. All other properties, all other elements (faces, texture
+// coordinates) and all comments except geo_offset stay as they are.
 //
 // The positions of `input` are in the frame frame_of_positions(input, move.from). Positions are
 // written in `move.to`, with a comment geo_offset unless `move.to` is the world. Exception: if
@@ -20,7 +20,8 @@ namespace axial::io {
 // float64 in the world, without a comment geo_offset.
 //
 // Error that names the file for a malformed or truncated file, a file without vertices, positions
-// that are neither float32 nor float64, or a position that is not finite after the move.
+// that are neither float32 nor float64, a position that is not finite after the move, or an output
+// that cannot be written.
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
                    const FrameMove& move);
 

@@ -12,9 +12,10 @@
 
 namespace axial::io {
 
+// glb: one binary file of glTF. gltf: a JSON file, a binary file and the images of the textures.
 enum class TexturedFormat { ply, obj, glb, gltf };
 
-// Returns the format that the name "ply", "obj", "glb" or "gltf" stands for; nothing for another
+// Returns the format of the name "ply", "obj", "glb" or "gltf", in lower case; nothing for another
 // name.
 std::optional<TexturedFormat> textured_format(std::string_view name);
 
@@ -22,11 +23,15 @@ std::optional<TexturedFormat> textured_format(std::string_view name);
 // textures. The first path is that of the mesh. The extension of `path`, if it has one, is replaced
 // by the extension of the format. The second path is the .mtl file of an OBJ or the .bin file of a
 // glTF. The paths of the textures follow: for "dir/scene.ply" they are "dir/scene0.png",
-// "dir/scene1.png" and so on, as in OpenMVS. A GLB is a single file that contains its textures.
+// "dir/scene1.png" and so on, as in OpenMVS. A GLB is a single file that contains its textures: the
+// result has one path.
 std::vector<std::filesystem::path> textured_files(const std::filesystem::path& path,
                                                   TexturedFormat format, std::size_t textures);
 
-// Writes the mesh and its textures. Either all files are written, or none is.
+// Writes the mesh and its textures to the files textured_files() and replaces existing files. All
+// files are written under temporary names and then renamed one after the other. If anything fails
+// before that, existing files keep their content. Colours of vertices are left out.
+//
 // Let (x, y) be a texture coordinate of the mesh in pixels of its texture.
 //   - PLY: a comment TextureFile names each texture. The list texcoord of a face holds u and v of
 //     its corners. If there is more than one texture, texnumber is the index of the face's texture.
@@ -43,12 +48,14 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 // comment "# geo_offset X Y Z", and glTF a key geo_offset in the extras of its node.
 //
 // Error if uv or texture_of does not have one entry for each face, if an index is out of range, if
-// a coordinate is not finite, if a GLB would be larger than 4 GiB, or if a file cannot be written.
+// a vertex or a texture coordinate is not finite, if a GLB would be larger than 4 GiB, or if a file
+// cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
 
-// Reads a textured PLY and the textures beside it. Positions are returned as by the function
-// read_mesh_ply with the same parameters. Error that names the file for a file without a comment
+// Reads a textured PLY and the textures beside it. Positions are returned as stored if `frame` is
+// empty, and otherwise in `frame`, as by read_mesh_ply() (ply.h). Texture coordinates are returned
+// in pixels, as in TexturedMesh. Error that names the file for a file without a comment
 // TextureFile, a face that is not a triangle, a face without texcoord, a texture that is missing or
 // cannot be read, or an index out of range. Other errors as for read_mesh_ply.
 TexturedMesh read_textured_ply(const std::filesystem::path& path,
