@@ -23,13 +23,16 @@ struct HugePageAllocator {
   template <class U>
   explicit HugePageAllocator(const HugePageAllocator<U>&) {}
 
-  // Blocks below kSmall bytes come from the heap, larger blocks directly from the system.
+  // Returns room for `count` objects, uninitialised. Blocks below kSmall bytes come from the heap,
+  // larger blocks directly from the system. Larger blocks begin at a multiple of kPage, and their
+  // size is rounded up to a multiple of kPage.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall) return static_cast<T*>(::operator new(bytes));
     return static_cast<T*>(map(rounded(bytes)));
   }
 
+  // Frees a block of allocate(`count`).
   void deallocate(T* block, std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall)
