@@ -94,7 +94,7 @@ void require_writable_folder(const std::filesystem::path& folder);
 void make_folder(const std::filesystem::path& folder);
 
 // Returns the content of the whole file, byte by byte. Throws an Error that names `path` if it is
-// not a regular file, cannot be read, or is larger than `max_bytes`.
+// not a regular file, cannot be read, or is larger than `max_bytes` (default: no limit).
 std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
 // Removes from `folder` the temporary files and folders of this header that killed processes left

@@ -13,7 +13,7 @@ namespace axial {
 
 // Collects bytes into a 128-bit XXH3 fingerprint. The fingerprint identifies the inputs from which
 // a file was made. XXH3 was chosen for speed, because whole files are hashed. XXH3 does not protect
-// against collisions that are made on purpose.
+// against collisions that are made on purpose. The functions add() return the object itself.
 class Fingerprint {
  public:
   Fingerprint();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's log. Only log.cpp includes the logging library, because the library's headers take
-// seconds to compile.
+// The program's log. Functions that write lines are thread-safe. Only log.cpp includes the logging
+// library, because the library's headers take seconds to compile.
 #pragma once
 
 #include <fmt/core.h>
@@ -35,7 +35,8 @@ void log_line(LogLevel level, std::string_view line);
 
 // Formats one line and writes it, unless `level` is below the log's level. The line is formatted
 // only if it is written. as_message() (base/message.h) makes a warning one line of at most 500
-// bytes. The functions below call log_formatted() with `args` and a fixed level.
+// bytes. log_warning(), log_info() and log_details() write `format` with `args` in place of its
+// "{}" (fmt's syntax) in this way.
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
 // Writes a line of the level `warning`.

@@ -17,9 +17,9 @@ using OptionTarget = std::variant<bool*, int*, unsigned*, std::uint64_t*, double
 
 // One option. The functions add...() of OptionList make it.
 struct Option {
-  std::string name;            // "resolution-level", or "input-file,i" with a short name
-  OptionTarget target;         // not null
-  std::string help;            // the text that --help prints beside the name
+  std::string name;     // without dashes: "resolution-level", or "input-file,i" with a short name
+  OptionTarget target;  // not null
+  std::string help;     // the text that --help prints beside the name
   bool shows_default = false;  // --help shows the value of the target at declaration
   bool is_switch = false;      // bool only: the name without a value means true
 };
@@ -34,8 +34,8 @@ class OptionList {
   // `title`: the headline in --help.
   explicit OptionList(std::string title) : title_(std::move(title)) {}
 
-  // Adds an option that has no default, or whose default is explained in `help`. A vector takes the
-  // values of all occurrences of the option.
+  // Adds an option for which --help shows no default: it has none, or `help` explains it. A vector
+  // takes the values of all occurrences of the option.
   OptionList& add(const char* name, OptionTarget target, const char* help) {
     options_.push_back({name, target, help});
     return *this;

@@ -17,7 +17,8 @@ void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting);
 
-// Calls require_not_an_input() for each of `outputs`.
+// Does the same for each of `outputs`, in their order: throws the Error for the first one that is
+// an input.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
                        std::span<const std::filesystem::path> inputs, const std::string& setting);
 
