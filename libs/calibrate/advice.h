@@ -58,8 +58,8 @@ struct BoardPlace {
   double distance = 0;      // from the camera's centre to the mean of the board's corners [m]
   double tilt_degrees = 0;  // angle between the board and the image plane, from 0 to 90
 };
-// `bundle`: a bundle of board_bundle() (board_bundle.h) with known poses. `image`: an index into
-// `bundle.images`.
+// Returns the place of the board in the image with the index `image` in bundle.images. `bundle`: a
+// bundle of board_bundle() (board_bundle.h) with known poses.
 BoardPlace board_place(const pose::Bundle& bundle, std::size_t image);
 
 }  // namespace axial::calibrate

@@ -8,6 +8,7 @@
 
 namespace axial::calibrate {
 
+// Settings of calibrate().
 struct CalibrateOptions {
   // The unknown numbers of the camera and the standard deviations with which they were measured.
   // calibrate() sets adjust.points_known. After the first of several rounds, calibrate() replaces
@@ -34,9 +35,9 @@ struct Calibration {
   const pose::BundleCamera& camera() const { return bundle.bundle.cameras[0]; }
 };
 
-// Finds the unknown numbers of the port, and the pose of the camera in each photograph, that
-// minimise the squared reprojection errors of the corners (exact projection, Huber loss). `port`
-// has the measured numbers, from which the adjustment starts. The poses need no initial values.
+// Finds the unknown numbers of the camera, and its pose in each photograph, that minimise the
+// squared reprojection errors of the corners (exact projection, Huber loss). `lens` and `port` have
+// the measured numbers, from which the adjustment starts. The poses need no initial values.
 // `corners`: the corners of the board [m], in the order of their numbers.
 // A photograph is used if it shows 8 corners or more, if its corners determine its pose, and if 8
 // corners or more have an error of at most max_error (4 max_error in the first of three rounds).
