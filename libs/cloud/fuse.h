@@ -72,7 +72,7 @@ struct FuseOptions {
 void append(PointCloud& cloud, const PointCloud& portion);
 
 // Receives the next points of a cloud, at least one. PointCloud::view_begin of each portion starts
-// at 0.
+// at 0. Called in the thread that called fuse().
 using CloudSink = std::function<void(PointCloud portion)>;
 
 // Fuses the depth maps of `views` and passes the cloud to `sink` in portions. The views are
@@ -82,10 +82,11 @@ using CloudSink = std::function<void(PointCloud portion)>;
 // * The point of the pixel is projected into each neighbour of the view and compared with the
 //   nearest pixel there. The depth agrees if it differs by less than depth_threshold times the
 //   depth of the point, and the normal agrees within normal_threshold. The neighbour agrees if both
-//   agree. The neighbour disagrees if its depth is larger, so that it sees through the point, or if
-//   its depth agrees and its normal differs. The neighbour is neutral in all other cases: the point
-//   is outside its image, its map has no depth there, or its depth is smaller, so that the point is
-//   hidden behind its surface.
+//   agree. The neighbour disagrees in two cases: its depth does not agree and is larger, so that it
+//   sees through the point, or its depth agrees and its normal does not. The neighbour is neutral
+//   in all other cases: the point is outside the neighbour's image, the neighbour's map has no
+//   depth there, or its depth does not agree and is smaller, so that a nearer surface hides the
+//   point.
 // * The point is accepted if min_views images agree. The view itself counts as one image. A
 //   neighbour counts if it agrees and its pixel is not used yet. With `two_if_undisputed` one
 //   neighbour that counts is enough under three conditions: no neighbour disagrees, the pixel lies
@@ -104,10 +105,11 @@ using CloudSink = std::function<void(PointCloud portion)>;
 // So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
 // image) are always filled. A map without normals gets normals from its depths
 // (estimate_map_normals). A pixel without a normal passes every normal test. The cloud is identical
-// for any number of threads. The memory is that of the maps, and one bit per pixel for each view
-// that is still needed. Throws an Error in these cases: a view's image is not in the scene or is
-// given twice, a depth map or a loaded image is empty, or the camera, the normals, the confidences
-// or the image of a map do not have the size of its depths.
+// for any number of threads. `progress` counts the views that have enough neighbours for a point.
+// The memory is that of the maps, and one bit per pixel for each view that is still needed. Throws
+// an Error in these cases: a view's image is not in the scene or is given twice, a depth map or a
+// loaded image is empty, or the camera, the normals, the confidences or the image of a map do not
+// have the size of its depths.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 
@@ -129,10 +131,10 @@ struct FusionSize {
 std::uint64_t bytes_needed(const FusionSize& size);
 
 // Returns the normals of a map, estimated from the back-projected points in the 3x3 neighbourhood
-// of each pixel. A neighbour counts if its depth differs from the depth of the pixel by less than 3
-// %. At least 3 neighbours must count. The normals have unit length, are in the camera frame and
-// face the camera. The normal is 0 where there is no depth or where the estimation fails.
-// `map.normal` is not used.
+// of each pixel. A neighbour counts if its depth differs from that of the pixel by less than 3 %.
+// At least 3 neighbours must count. The normals have unit length, are in the camera frame and face
+// the camera. The normal is 0 where there is no depth or where the estimation fails. `map.normal`
+// is not used.
 cv::Mat3f estimate_map_normals(const DepthMap& map);
 
 }  // namespace axial::cloud

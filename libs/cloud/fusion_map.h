@@ -19,7 +19,7 @@ namespace axial::cloud {
 struct FusionMap {
   std::string image_path;
   Pose pose;
-  CameraModel camera;
+  CameraModel camera;    // at the resolution of the map
   cv::Mat1f depth;       // lambda (see DepthMap) [m]; 0: none
   cv::Mat3f normal;      // world frame; 0: unknown
   cv::Mat1f weight;      // 1 / (max(1 - confidence, 0.03) depth^2); 0 without depth
