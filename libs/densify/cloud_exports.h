@@ -28,7 +28,7 @@ struct WrittenCloud {
 // extension. The list begins with the field of Settings that asks for the cloud, and its value. If
 // the settings ask for several clouds, only the first in this list is written:
 //   filter_point_cloud T < 0   <out>_filtered.ply and .mvs: points whose visibility is above T
-//   export_number_views N      <out>_<|N|>views.ply, for N < 0 also .mvs: points that |N| images
+//   export_number_views N != 0 <out>_<|N|>views.ply, for N < 0 also .mvs: points that |N| images
 //                              or more see
 //   estimate_scale F > 0       <out>_scale.ply: all points with their sizes; a size is F times the
 //                              mean width of a pixel at the point (cloud::PointScale)

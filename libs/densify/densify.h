@@ -56,7 +56,7 @@ struct Report {
 // - depth maps of other programs in the working folder, unless overwrite_dmaps is set or the run
 //   makes no maps,
 // - too little memory,
-// - a scene without usable views.
+// - a scene of which no image can get a depth map.
 // All this is checked before the first depth map is made. Precondition: each setting is in the
 // range that the setting's comment, or the comment of its type, names.
 Report densify(const Settings& settings, const SceneObserver& observer = {});

@@ -34,11 +34,11 @@ std::uint64_t bytes_needed(const WorkImageSize& size);
 std::uint64_t bytes_needed_to_load(std::uint64_t decode, std::uint64_t pixels);
 
 // Returns WorkImage::mask of an image, at the size of `view.camera`. A pixel is non-zero if its
-// label in the file `view.mask` is not `ignored_label` and if the pixel is fully opaque after
-// resampling. The result is empty if `view.mask` and `opaque` are both empty. `opaque`: of the
-// photograph's size, 255 where pixels of the photograph are opaque and 0 elsewhere; empty: the
-// photograph has no alpha. `check`: collects the labels; may be null. Throws an Error for a mask
-// that cannot be read or whose shape differs from the photograph's.
+// label in the file `view.mask` is not `ignored_label` and if `opaque`, resampled, is 255 there.
+// The result is empty if `view.mask` and `opaque` are both empty. `opaque`: of the photograph's
+// size, 0 where the photograph is fully transparent and 255 elsewhere; empty: nowhere transparent.
+// `check`: collects the labels; may be null. Throws an Error for a mask that cannot be read or
+// whose shape differs from the photograph's.
 cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_label,
                        LabelCheck* check = nullptr);
 
@@ -47,7 +47,7 @@ cv::Mat1b working_mask(const View& view, const cv::Mat1b& opaque, int ignored_la
 // for the same image read it only once. Images are named by their index in Project::views.
 class ImageStore {
  public:
-  // `project` must outlive the object, and `settings`, too.
+  // `project` and `settings` must outlive the object.
   ImageStore(const Project& project, const Settings& settings, std::size_t capacity);
 
   // Returns the pixels of a calibrated image, never null. Throws an Error for files that cannot be
