@@ -16,9 +16,11 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Throws an Error with the formatted message, shortened by as_message() (base/message.h).
+// Does the work of fail() in error.cpp, so that the formatting is compiled in one place.
 [[noreturn]] void fail_formatted(fmt::string_view format, fmt::format_args arguments);
 
+// Throws an Error whose message is `format` with `args` in place of its "{}" (fmt's syntax).
+// as_message() (base/message.h) makes the message one line of at most 500 bytes.
 template <class... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
   fail_formatted(format, fmt::make_format_args(args...));

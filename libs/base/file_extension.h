@@ -8,7 +8,8 @@
 
 namespace axial {
 
-// The extension of a file's name in lower case, with the dot: ".png" for "A.PNG".
+// The extension of a file's name in lower case, with the dot: ".png" for "A.PNG". Empty if the name
+// has no extension.
 inline std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),

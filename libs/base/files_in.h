@@ -6,9 +6,10 @@
 
 namespace axial {
 
-// Returns the regular files in the folder `path`, without the files in its subfolders, in any
-// order. If `path` is itself a file, the result is that file. If `path` is empty or does not exist,
-// the result is empty.
+// Returns the paths of the regular files in the folder `path`, without the files in its subfolders,
+// in an unspecified order. Each result begins with `path`. If `path` is itself a regular file, the
+// result is `path` alone. If `path` is empty, does not exist or cannot be opened, the result is
+// empty.
 inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;

@@ -10,10 +10,12 @@
 namespace axial {
 
 // Runs the items of a parallel loop and keeps the exception of the failed item with the smallest
-// number. After a failure, items with larger numbers than the failed item are skipped, and items
-// with smaller numbers are still run. Thread-safe.
+// number. Once an item has failed, run() skips items with larger numbers, and still runs items with
+// smaller numbers. Thread-safe. An object serves one loop.
 class FirstError {
  public:
+  // Calls body() as the item with the number `item`, or skips it. Throws nothing: an exception of
+  // body() is kept for rethrow().
   template <class Body>
   void run(std::size_t item, const Body& body) {
     if (item > failed_) return;
@@ -27,7 +29,7 @@ class FirstError {
     }
   }
 
-  // Rethrows the kept exception, if there is one. Call this function after the loop.
+  // Rethrows the kept exception. Returns if no item has failed. Call this function after the loop.
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }

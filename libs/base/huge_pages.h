@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Memory in pages of 2 MiB, where the system grants them. To match one window in a dozen source
 // images, about a hundred image rows are read. With pages of 4 KiB, each of these rows lies in
-// another page, and the processor's first-level translation cache (TLB) holds fewer pages.
+// another page, and the processor's first-level translation cache (TLB) holds fewer than a hundred.
 #pragma once
 
 #include <sys/mman.h>
@@ -12,7 +12,8 @@
 
 namespace axial {
 
-// An allocator for standard containers. allocate() throws std::bad_alloc if there is no memory.
+// An allocator for standard containers. All its objects are equal. allocate() throws std::bad_alloc
+// if there is no memory.
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
@@ -23,13 +24,16 @@ struct HugePageAllocator {
   template <class U>
   explicit HugePageAllocator(const HugePageAllocator<U>&) {}
 
-  // Blocks below kSmall bytes come from the heap, larger blocks directly from the system.
+  // Returns room for `count` objects, uninitialised. Blocks below kSmall bytes come from the heap,
+  // larger blocks directly from the system. Larger blocks begin at a multiple of kPage, and their
+  // size is rounded up to a multiple of kPage.
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall) return static_cast<T*>(::operator new(bytes));
     return static_cast<T*>(map(rounded(bytes)));
   }
 
+  // Frees a block of allocate(`count`).
   void deallocate(T* block, std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kSmall)

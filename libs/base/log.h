@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's log. Only log.cpp includes the logging library, because the library's headers take
-// seconds to compile.
+// The program's log. Functions that write lines are thread-safe. Only log.cpp includes the logging
+// library, because the library's headers take seconds to compile.
 #pragma once
 
 #include <fmt/core.h>
@@ -11,9 +11,11 @@
 
 namespace axial {
 
+// In ascending order.
 enum class LogLevel { trace, debug, info, warning };
 
-// Sets the lowest level that is written. The default is `info`.
+// Sets the lowest level that is written. At the start of the program and after start_log(), it is
+// `info`.
 void set_log_level(LogLevel level);
 
 // The lowest level that is written.
@@ -22,34 +24,42 @@ LogLevel log_level();
 // True if lines of `level` are written.
 bool logs(LogLevel level);
 
-// Starts the log. Lines go to standard output as "HH:MM:SS [name] text". `line_start` is written
-// before each line: on a terminal, the control characters that erase a line of progress.
+// Starts the log. From now on lines go to standard output as "HH:MM:SS [name] text". `line_start`
+// is written before each line: on a terminal, the control characters that erase a line of progress.
+// The level becomes `info`, and lines no longer go to an earlier file of log_to_file_too()
+// (base/log_file.h). So call set_log_level() and log_to_file_too() after start_log().
 void start_log(const std::string& name, const std::string& line_start);
 
 // Writes one line, unless `level` is below the log's level.
 void log_line(LogLevel level, std::string_view line);
 
 // Formats one line and writes it, unless `level` is below the log's level. The line is formatted
-// only if it is written. A warning is shortened by as_message() (base/message.h).
+// only if it is written. as_message() (base/message.h) makes a warning one line of at most 500
+// bytes. log_warning(), log_info() and log_details() write `format` with `args` in place of its
+// "{}" (fmt's syntax) in this way.
 void log_formatted(LogLevel level, fmt::string_view format, fmt::format_args arguments);
 
+// Writes a line of the level `warning`.
 template <class... Args>
 void log_warning(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::warning, format, fmt::make_format_args(args...));
 }
 
+// Writes a line of the level `info`.
 template <class... Args>
 void log_info(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::info, format, fmt::make_format_args(args...));
 }
 
+// Writes a line of the level `trace`.
 template <class... Args>
 void log_details(fmt::format_string<Args...> format, Args&&... args) {
   log_formatted(LogLevel::trace, format, fmt::make_format_args(args...));
 }
 
-// While the object exists, collects the log's lines of `info` and above instead of writing them.
-// For tests.
+// For tests. While the object exists, the log collects its lines of the levels `info` and
+// `warning`, and writes no line. The destructor restores the log. Objects must be destroyed in
+// reverse order.
 class LogCapture {
  public:
   LogCapture();
@@ -57,7 +67,8 @@ class LogCapture {
   LogCapture(const LogCapture&) = delete;
   LogCapture& operator=(const LogCapture&) = delete;
 
-  // The lines collected so far, each with a newline at its end.
+  // The lines collected so far: the texts alone, without time and name, each with a newline at its
+  // end.
   std::string text() const;
 
  private:

@@ -7,13 +7,15 @@
 
 namespace axial {
 
-// From now on the log's lines are also appended to `file`, with date and time. Creates `file` if it
-// does not exist. Throws an Error that names `file` in two cases: `file` cannot be written, or it
-// has content that does not begin with a date and time. A file with such content is not a log, but
-// perhaps a scene or a photograph that the user named by mistake.
+// From now on the log's lines are also appended to `file`, with date and time. Call this function
+// after start_log() (base/log.h). Creates `file` if it does not exist. Throws an Error that names
+// `file` in two cases: `file` cannot be written, or it has content that does not begin with a date
+// and time. A file with such content is not a log, but perhaps a scene or a photograph that the
+// user named by mistake.
 void log_to_file_too(const std::filesystem::path& file);
 
-// Writes a line only to the file of log_to_file_too(). Does nothing if there is no such file.
+// Writes a line, with date and time, to the file of log_to_file_too() and not to standard output,
+// at any level of the log. Does nothing if log_to_file_too() was not called.
 void log_to_file_only(std::string_view line);
 
 }  // namespace axial

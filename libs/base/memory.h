@@ -7,14 +7,16 @@
 
 namespace axial {
 
-// The bytes that can be allocated without swapping: the smaller of the system's MemAvailable and
-// the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains the folders
-// proc and sys. Tests pass another folder than "/". Throws an Error if the system does not report
-// MemAvailable.
+// An estimate of the bytes that all processes together can still allocate without swapping: the
+// system's MemAvailable, or the limit of the container if it is smaller. The limit of the container
+// is the lowest limit of this process's control group and of the groups that contain it (cgroup,
+// version 1 or 2). What the container already uses is not subtracted from its limit. `root`: the
+// folder that contains the folders proc and sys. Tests pass another folder than "/". Throws an
+// Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
 
-// The bytes of this process that are in memory now, including its code and its libraries. The
-// number differs by some pages from run to run.
+// The bytes of this process that are in memory now (resident set), including its code and its
+// libraries. The number differs by some pages from run to run.
 std::uint64_t resident_memory();
 
 // The bytes that this process has allocated from the C library and not freed. Large blocks of

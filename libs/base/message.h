@@ -12,9 +12,10 @@ namespace axial {
 inline constexpr std::size_t kLongestMessage = 500;
 inline constexpr std::size_t kLongestWord = 200;
 
-// Returns `text` as one line. Control characters become blanks. In a word longer than kLongestWord
-// and in a line longer than kLongestMessage, "..." replaces the middle. UTF-8 characters are not
-// split. A short text without control characters is returned unchanged.
+// Returns `text` as one line of at most kLongestMessage bytes. Each control character, such as a
+// newline, becomes a blank. In a word longer than kLongestWord, and then in a line longer than
+// kLongestMessage, "..." replaces the middle. UTF-8 characters are not split. A text that breaks no
+// limit and has no control characters is returned unchanged.
 std::string as_message(std::string_view text);
 
 }  // namespace axial

@@ -12,17 +12,19 @@
 
 namespace axial {
 
+// One such option.
 struct NotBuilt {
-  const char* name;
+  const char* name;                   // as in Option::name (base/option_list.h)
   std::string value;                  // the default; after parsing, the value that the user gave
   std::vector<std::string> accepted;  // all spellings of the default
 };
 
-// Declares `options`, which must exist until parse_options() has returned.
+// Adds `options` to `list`. --help says that they are not built yet. `options` must exist until
+// parse_options() (base/program.h) has returned.
 void declare_not_built(OptionList& list, std::span<NotBuilt> options);
 
-// Throws an Error that names the option and the value if an option has a value that is not
-// accepted.
+// Call this function after parse_options(). Throws an Error that names the option and the value if
+// the user gave an option a value that is not in `accepted`.
 void refuse_not_built(std::span<const NotBuilt> options);
 
 }  // namespace axial

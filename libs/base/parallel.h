@@ -12,10 +12,11 @@ namespace axial {
 
 // Calls body(i) for every i in [0, count), in any order, on any thread. Returns when all calls have
 // returned. If calls throw, one of the exceptions is rethrown to the caller, and items that have
-// not begun may be left out (FirstError always rethrows the same exception). `grain`: the largest
-// number of consecutive items that a thread takes at once. If loops are nested, a thread that waits
-// for the end of the inner loop does not begin another item of the outer loop. So no thread holds
-// the memory of two items of the outer loop.
+// not begun may be left out. Which exception is rethrown can differ from run to run; FirstError
+// (base/first_error.h) avoids this. `grain`: the largest number of consecutive items that a thread
+// takes at once, at least 1. If loops are nested, a thread that waits for the end of the inner loop
+// does not begin another item of the outer loop. So no thread holds the memory of two items of the
+// outer loop.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body,
                   std::size_t grain = 1);
 
@@ -30,10 +31,11 @@ inline constexpr std::size_t kPointGrain = 1024;
 void for_each_in_flight(std::size_t count, std::size_t in_flight,
                         const std::function<void(std::size_t)>& body);
 
-// The number of threads that parallel loops may use now.
+// The largest number of threads that parallel loops use now, including the calling thread.
 std::size_t thread_count();
 
-// Limits all parallel loops to `threads` threads (0: as many as cores) while the object exists.
+// Limits all parallel loops of the process to `threads` threads while the object exists. 0: as many
+// threads as the process may use cores. If several objects exist, the lowest limit holds.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads);

@@ -10,8 +10,9 @@
 
 namespace axial {
 
-// Returns the number that the whole token represents; a leading "+" is allowed. Empty if the token
-// is not a number or if the number does not fit into T.
+// Returns the decimal number that the whole token represents, as std::from_chars reads it; a
+// leading "+" is allowed, blanks are not. Empty if the token is not a number or if the number does
+// not fit into T. For floating-point T, "inf" and "nan" are numbers.
 template <class T>
 std::optional<T> parse_number(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
@@ -22,7 +23,7 @@ std::optional<T> parse_number(std::string_view token) {
   return value;
 }
 
-// As parse_number(), but also empty for infinities and NaN.
+// Returns parse_number() of the token, but empty for infinities and NaN.
 template <class T>
 std::optional<T> parse_finite(std::string_view token) {
   const std::optional<T> value = parse_number<T>(token);

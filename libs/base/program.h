@@ -12,35 +12,39 @@
 
 namespace axial {
 
-// Values of the options that are common to all programs. parse_options() fills them.
+// Values of the options that are common to all programs. parse_options() fills them, and applies
+// `log_file`, `process_priority` and `verbosity`. The program itself must apply `max_threads`
+// (ThreadLimit in base/parallel.h).
 struct CommonOptions {
   std::filesystem::path working_folder;  // absolute; relative paths start here
-  std::string config_file;
-  std::string log_file;  // empty: no log file
-  int archive_type = -1;
-  int process_priority = -1;
-  unsigned max_threads = 0;
+  std::string config_file;    // as the user gave it; a relative path starts at `working_folder`
+  std::string log_file;       // as the user gave it; empty: no log file
+  int archive_type = -1;      // the scene format; always -1 (interchange .mvs) after parsing
+  int process_priority = -1;  // below 0: the process gets a lower priority; else: no change
+  unsigned max_threads = 0;   // 0: as many as cores; at most 1024
   // The lowest log level that is written. 0: warning, 1: info (results of stages), 2: debug
-  // (progress), 3: trace (details).
+  // (progress), 3: trace (details). Values below 0 count as 0, values above 3 as 3.
   int verbosity = 2;
 };
 
+// What parse_options() must know of a program.
 struct ProgramOptions {
   std::string name;         // "DensifyPointCloud": log tag and default cfg name
   std::string description;  // one line for --help
   // Options of this program, allowed on the command line and in the cfg file.
   OptionList visible{"Options"};
-  OptionList hidden{"Hidden options"};
+  OptionList hidden{"Hidden options"};  // like `visible`, but not in --help
   // Text that --help appends to "3 and above: also details". It has the form ", ..." and names the
   // output that this program adds at -v 3 and above.
   std::string when_verbose = "";
   std::string version = "";  // the line that --version prints (base/version.h)
 };
 
+// The result of parse_options().
 struct ParsedOptions {
   CommonOptions common;
-  std::set<std::string> given;  // full names of the options on the command line or in the cfg
-  bool run = false;             // false: there is nothing to do, exit with exit_code
+  std::set<std::string> given;  // long names of the options on the command line or in the cfg file
+  bool run = false;             // false: the program must do nothing more and exit with exit_code
   int exit_code = 0;
 };
 
@@ -52,14 +56,17 @@ struct ParsedOptions {
 //     positional arguments.
 //   - The cfg file (default `<name>.cfg` in the working folder) gives values for options that are
 //     absent from the command line.
-// Prints the version and returns with run = false and exit code 0 after --version. Prints the help
-// and returns with run = false in two cases: after -h with exit code 0, and with exit code 1 if the
-// program declares --input-file but the option is absent. (Without input OpenMVS exits with 1 in
-// both cases.) Throws an Error for an unknown option, a malformed value, a missing value, or an
-// unusable working folder or cfg file.
+// The result has `run` = false in three cases:
+//   - --version is given: prints the version. The exit code is 0.
+//   - -h is given: prints the help. The exit code is 0. (OpenMVS's programs exit with 1 if
+//     --input-file is absent, even after -h.)
+//   - The program declares --input-file, but the option is absent: prints the help. The exit code
+//     is 1.
+// Throws an Error for an unknown option, a malformed value, a missing value, a value out of range,
+// or an unusable working folder, cfg file or log file.
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program);
 
-// True if the user gave the option with the full name `name` on the command line or in the cfg
+// True if the user gave the option with the long name `name` on the command line or in the cfg
 // file.
 bool given(const ParsedOptions& parsed, const std::string& name);
 
@@ -67,9 +74,11 @@ bool given(const ParsedOptions& parsed, const std::string& name);
 // stays empty.
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
 
-// Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns the result of
-// `body`. An exception from `body` becomes one line on standard error (base/message.h), and the
-// result is 1. A program that links this function also opens closed standard streams when it starts
+// Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns its result,
+// the exit code. If `body` throws a std::exception, run_program() writes one line to standard error
+// and to the log file, and returns 1. The line is "NAME: out of memory" if memory ran out,
+// otherwise "NAME: " and the exception's message (base/message.h).
+// A program that links this function also opens closed standard streams when it starts
 // (base/standard_streams.h), and reports uncaught exceptions (base/out_of_memory.h).
 int run_program(const std::string& name, const std::function<int()>& body);
 

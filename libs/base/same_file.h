@@ -9,14 +9,16 @@
 namespace axial {
 
 // Throws an Error that names `setting`, `output` and the input if `output` exists and is one of
-// `inputs`. Files are compared by device and inode, so that a link to an input counts as the input.
-// Empty paths and inputs that do not exist are ignored. If an input is a folder, only the folder
-// itself is compared, and not the files in it.
+// `inputs`. `setting`: the option or parameter that gave `output`, for the message. Files are
+// compared by device and inode, so that a link to an input counts as the input. Empty paths and
+// inputs that do not exist are ignored. If an input is a folder, only the folder itself is
+// compared, and not the files in it.
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting);
 
-// Calls require_not_an_input() for each of `outputs`.
+// Does the same for each of `outputs`, in their order: throws the Error for the first one that is
+// an input.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
                        std::span<const std::filesystem::path> inputs, const std::string& setting);
 

@@ -19,6 +19,7 @@ inline std::string own_name(std::string_view setting) {
   return std::string(setting);
 }
 
+// An entry of the table of name_in(): messages call `setting` by `name`.
 struct SettingName {
   std::string_view setting, name;
 };

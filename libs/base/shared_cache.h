@@ -13,11 +13,11 @@
 
 namespace axial {
 
-// Keeps the `capacity` most recently requested values. A value that is in use outside the cache is
-// not evicted, because its eviction would free no memory. The cache can therefore exceed
-// `capacity`. Thread-safe: if several threads request a value at the same time, one thread makes
-// the value and the others wait. An exception from `make` reaches all waiting threads. The next
-// request calls `make` again.
+// Keeps the `capacity` most recently requested values (at least one). A value that is in use
+// outside the cache is not evicted, because its eviction would free no memory. The cache can
+// therefore exceed `capacity`. Thread-safe: if several threads request a value at the same time,
+// one thread makes the value and the others wait. An exception from `make` reaches all waiting
+// threads. The next request calls `make` again.
 template <class Value>
 class SharedCache {
  public:
@@ -26,7 +26,8 @@ class SharedCache {
 
   SharedCache(Make make, std::size_t capacity) : make_(std::move(make)), capacity_(capacity) {}
 
-  // The value of `key`. Calls make(key) if the value is not in the cache.
+  // The value of `key`, never null. Calls make(key) if the value is not in the cache. make(key) may
+  // request other keys, but not `key` itself.
   Pointer get(std::size_t key) {
     std::promise<Pointer> promise;
     if (const auto made = enter(key, promise); made.valid()) return made.get();

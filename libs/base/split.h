@@ -7,8 +7,8 @@
 namespace axial {
 
 // Returns the words of `text`, which are separated by `separator`. With the separator ',' the text
-// "1,2," has the words "1", "2" and "". An empty text has no words. The words refer to the
-// characters of `text`.
+// "1,2," has the words "1", "2" and "". An empty text has no words. The words are views into the
+// characters of `text`, which must exist as long as the words.
 inline std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> words;
   if (text.empty()) return words;

@@ -12,19 +12,21 @@ namespace axial {
 // Reports unused input. If unused input is allowed, a report is a warning, otherwise an error.
 class UnusedInput {
  public:
-  // Adds the option --allow-missing to `list`, bound to `allowed`. `allowed` must exist until the
-  // options have been parsed.
+  // Adds the option --allow-missing to `list`, bound to `allowed`, whose present value is the
+  // default. `allowed` must exist until the options have been parsed.
   static void declare(OptionList& list, bool& allowed);
 
-  // The constructor for a program that has the option --allow-missing.
+  // The constructor for a program that has the option --allow-missing. `allowed`: its value.
   explicit UnusedInput(bool allowed);
 
-  // The constructor for a library. `setting` is the name of the setting that allows unused input.
+  // The constructor for a library. `setting`: the words by which an error calls the setting that
+  // allows unused input.
   UnusedInput(bool allowed, std::string setting);
 
   // Reports one unused input. `line` names the setting, the input and the reason. If unused input
-  // is allowed, logs a warning that begins with `line`, and keeps `line`. Otherwise throws an Error
-  // whose message begins with `line`.
+  // is allowed, logs a warning that begins with `line`, and keeps `line` for lines(). Otherwise
+  // throws an Error whose message begins with `line` and names the setting that allows unused
+  // input.
   void report(const std::string& line);
 
   // The lines that were reported as warnings, in the order of the reports.

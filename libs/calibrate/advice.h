@@ -14,42 +14,52 @@
 
 namespace axial::calibrate {
 
-// The largest acceptable standard deviations of the numbers in housing_change.h.
+// The largest acceptable standard deviations of the free numbers of a camera
+// (pose/housing_change.h). The focal length has no limit.
 struct Limits {
-  double normal = 0.1 * std::numbers::pi / 180;  // [rad]
-  double place = 0.001;                          // a flat port's distance, a dome's centre [m]
-  double index = 0.005;
-  double thickness = 0.002;  // [m]
+  double normal = 0.1 * std::numbers::pi / 180;  // tilts of a flat port's normal [rad]
+  double place = 0.001;      // a flat port's distance; a coordinate of a dome's centre [m]
+  double index = 0.005;      // refractive index of the water
+  double thickness = 0.002;  // of the glass [m]
 };
 
-// Returns the gaps of the photographs as texts. Each text continues the sentence "no photograph
-// shows". A gap is one of three: no corners near an edge of the image, no tilted board, or no
-// second distance. Empty if there is no gap.
+// Returns the gaps of the photographs as texts that continue the sentence "no photograph shows".
+// Empty if there is no gap. Three kinds of gaps are found, in this order:
+// - All corners are farther from an edge of the image than 15 % of its width (left, right) or
+//   height (upper, lower). Each such edge is a gap.
+// - No board is tilted by 20 degrees or more (BoardPlace).
+// - The farthest board is less than 1.3 times as far away as the nearest one.
+// Corners that calibrate() dropped do not count.
 std::vector<std::string> gaps(const Calibration& calibration);
 
+// A photograph to take, and what it would achieve.
 struct NextPhotograph {
   PlacedBoard board;
-  pose::HousingChange<double> sigmas;  // standard deviations with this photograph added
+  // The expected standard deviations of the numbers of the camera, with this photograph added, in
+  // the units of pose/housing_change.h. 0 for a number that is not free.
+  pose::HousingChange<double> sigmas;
 };
 
 // Returns the most useful next photograph. The candidates are placed_boards() (placed_board.h). Let
-// the ratio of a number be its standard deviation with the candidate added, divided by the limit of
-// the number. The result is the candidate with the smallest largest ratio. No candidate is closer
-// than 0.8 times the distance of the nearest board in the photographs, because a closer board may
-// be out of focus. Empty if no candidate fits into the image, or if no candidate gives a finite
-// largest ratio.
+// the ratio of a free number be its standard deviation with the candidate added, divided by the
+// limit of the number. The result is the candidate whose largest ratio is the smallest. The noise
+// of corners is the observed one, but at least 0.1 px. No candidate is closer than 0.8 times the
+// distance of the nearest board in the photographs, because a closer board may be out of focus.
+// Empty if no candidate fits into the image, or if no candidate gives a finite largest ratio.
 std::optional<NextPhotograph> next_photograph(const Calibration& calibration, const Limits& limits);
 
-// Throws an Error if a number has a standard deviation above its limit. The message names the
-// number with the largest ratio of standard deviation and limit, its standard deviation, the gaps
-// of the photographs, and the next photograph to take.
+// Throws an Error if a free number has a standard deviation above its limit. The message names the
+// number with the largest ratio of standard deviation and limit, its standard deviation and its
+// limit, the gaps of the photographs, and the next photograph to take.
 void require_known(const Calibration& calibration, const Limits& limits);
 
-// The place of the board in one image of a bundle.
+// The place of the board relative to the camera in one image.
 struct BoardPlace {
-  double distance = 0;      // from the camera to the board's middle [m]
-  double tilt_degrees = 0;  // angle between the board and the image plane
+  double distance = 0;      // from the camera's centre to the mean of the board's corners [m]
+  double tilt_degrees = 0;  // angle between the board and the image plane, from 0 to 90
 };
+// Returns the place of the board in the image with the index `image` in bundle.images. `bundle`: a
+// bundle of board_bundle() (board_bundle.h) with known poses.
 BoardPlace board_place(const pose::Bundle& bundle, std::size_t image);
 
 }  // namespace axial::calibrate

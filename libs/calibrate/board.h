@@ -11,38 +11,49 @@ namespace axial::calibrate {
 
 enum class BoardKind { checkerboard, charuco, apriltags };
 
-// A target. Lengths are in metres. Its corners lie in the plane z = 0.
+// A target. Its corners lie in the plane z = 0 of its own frame, in which x grows along a row and y
+// from row to row (see corners_of()).
 struct Board {
   BoardKind kind = BoardKind::checkerboard;
-  // Checkerboard: inner corners. ChArUco: squares. AprilTags: tags.
+  // Checkerboard: numbers of inner corners. ChArUco: of squares. AprilTags: of tags.
   int columns = 0, rows = 0;
-  double size = 0;         // side of a square, or of a tag with its black border [m]
-  double second = 0;       // ChArUco: side of a marker. AprilTags: gap between tags [m]
-  std::string dictionary;  // OpenCV's name of the set of markers: "4X4_50", "APRILTAG_36h11"
+  double size = 0;    // side of a square, or of a tag with its black border [m]
+  double second = 0;  // ChArUco: side of a marker. AprilTags: gap between tags [m]. Checkerboard: 0
+  // OpenCV's name of the set of markers: "4X4_50", "APRILTAG_36h11". Checkerboard: empty.
+  std::string dictionary;
 };
 
-// Reads a board from a text of one of these forms, with lengths in metres:
+// Reads a board from a text of one of these forms:
 //
 //     checkerboard:COLUMNSxROWS:SQUARE                     inner corners
 //     charuco:COLUMNSxROWS:SQUARE:MARKER[:DICTIONARY]      squares; default 4X4_50
 //     apriltags:COLUMNSxROWS:TAG:GAP[:DICTIONARY]          tags; default APRILTAG_36h11
 //
-// Markers are numbered from 0, row by row. If `text` has none of these forms, throws an Error that
-// contains `text` and the reason.
+// COLUMNS and ROWS are from 3 to 100 (tags: from 1 to 100). Lengths are in metres, above 0 and at
+// most 10. MARKER must be smaller than SQUARE. The dictionary must have enough markers, which are
+// numbered from 0, row by row. If `text` does not comply, throws an Error that contains `text` and
+// the reason.
 Board parse_board(const std::string& text);
 
-// All corners [m], in the order of their numbers. ChArUco: the inner corners of the squares.
-// AprilTags: the four corners of each tag.
+// All corners [m] in the frame of the board. The index of a corner is its Corner::number.
+// Precondition: `board` is a result of parse_board().
+// - Checkerboard: the inner corners, row by row. The first is the origin.
+// - ChArUco: the inner corners of the squares, row by row. The first is (size, size, 0).
+// - AprilTags: the four corners of each tag, around the tag; the tags row by row. The first corner
+//   of the first tag is the origin, the second is (size, 0, 0), the third is (size, size, 0).
 std::vector<Eigen::Vector3d> corners_of(const Board& board);
 
-// One corner in a photograph. The centres of pixels have integer coordinates.
+// One corner of a board in a photograph.
 struct Corner {
-  std::size_t number = 0;
+  std::size_t number = 0;  // index into corners_of()
+  // In pixels of the photograph, whose centres have integer coordinates.
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 
-// Returns the corners in a photograph, to fractions of a pixel. Empty if no board is found. A
-// checkerboard must be visible completely. The other boards may be visible in part.
+// Returns the corners in a grey photograph, to fractions of a pixel, in any order. Empty if no
+// board is found. All corners of a checkerboard must be visible. The other boards may be visible in
+// part; the result then has the visible corners. Precondition: `board` is a result of
+// parse_board().
 std::vector<Corner> find_corners(const cv::Mat1b& photograph, const Board& board);
 
 }  // namespace axial::calibrate

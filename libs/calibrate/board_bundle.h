@@ -14,21 +14,23 @@ namespace axial::calibrate {
 
 // One photograph and the board's corners in it.
 struct View {
-  std::string image;
+  std::string image;  // the name of the photograph, in messages and lists
   std::vector<Corner> corners;
 };
 
-// Returns a bundle with one camera behind `port` and the views as its images. The points of the
-// bundle are `corners` [m], in the order of their numbers. The frame of the board is the world
-// frame. `poses`: the poses of the images, or empty if they are unknown. The `source` of an
-// observation is the index of the corner within its view.
+// Returns a bundle with one camera, `lens` behind `port`. The images of the bundle are the views,
+// in their order. The points of the bundle are `corners` [m], in the order of their numbers: every
+// Corner::number of `views` must be below their count. The frame of the board is the world frame.
+// `poses`: the poses of the images, one for each view, or empty if they are unknown. The `source`
+// of an observation is the index of the corner in View::corners.
 pose::ColmapBundle board_bundle(const io::ColmapCamera& lens, const refractive::Port<double>& port,
                                 std::span<const View> views,
                                 std::span<const Eigen::Vector3d> corners,
                                 std::span<const Pose> poses = {});
 
-// Projects `corners` [m] into the camera of `bundle` at `pose`. Returns the corners that the camera
-// sees at least one pixel inside the edges of the photograph, in pixels of the photograph.
+// Projects `corners` [m, world frame] into the first camera of `bundle` at `pose`. Returns the
+// corners whose image lies at least one pixel inside the edges of the photograph, in the order of
+// `corners`. Corner::number is the index into `corners`.
 std::vector<Corner> photographed(const pose::ColmapBundle& bundle,
                                  std::span<const Eigen::Vector3d> corners, const Pose& pose);
 

@@ -9,11 +9,13 @@
 
 namespace axial::calibrate {
 
-// Throws an Error that starts with `where` if OpenCV does not have the dictionary of `board`, or if
-// the dictionary has too few markers for `board`.
+// Precondition: `board` is a ChArUco board or a board of AprilTags. Throws an Error that starts
+// with `where` if OpenCV does not have the dictionary of `board`, or if the dictionary has too few
+// markers for `board`.
 void check_markers(const Board& board, const std::string& where);
 
-// The same as corners_of() and find_corners() (board.h), for ChArUco and AprilTags.
+// Return what corners_of() and find_corners() (board.h) return for a ChArUco board or a board of
+// AprilTags. Precondition: check_markers() accepts `board`.
 std::vector<Eigen::Vector3d> marker_board_corners(const Board& board);
 std::vector<Corner> find_marker_corners(const cv::Mat1b& photograph, const Board& board);
 

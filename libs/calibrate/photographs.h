@@ -14,16 +14,20 @@
 namespace axial::calibrate {
 
 // Returns the photographs of `input`, in the order of `input`. A path of a file is returned as it
-// is, whatever its extension. A folder is replaced by its files with the extension of an image, in
-// the order of their names. Throws an Error for a path that does not exist, and for a folder
-// without photographs.
+// is, whatever its extension. A folder is replaced by its files (not those of its subfolders) with
+// the extension .jpg, .jpeg, .png, .tif, .tiff or .bmp in upper or lower case, in the order of
+// their names. Throws an Error for a path that does not exist, and for a folder without
+// photographs.
 std::vector<std::filesystem::path> photographs_in(std::span<const std::filesystem::path> input);
 
 // Finds the corners of the board in every photograph. Returns one view per photograph, in the order
-// of `photographs`. A view has the name of the photograph's file, and no corners if the board is
-// not found. Throws an Error that names the first photograph that cannot be read or differs in size
-// from the lens. `bit_depth`, and `bit_depth_name`, its name in messages: as for
-// io::common_bit_depth.
+// of `photographs`. A view has the name of the photograph's file, without its folder. It has no
+// corners if the board is not found. Corners are not sought in transparent pixels.
+// Throws an Error that names a photograph that cannot be read or differs in size from `lens`. If
+// there are several such photographs, it is the same one for any number of threads.
+// `bit_depth`: the number of bits, from 8 to 16, that the values of 16-bit photographs use. 0: as
+// many bits as the largest value in all photographs needs, but at least 8 (io::common_bit_depth).
+// Messages call this number `bit_depth_name`.
 std::vector<View> find_views(std::span<const std::filesystem::path> photographs, const Board& board,
                              const io::ColmapCamera& lens, int bit_depth = 0,
                              const std::string& bit_depth_name = "bit_depth");

@@ -5,8 +5,9 @@
 
 namespace axial::cloud {
 
-// Removes the points outside `region`, which is in the frame of the cloud. The other points keep
-// their order and attributes. Returns the number of removed points.
+// Removes the points outside `region`, which is in the frame of the cloud. Points on the surface of
+// the region stay. The other points keep their order and attributes. Returns the number of removed
+// points.
 std::size_t crop(PointCloud& cloud, const OrientedBox& region);
 
 }  // namespace axial::cloud

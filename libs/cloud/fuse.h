@@ -20,13 +20,13 @@ namespace axial::cloud {
 // One image that has a depth map.
 struct FusionView {
   std::uint32_t image = 0;  // index into Scene::images
-  // Images whose pixels may support the points of this view, best first: the result of
-  // filter_neighbours (scene/view_selection.h). Images that have no FusionView of their own are
-  // ignored.
+  // Indices into Scene::images of the images whose pixels may support the points of this view, best
+  // first: the result of filter_neighbours() (scene/view_selection.h). Images that have no
+  // FusionView of their own, `image` itself and repetitions are ignored.
   std::vector<std::uint32_t> neighbours;
   // Views are fused in decreasing order of rank. Views of equal rank are fused in the order of
   // `image`. The caller sets the rank to the number of neighbours of the image before
-  // filter_neighbours.
+  // filter_neighbours().
   std::size_t rank = 0;
 };
 
@@ -35,31 +35,34 @@ struct FusionView {
 // first needs it. It is loaded again only if FuseOptions::max_maps is so small that its map had to
 // be freed.
 struct FusionProviders {
+  // Returns the depth map of the image. Must not be empty.
   std::function<DepthMap(std::size_t image)> load_map;
-  // Returns the image in B G R at the depth map's size. If the function is empty, the cloud has no
-  // colours.
+  // Returns the image in B G R at the depth map's size. If the function itself is empty, the cloud
+  // has no colours.
   std::function<cv::Mat3b(std::size_t image)> load_color;
 };
 
+// Settings of fuse(), whose comment explains the tests.
 struct FuseOptions {
   // The number of images that must agree on a point. The image whose pixel gives the point counts
   // as one of them. A value above the number of views is reduced to the number of views. With a
   // value below 2 the maps are merged without tests: every valid pixel becomes a point with one
   // view.
   std::size_t min_views = 3;
-  // Accepts a point on which only two images agree, if no other image disagrees and the point lies
-  // in a piece of surface of both maps (see fuse). Has no effect for min_views up to 2.
+  // Also accepts a point on which only two images agree, if no other image disagrees and the point
+  // lies in a piece of surface of both maps (see fuse()). Has no effect for min_views up to 2.
   bool two_if_undisputed = true;
-  // Depths agree if their difference is below this fraction of the point's depth. Both are measured
-  // along the neighbour's ray.
+  // Depths agree if their difference is below this fraction of the point's depth. Both depths are
+  // measured along the ray of the neighbour, the image that is compared.
   double depth_threshold = 0.005;
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // largest angle that agrees [rad]
   bool normals = true;                                        // fill PointCloud::normals
   bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
 
-  // Limits of memory (see bytes_needed). The cloud does not depend on them. max_maps: the number of
-  // maps in memory at the same time. A view and its neighbours are always in memory together, even
-  // if they are more than max_maps. max_loads: the number of simultaneous calls of the providers.
+  // Limits of memory (see bytes_needed()). The cloud does not depend on them.
+  // max_maps: the number of maps in memory at the same time. A view and its neighbours are always
+  // in memory together, even if they are more than max_maps.
+  // max_loads: the number of simultaneous calls of the providers. 0 counts as 1.
   std::size_t max_maps = std::numeric_limits<std::size_t>::max();
   std::size_t max_loads = 1;
 };
@@ -68,7 +71,8 @@ struct FuseOptions {
 // view_begin of an empty `cloud` is {0}.
 void append(PointCloud& cloud, const PointCloud& portion);
 
-// Receives the next points of a cloud.
+// Receives the next points of a cloud, at least one. PointCloud::view_begin of each portion starts
+// at 0. Called in the thread that called fuse().
 using CloudSink = std::function<void(PointCloud portion)>;
 
 // Fuses the depth maps of `views` and passes the cloud to `sink` in portions. The views are
@@ -78,10 +82,11 @@ using CloudSink = std::function<void(PointCloud portion)>;
 // * The point of the pixel is projected into each neighbour of the view and compared with the
 //   nearest pixel there. The depth agrees if it differs by less than depth_threshold times the
 //   depth of the point, and the normal agrees within normal_threshold. The neighbour agrees if both
-//   agree. The neighbour disagrees if its depth is larger, so that it sees through the point, or if
-//   its depth agrees and its normal differs. The neighbour is neutral in all other cases: the point
-//   is outside its image, its map has no depth there, or its depth is smaller, so that the point is
-//   hidden behind its surface.
+//   agree. The neighbour disagrees in two cases: its depth does not agree and is larger, so that it
+//   sees through the point, or its depth agrees and its normal does not. The neighbour is neutral
+//   in all other cases: the point is outside the neighbour's image, the neighbour's map has no
+//   depth there, or its depth does not agree and is smaller, so that a nearer surface hides the
+//   point.
 // * The point is accepted if min_views images agree. The view itself counts as one image. A
 //   neighbour counts if it agrees and its pixel is not used yet. With `two_if_undisputed` one
 //   neighbour that counts is enough under three conditions: no neighbour disagrees, the pixel lies
@@ -100,34 +105,36 @@ using CloudSink = std::function<void(PointCloud portion)>;
 // So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
 // image) are always filled. A map without normals gets normals from its depths
 // (estimate_map_normals). A pixel without a normal passes every normal test. The cloud is identical
-// for any number of threads. The memory is that of the maps, and one bit per pixel for each view
-// that is still needed. Throws an Error in these cases: a view's image is not in the scene or is
-// given twice, a depth map or a loaded image is empty, or the camera, the normals, the confidences
-// or the image of a map do not have the size of its depths.
+// for any number of threads. `progress` counts the views that have enough neighbours for a point.
+// The memory is that of the maps, and one bit per pixel for each view that is still needed. Throws
+// an Error in these cases: a view's image is not in the scene or is given twice, a depth map or a
+// loaded image is empty, or the camera, the normals, the confidences or the image of a map do not
+// have the size of its depths.
 void fuse(const Scene& scene, std::span<const FusionView> views, const FusionProviders& providers,
           const FuseOptions& options, const CloudSink& sink, const ProgressSink& progress = {});
 
-// The same, but returns the whole cloud.
+// Fuses the depth maps as above, but returns the whole cloud.
 PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options = {},
                 const ProgressSink& progress = {});
 
-// The sizes on which the memory of fusion depends.
+// The sizes on which the memory of fuse() depends.
 struct FusionSize {
   std::uint64_t pixels = 0;  // number of pixels of the largest map
-  std::uint64_t views = 0;
-  std::uint64_t maps = 0;  // number of maps in memory at the same time (FuseOptions::max_maps)
-  bool colors = false;
+  std::uint64_t views = 0;   // number of FusionViews
+  std::uint64_t maps = 0;    // number of maps in memory at the same time (FuseOptions::max_maps)
+  bool colors = false;       // whether FusionProviders::load_color is given
 };
 
 // An upper bound of the memory [bytes] that fuse() holds. The portions of the cloud and the memory
 // that the providers need while they load are not included.
 std::uint64_t bytes_needed(const FusionSize& size);
 
-// Estimates the normals of a map from the back-projected points in the 3x3 neighbourhood of each
-// pixel. A neighbour counts if its depth differs from the depth of the pixel by less than 3 %. At
-// least 3 neighbours must count. The normals have unit length, are in the camera frame and face the
-// camera. The normal is 0 where there is no depth or where the estimation fails.
+// Returns the normals of a map, estimated from the back-projected points in the 3x3 neighbourhood
+// of each pixel. A neighbour counts if its depth differs from that of the pixel by less than 3 %.
+// At least 3 neighbours must count. The normals have unit length, are in the camera frame and face
+// the camera. The normal is 0 where there is no depth or where the estimation fails. `map.normal`
+// is not used.
 cv::Mat3f estimate_map_normals(const DepthMap& map);
 
 }  // namespace axial::cloud

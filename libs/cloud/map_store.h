@@ -12,16 +12,18 @@
 
 namespace axial::cloud {
 
+// Holds the maps of fuse(). Not thread-safe.
 class MapStore {
  public:
   struct Limits {
-    std::size_t maps;   // maps in memory at the same time, but never fewer than a step needs
-    std::size_t loads;  // calls of `load` at the same time
+    std::size_t maps;   // maps in memory at the same time; more if a single step needs more
+    std::size_t loads;  // calls of `load` at the same time; 0 counts as 1
   };
   using Load = std::function<FusionMap(std::size_t slot)>;
 
   // Step i needs the maps of the slots needed[i]. `slots`: the number of slots. `load` makes the
-  // map of a slot. Precondition: the slots of a step are below `slots` and differ from each other.
+  // map of a slot; its exceptions reach the caller of begin_step(). Precondition: the slots of a
+  // step are below `slots` and differ from each other.
   MapStore(std::vector<std::vector<std::size_t>> needed, std::size_t slots, Limits limits,
            Load load);
 
@@ -30,10 +32,11 @@ class MapStore {
   // order.
   void begin_step(std::size_t step);
 
-  // Removes the maps that no later step needs.
+  // Ends the step. Removes the maps that no later step needs.
   void end_step(std::size_t step);
 
-  // Precondition: the current step needs the map.
+  // The map of a slot. Precondition: the current step, between begin_step() and end_step(), needs
+  // it. The reference is valid until end_step().
   const FusionMap& map(std::size_t slot) const { return *maps_[slot]; }
 
   // Whether a step that has not ended needs the map.

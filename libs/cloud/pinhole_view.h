@@ -9,6 +9,7 @@
 
 namespace axial::cloud {
 
+// The pinhole that replaces another camera.
 struct PinholeView {
   CameraModel camera;  // no port, no distortion
   // The pinhole's centre [m] in the frame of the camera that the pinhole replaces. The axes of both
@@ -16,7 +17,7 @@ struct PinholeView {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   bool whole = true;  // the pinhole's image shows everything that the other camera sees
 
-  // The same view with an image of another size [px].
+  // The same view with an image of another size [px]. The field of view stays.
   PinholeView resized(int width, int height) const;
 
   // The pose of the pinhole. `of_camera`: the pose of the camera that the pinhole replaces.

@@ -27,11 +27,12 @@ struct PointSupport {
 // camera centre (error of their direction behind a port: below one degree).
 class SupportCamera {
  public:
+  // `model`: the camera of a depth map at the map's resolution. `pose`: its pose.
   SupportCamera(const CameraModel& model, const Pose& pose);
 
-  // The support of the map's pixel (x, y), whose number `pixel` is y * width + x. `depth` [m] must
-  // be above 0. `cost`: PointSupport::cost. `point`: the back-projected point of the pixel [m], in
-  // the world frame.
+  // The support of the pixel with the number `pixel`, y * width + x. `depth`: of the pixel along
+  // its ray [m], above 0. `cost`: PointSupport::cost. `point`: the back-projected point of the
+  // pixel [m], in the world frame.
   PointSupport support(std::uint32_t pixel, double depth, double cost,
                        const Eigen::Vector3d& point) const;
 
@@ -52,24 +53,27 @@ struct Surroundings {
   // The deviation is large where there is little texture. 0: unknown.
   double noise = 0;
 };
-// Measures the surroundings of `pixel`. `reduction`: the width of the photograph divided by the
-// width of the map. The noise is unknown for a map without colours.
+// Measures the surroundings of the pixel with the number `pixel`, y * width + x. `reduction`: the
+// width of the photograph divided by the width of the map. The noise is unknown for a map without
+// colours.
 Surroundings surroundings(const FusionMap& map, std::uint32_t pixel, double reduction);
 
-// The standard deviation of a triangulated point along the unit vector `normal` [m], for errors of
-// 1 px. Each support contributes one pixel to the triangulation. The two coordinates of each pixel
-// have independent errors with a standard deviation of 1 px. The result is never larger than the
-// mean depth [m] of the supports, even for parallel rays.
+// The standard deviation [m], along the unit vector `normal` (world frame), of the point that is
+// triangulated from the supports. Each support contributes one pixel to the triangulation. The two
+// coordinates of each pixel have independent errors with a standard deviation of 1 px. The result
+// is never larger than the mean depth [m] of the supports, even for parallel rays. Precondition:
+// there is at least one support.
 double triangulated_error(std::span<const PointSupport> supports, const Eigen::Vector3d& normal);
 
+// The result of expected_error().
 struct PointError {
   float error = 0;       // standard deviation of the distance to the true surface [m]; 0: unknown
-  float confidence = 0;  // probability that the distance is at most 3 errors
+  float confidence = 0;  // probability that the distance is at most 3 errors; 0: unknown
 };
 
 // The expected error of a point that is the mean of the supports' points, on a surface with the
-// unit normal `normal`. `around`: the surroundings of the point in the map of the first support.
-// The variance is the sum of three parts:
+// unit normal `normal` (world frame). `around`: the surroundings of the point in the map of the
+// first support. The variance is the sum of three parts:
 //
 // * Relief: matching fits planes to windows of several pixels. Relief that planes cannot follow
 //   raises the cost of even the best match and makes the normals of neighbouring pixels differ.

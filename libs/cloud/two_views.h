@@ -12,9 +12,9 @@
 
 namespace axial::cloud {
 
-// Returns the index of the first neighbour that agrees with the point of pixel `i`. Empty if no
-// neighbour agrees, or if any neighbour sees through the point or shows another normal there.
-// `answers[n][i]`: the answer of neighbour n for pixel `i` (fusion_map.h).
+// Returns the index of the first neighbour that agrees with the point of the asking pixel `i`.
+// Empty if no neighbour agrees, or if any neighbour sees through the point or shows another normal
+// there. `answers[n][i]`: the answer of neighbour n to asking pixel i (fusion_map.h).
 std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer>> answers,
                                               std::size_t i);
 
@@ -23,7 +23,8 @@ std::optional<std::size_t> undisputed_witness(std::span<const std::vector<Answer
 class SurfacePieces {
  public:
   // `max_distance`: the largest distance of a surrounding point from the pixel's tangent plane at
-  // which the point lies on the plane, divided by the pixel's depth. `map` must outlive the object.
+  // which the point lies on the plane, divided by the depth of the pixel. `map` must outlive the
+  // object.
   SurfacePieces(const FusionMap& map, float max_distance);
 
   // True if, of the eight pixels that are 2 px away from `pixel` in x, in y or in both, at least

@@ -13,9 +13,9 @@ namespace axial::cloud {
 
 // A view that is being fused.
 struct WorkingView {
-  std::uint32_t image;
-  const FusionMap* map;
-  std::vector<bool>* taken;  // per pixel: it supports a point already, or was discarded
+  std::uint32_t image;       // index into Scene::images
+  const FusionMap* map;      // must outlive ViewFusion
+  std::vector<bool>* taken;  // per pixel of the map: it supports a point already, or was discarded
   double reduction = 1;      // width of the photograph divided by the width of the map
 };
 
@@ -23,12 +23,12 @@ struct WorkingView {
 // accept() and points() in this order. Repeat until all pixels are processed.
 class ViewFusion {
  public:
-  // `views`: the reference view first, then its neighbours, best first.
+  // `views`: first the reference view, whose pixels become points, then its neighbours, best first.
   explicit ViewFusion(std::span<const WorkingView> views);
 
-  // Begins a step. Collects pixels of the reference view that have a depth and are not taken, from
-  // the pixel with the number `pixel` on. Returns the number of the pixel at which the next step
-  // begins. If no pixel is left, this is the number of pixels of the view.
+  // Begins a step. Collects some pixels of the reference view that have a depth and are not taken,
+  // from the pixel with the number `pixel` (y * width + x) on. Returns the number of the pixel at
+  // which the next step begins. If no pixel is left, this is the number of pixels of the view.
   std::size_t collect(std::size_t pixel);
 
   // Compares the collected pixels with the maps of all neighbours. Finds the collected pixels for
@@ -36,13 +36,15 @@ class ViewFusion {
   void compare(const FuseOptions& options);
 
   // Decides which collected pixels become points, and marks the pixels that support these points as
-  // taken. Also marks the pixels of neighbours that see through an accepted point. A point needs
-  // `min_views` supports, or two supports if two views are enough.
+  // taken. A point needs `min_views` supports (one is the collected pixel itself), or two supports
+  // if two views are enough. Also marks the pixels of neighbours that see through an accepted point
+  // as taken.
   void accept(std::size_t min_views);
 
-  std::size_t size() const { return begin_.size() - 1; }  // accepted points
+  std::size_t size() const { return begin_.size() - 1; }  // number of accepted points of this step
 
-  // The accepted points as means of their supports, with colours if the maps have colours.
+  // The accepted points of this step as means of their supports, with colours if the maps have
+  // colours. `options`: whether the cloud has normals, errors and confidences.
   PointCloud points(const FuseOptions& options) const;
 
  private:

@@ -13,26 +13,30 @@
 
 namespace axial::densify {
 
-// Keeps the points of `scene` for which `kept` returns true, in their order, with their normals and
-// colours.
+// Removes from `scene` the points for which kept(index in scene.points) returns false. The other
+// points keep their order, normals and colours. `kept` is called once for each point, in ascending
+// order.
 void keep_points(Scene& scene, const std::function<bool(std::size_t point)>& kept);
 
+// The result of export_cloud().
 struct WrittenCloud {
-  std::filesystem::path file;  // .ply
-  std::size_t points = 0;
+  std::filesystem::path file;  // the .ply file
+  std::size_t points = 0;      // number of points in the file
 };
 
-// Writes one cloud beside the output scene. Let <out> be the path of the output without its
-// extension. If the settings ask for several clouds, only the first in this list is written:
+// Writes one cloud beside the output scene. Let <out> be the path Settings::output without its
+// extension. The list begins with the field of Settings that asks for the cloud, and its value. If
+// the settings ask for several clouds, only the first in this list is written:
 //   filter_point_cloud T < 0   <out>_filtered.ply and .mvs: points whose visibility is above T
-//   export_number_views N      <out>_<|N|>views.ply, for N < 0 also .mvs: points that |N| images
+//   export_number_views N != 0 <out>_<|N|>views.ply, for N < 0 also .mvs: points that |N| images
 //                              or more see
 //   estimate_scale F > 0       <out>_scale.ply: all points with their sizes; a size is F times the
 //                              mean width of a pixel at the point (cloud::PointScale)
 // The visibility of a point is its value of cloud::visibility_of_points(). Clouds are in the frame
 // of placement_of() (fusion_stage.h). Beside a written .mvs file, its ports, lenses and offset are
-// written. `project`: the result of load_scene(). Error if the scene has no points, or if an output
-// is a file that was read.
+// written. `project`: the result of load_scene(). Precondition: only_exports() (settings.h). Throws
+// an Error if the scene has no points, if an output is a file that was read, or if an output cannot
+// be written.
 WrittenCloud export_cloud(Project project, const Settings& settings);
 
 }  // namespace axial::densify

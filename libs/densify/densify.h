@@ -10,6 +10,7 @@
 
 namespace axial::densify {
 
+// What a run has written.
 enum class Result {
   dense_cloud,     // depth maps, and the cloud fused from them
   sparse_cloud,    // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
@@ -17,13 +18,16 @@ enum class Result {
   neighbour_lists  // see neighbour_lists.h
 };
 
+// The result of densify().
 struct Report {
   Result result = Result::dense_cloud;
   std::filesystem::path cloud;  // file of the cloud that was written; empty: none
   std::size_t points = 0;       // number of points of this cloud
-  std::size_t depth_maps = 0;   // number of images whose depth map was made or used
-  // Whether no camera has a port or a distorted lens. Only then do OpenMVS's programs read the
-  // depth maps and the scene correctly.
+  // Number of images whose depth map was made or used; exports, lists: 0.
+  std::size_t depth_maps = 0;
+  // For dense_cloud and sparse_cloud: whether no camera has a port or a distorted lens. Only then
+  // do OpenMVS's programs read the depth maps and the scene correctly. Otherwise true, without a
+  // meaning.
   bool only_pinholes = true;
 };
 
@@ -39,8 +43,8 @@ struct Report {
 //   exceptions: the scene, one bit per pixel in fusion, and a cloud whose colours or normals are
 //   estimated from the whole cloud (estimate_colors or estimate_normals is 1). Such a cloud is
 //   kept in memory in addition to max_memory.
-// * Progress, results and warnings are logged (base/log.h). `observer` is called once, before
-//   views are selected. It is not called for a point export.
+// * Progress, results and warnings are logged (base/log.h). `observer`, unless it is empty, is
+//   called once, before views are selected. It is not called for a point export.
 // * Call densify() before other threads start, and make only one run at a time. The reason: the
 //   call makes all threads of the process share one heap (share_one_heap() in base/memory.h), also
 //   after the run.
@@ -52,7 +56,7 @@ struct Report {
 // - depth maps of other programs in the working folder, unless overwrite_dmaps is set or the run
 //   makes no maps,
 // - too little memory,
-// - a scene without usable views.
+// - a scene of which no image can get a depth map.
 // All this is checked before the first depth map is made. Precondition: each setting is in the
 // range that the setting's comment, or the comment of its type, names.
 Report densify(const Settings& settings, const SceneObserver& observer = {});

@@ -10,22 +10,27 @@
 
 namespace axial::densify {
 
-// depthNNNN.dmap in the working folder, where NNNN is the image's global id.
+// The path of the file of an image's final depth map: depthNNNN.dmap in the working folder, where
+// NNNN is the image's global id (View::id) with at least four digits. `image`: index into
+// Project::views. The file need not exist.
 std::filesystem::path depth_map_path(const Project& project, const Settings& settings,
                                      std::size_t image);
 
-// Makes the final depth map of every reference image. The stages are, in this order: photometric
-// matching, Settings::geometric_iterations geometric passes, and the adjust filter if
-// Settings::postprocess asks for it. The last stage before the adjust filter also removes
-// unconfirmed depths (depth/weak_texture.h), and then applies the speckle filter and the gap
-// filter, each if Settings::postprocess asks for it.
+// Makes the final depth map of every reference image (Project::references) and writes it to
+// depth_map_path(). The stages are, in this order: photometric matching,
+// Settings::geometric_iterations geometric passes, and the adjust filter if Settings::postprocess
+// asks for it. The last stage before the adjust filter also removes unconfirmed depths
+// (depth/weak_texture.h), and then applies the speckle filter and the gap filter, each if
+// Settings::postprocess asks for it.
 //
-// Every stage reads only complete files of the previous stage, so that a resumed run gives the
-// same bytes. A file is reused only if its side file (io/openmvs/dmap.h) has the fingerprint of
-// this run and the stage's name. The maps of the first stage, or the latest complete maps of a
-// resumed run, are checked for agreement (agreement_check.h). `plan` says how many images are
-// processed at a time. `existing`: the states of the final map files before the run. Files that are
-// not reused are overwritten, also files of other programs. So call check_overwriting() before.
+// Every stage reads only complete files of the previous stage, so that a resumed run gives the same
+// bytes. A file is reused only if its side file (io/openmvs/dmap.h) has the fingerprint of this run
+// and the stage's name. The maps of the first stage, or the latest complete maps of a resumed run,
+// are checked for agreement (agreement_check.h). `plan` says how many images are processed at a
+// time. `existing`: the states of the final map files before the run. `images`: the pixels. Files
+// that are not reused are overwritten, also files of other programs. So call check_overwriting()
+// (existing_maps.h) before. Throws an Error for an image that cannot be read and for a file that
+// cannot be written.
 void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, ImageStore& images);
 

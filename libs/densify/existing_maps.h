@@ -15,17 +15,20 @@ namespace axial::densify {
 // references have DmapOrigin::none.
 using ExistingMaps = std::vector<io::DmapStatus>;
 
+// Reads the map files of all references (Project::references), one after the other, and returns
+// their states.
 ExistingMaps find_existing_maps(const Project& project, const Settings& settings);
 
 // Whether the side file (io/openmvs/dmap.h) is used when a map of this origin is read. The side
 // file of a foreign map is ignored, because it may belong to an older map of this program.
 io::DmapSide side_to_read(io::DmapOrigin origin);
 
-// Reads the image's final map. The map has no normals if its file contains no normal other than
-// 0. `mask`: empty (no mask), or of the map's size. In a run that makes no maps
-// (Settings::make_maps), depth, normal and confidence are set to 0 where `mask` is zero. In a run
-// that makes maps, `mask` is not used, because these maps are masked already. The file is not
-// changed.
+// Reads the final map of the image with the index `image`. If all normals of the map are 0,
+// DepthMap::normal is empty. `maps`: the result of find_existing_maps(). `mask`: empty (no mask),
+// or of the map's size. In a run that makes no maps (Settings::make_maps is false), depth, normal
+// and confidence are set to 0 where `mask` is zero. In a run that makes maps, `mask` is not used,
+// because these maps are masked already. The file is not changed. Throws an Error if the file
+// cannot be read.
 DepthMap read_final_map(const Project& project, const Settings& settings, const ExistingMaps& maps,
                         std::size_t image, const cv::Mat1b& mask);
 
@@ -35,13 +38,15 @@ DepthMap read_final_map(const Project& project, const Settings& settings, const 
 void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps);
 
 // For runs that make no maps: removes images without a map from Project::references. Sets the
-// cameras of the kept images in Project::views to the resolution of their maps. Throws an Error
+// cameras of the kept images in Project::views to the resolution of their maps. Logs how many
+// images have a map, as a warning if some have none. Throws an Error
 // - if no reference has a map,
 // - for a damaged map,
 // - for a foreign map of an image whose camera has a port or a distorted lens,
 // - for a map whose shape differs from the shape of the image's camera,
-// - for a map with another pose or camera than the image: a point in the middle of the map's
-//   depth range projects 1 px or more away from its pixel, at the map's resolution.
+// - for a map with another pose or camera than the image. The test takes the points that the
+//   corners and the centre of the map see in the middle of its depth range. The image's camera must
+//   project each of them less than 1 px away from its pixel, at the map's resolution.
 void keep_images_with_maps(Project& project, const Settings& settings, const ExistingMaps& maps);
 
 }  // namespace axial::densify

@@ -18,6 +18,8 @@
 
 namespace axial::densify {
 
+// Reads the map of the image with the index `image` in the scene from its file. Called by several
+// threads at the same time.
 using ReadMap = std::function<DepthMap(std::size_t image)>;
 
 // The maps of the previous stage. They are always read from their files, even if the previous stage
@@ -42,10 +44,11 @@ class PreviousMaps {
 
 // One round over all images.
 struct Stage {
-  std::string name;   // part of the names of the stage's files, and stored in their side files
+  // Part of the names of the stage's files, and stored in their side files; unique.
+  std::string name;
   std::string title;  // shown with the progress of the stage
-  // Makes the map of an image. Called for several images at a time. The first stage must not use
-  // `previous`, because there are no previous maps.
+  // Makes the map of the image with the index `image`. Called by several threads at the same time.
+  // The first stage must not use `previous`, because there are no previous maps.
   std::function<DepthMap(std::size_t image, PreviousMaps& previous)> make;
   // True: PreviousMaps::get() returns maps with normals and confidences, and the capacity of its
   // cache is StageRun::cached_maps. False: get() returns depths alone, and the capacity is
@@ -53,27 +56,29 @@ struct Stage {
   bool whole_maps = false;
 };
 
-// The arguments that all stages share.
+// The arguments that all stages share. Images are named by their index in the scene.
 struct StageRun {
   std::span<const std::size_t> images;  // the images that get maps, in this order
   // The file of an image's final map. The map of an earlier stage is in a file with the same name,
   // but with the stage's name before the extension.
   std::function<std::filesystem::path(std::size_t image)> final_file;
-  std::string fingerprint;  // of all input of the maps
+  std::string fingerprint;  // of all input of the maps; it is stored in their side files
   // The states of the final files before the run, indexed by image.
   std::span<const io::DmapStatus> existing;
   std::size_t in_flight = 1;      // number of images that are processed at the same time
   std::size_t cached_depths = 0;  // capacity of PreviousMaps; see Stage::whole_maps
   std::size_t cached_maps = 0;    // capacity of PreviousMaps for stages with whole_maps
+  // Of which maps run_stages() writes pictures beside the maps.
   Pictures pictures = Pictures::none;
   // Checks maps early, because later stages may take hours. Called once. If the run makes maps of
   // the first stage, the call comes after the first stage, and `read_map` reads its maps. Otherwise
   // the call comes before the run makes a map, and `read_map` reads the maps of the latest complete
-  // stage. `first_stage`: whether `read_map` reads maps of the first stage. `check` may be empty.
+  // stage. `first_stage`: whether `read_map` reads maps of the first stage. Empty: no check.
   std::function<void(bool first_stage, const ReadMap& read_map)> check;
 };
 
-// Runs the stages one after the other. The maps of the last stage are the result.
+// Runs the stages one after the other. The maps of the last stage are the result, in the files
+// `run.final_file`. Precondition: there is at least one stage.
 //
 // * A file is used again only if its depth map is complete and its side file has the run's
 //   fingerprint and the stage's name. Every other file with the name of a map is overwritten by a
@@ -84,7 +89,8 @@ struct StageRun {
 //   continues gives the same bytes as a run without a stop.
 // * The files of a stage are removed when the next stage is complete.
 //
-// Exceptions of make() end the run. The finished files stay.
+// Exceptions of Stage::make and StageRun::check end the run and reach the caller. The finished
+// files stay.
 void run_stages(std::span<const Stage> stages, const StageRun& run);
 
 }  // namespace axial::densify

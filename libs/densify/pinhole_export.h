@@ -9,19 +9,26 @@
 
 namespace axial::densify {
 
-// An upper bound of the memory [bytes] for resampling one image and its depth map.
+// An upper bound of the memory [bytes] for resampling one image and its depth map in
+// export_pinholes(). `view`: the image.
 std::uint64_t bytes_needed_to_resample(const View& view);
 
-// Writes the export folder atomically, in place of an earlier export. The folder contains
-//   images/NAME, images/NAME.mask.png   for every image with a depth map: the resampled photograph,
-//                                       and its labels (cloud::PinholeImage)
+// Writes the folder Settings::pinhole_export by write_folder() (base/atomic_file.h) and removes the
+// files of an earlier export from it (remove_earlier_export() in pinhole_folder.h). Does nothing if
+// Settings::pinhole_export is empty. The folder contains
+//   images/NAME                         for every image with a depth map (Project::references): the
+//                                       resampled photograph; NAME: see exported_name()
+//   images/NAME.mask.png                its labels (cloud::PinholeImage); NAME without extension
 //   depthNNNN.dmap                      depth maps of the pinhole cameras
 //   scene.mvs                           all images in the scene's order; images without a depth map
-//                                       are uncalibrated
-//   scene.ply                           the cloud `ply`, as float in the scene's frame
+//                                       are uncalibrated. It has the sparse points that
+//                                       calibrated images see
+//   scene.ply                           the cloud in the file `ply`, as float in the scene's frame
 //   pinhole_export.json                 facts about the resampling, and the list of written files
-// Moves the sparse points out of the project's scene, which has no points afterwards. Does
-// nothing if Settings::pinhole_export is empty.
+// and the offset of the scene if it has one. Moves the sparse points out of the project's scene,
+// which has no points afterwards. `existing`: the result of find_existing_maps(). Precondition:
+// check_pinhole_export() (pinhole_folder.h) has returned. Throws an Error if an input cannot be
+// read or a file cannot be written.
 void export_pinholes(Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, const std::filesystem::path& ply);
 

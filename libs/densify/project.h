@@ -19,54 +19,64 @@
 namespace axial::densify {
 
 // One image of the scene at its working resolution. Its pixels are in ImageStore (image_store.h).
-// Images without calibration have an empty camera.
+// Images without calibration have an empty camera (width and height 0), and their other members
+// have their defaults.
 struct View {
-  std::uint32_t id = 0;  // global id
-  CameraModel camera;
+  std::uint32_t id = 0;  // global id: SceneImage::id, or the index of the image if that is kNoId
+  CameraModel camera;    // at the working resolution
   Pose pose;
-  io::ImageHeader file;
-  std::filesystem::path mask;  // empty: none
+  io::ImageHeader file;        // header of the photograph
+  std::filesystem::path mask;  // file of the mask; empty: none
 
   // Whether WorkImage::mask may be non-empty.
   bool masked() const { return !mask.empty() || file.alpha; }
 };
 
-struct Project : io::SceneWithCameras {  // the scene also has neighbour scores
-  io::SceneLenses lenses;                // lenses that are written beside the output
+// The input of one run. load_scene() fills SceneWithCameras and `lenses`. load_scene_and_headers()
+// also fills `views` and `bit_depth`. load_project() fills all members.
+struct Project : io::SceneWithCameras {
+  io::SceneLenses lenses;  // lenses that are written beside the output
   // The next four have one entry for each image of the scene.
-  std::vector<ViewPreparation> preparations;
+  std::vector<ViewPreparation> preparations;  // results of score_neighbours()
   std::vector<View> views;
-  std::vector<std::vector<ViewScore>> neighbours;  // results of filter_neighbours()
-  std::vector<std::vector<ViewScore>> sources;     // source views for matching
-  std::vector<std::size_t> references;             // images that get a depth map
-  int bit_depth = 16;  // number of bits that the values of 16-bit images use
-  std::string fingerprint;
+  // Results of filter_neighbours(); unusable image: none.
+  std::vector<std::vector<ViewScore>> neighbours;
+  // Source views for matching; image without a map: none.
+  std::vector<std::vector<ViewScore>> sources;
+  std::vector<std::size_t> references;  // images that get a depth map: indices, ascending
+  int bit_depth = 16;       // number of bits that the values of 16-bit images use, 8 to 16
+  std::string fingerprint;  // the result of fingerprint() (fingerprint.h)
 };
 
 // Loads the scene with its ports and lenses, and the points of Settings::point_cloud. Reads no
-// image files. Error for any fault of the files that are read.
+// image files. Throws an Error for any fault of the files that are read, and for too little memory
+// to read them.
 Project load_scene(const Settings& settings);
 
-// Loads the scene and reads the headers of its images and masks. Selects no views. Errors as for
-// load_project.
+// Loads the scene as load_scene() does, and reads the headers of its images. Finds the masks, and
+// the bit depth of the images, for which images of more than 8 bits may be decoded. Selects no
+// views. Throws the Errors of load_project() that concern these files.
 Project load_scene_and_headers(const Settings& settings);
 
-// Loads the scene, reads its images and masks, and selects views. Of image and mask files, the
-// headers are kept, and the bytes only enter the fingerprint. `observer` is called before views are
-// selected. Throws an Error for a fault of the scene or its housing, for files that are missing or
-// truncated, and for images whose shape differs from their camera's. ImageStore::check_all finds
-// other faults of images.
+// Loads the scene, reads its images and masks, and selects views. Of image files, the headers are
+// kept. The bytes of image and mask files only enter the fingerprint. `observer`, unless it is
+// empty, is called before views are selected. Throws an Error for a fault of the scene or its
+// housing, for files that are missing or truncated, for images whose shape differs from their
+// camera's, for an id that two images have, and if no image can get a depth map.
+// ImageStore::check_all() finds other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
 
-// Whether no camera has a port or a distorted lens.
+// Whether no camera of Project::views has a port or a distorted lens.
 bool all_pinholes(const Project& project);
 
-// The path of the housing file. The file need not exist.
+// The path of the housing file: Settings::housing, or a file beside the scene if that is empty. The
+// file need not exist.
 std::filesystem::path housing_file(const Settings& settings);
 
-// Writes housing, lenses and offset beside the output scene, where later programs look for them.
-// If the scene has no ports, no distorted lenses or no offset, an older file with the name of the
-// absent file is removed. The housing file that was read is never changed.
+// Writes housing, lenses and offset beside the scene Settings::output, where later programs look
+// for them. If the scene has no ports, no distorted lenses or no offset, an older file with the
+// name of the absent file is removed. The housing file that was read is never changed. Throws an
+// Error if a file cannot be written.
 void write_cameras_beside_output(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify
