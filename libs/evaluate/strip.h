@@ -14,13 +14,13 @@ namespace axial::evaluate {
 
 // A piece of the strip. All pieces have the same length.
 struct StripPiece {
-  double begin = 0, end = 0;  // position along the strip; the first camera is at 0 [m]
-  std::size_t points = 0, places = 0;
+  double begin = 0, end = 0;           // [m], positions along the strip; the first camera is at 0
+  std::size_t points = 0, places = 0;  // number of points and of places from `begin` to `end`
 };
 
 struct Strip {
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit
-  std::vector<StripPiece> pieces;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, in the frame of the views
+  std::vector<StripPiece> pieces;                       // in the order of their positions
   // The density of a piece is its number of points per place. `least` and `most` are the smallest
   // and the largest density, divided by the mean density. They are 0 if there are no points.
   double least = 0, most = 0;
@@ -31,12 +31,13 @@ struct Strip {
 void require_strip(std::span<const View> views);
 
 // Cuts the strip into pieces and counts the points and places in each piece. The direction of the
-// strip is the principal axis along which the camera centres extend most. It points away from the
-// first camera. The strip covers the whole extent of the places in this direction. The length of a
-// piece is at most 1/5 of the mean spacing of the views. Pieces with fewer than half of the places
-// of the median piece, at the ends of the strip, are left out of `least`, `most` and the mean
-// density. Error as for require_strip, or if the views are so close together that more than 1e5
-// pieces would be needed.
+// strip is the principal axis along which the camera centres extend most. It points from the camera
+// centre of views[0] towards the mean of the centres. The strip covers the whole extent of the
+// places in this direction. Points beyond the strip do not count. The length of a piece is at most
+// 1/5 of the mean spacing of the views. Strip::least, Strip::most and the mean density leave out
+// pieces with fewer than half of the places of the median piece, which usually lie at the ends of
+// the strip. Precondition: there is at least one place. Error as for require_strip(), or if the
+// views are so close together that more than 1e5 pieces would be needed.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 
