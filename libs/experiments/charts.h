@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures (SVG) of line panels or map panels, side by side in rows.
+// Figures of line panels or map panels, side by side in rows, as text in the format SVG.
 #pragma once
 
 #include <string>
@@ -7,13 +7,15 @@
 
 namespace axial::experiments {
 
+// A polyline through the points (x[i], y[i]), in this order. `x` and `y` have the same length.
 struct Line {
-  std::string name;
+  std::string name;  // text in the legend
   std::vector<double> x, y;
 };
 
-// The colour of a line depends on its index in `lines`. So lines of the same name should have the
-// same index in all panels of a figure.
+// The axes cover the values of all lines. A linear y axis begins at 0. So no value may be negative,
+// and with a logarithmic y axis each value must be positive. The colour of a line depends on its
+// index in `lines`. So lines of the same name should have the same index in all panels of a figure.
 struct LinePanel {
   std::string title, x_title, y_title;
   std::vector<Line> lines;
@@ -21,7 +23,8 @@ struct LinePanel {
   bool marked = true;        // whether every value has a dot
 };
 
-// The figure with `columns` panels in each row. Each panel has its legend.
+// Returns the figure with `columns` panels in each row, row by row. Each panel has its legend.
+// Precondition: `columns` is at least 1.
 std::string draw_lines(const std::string& title, const std::vector<LinePanel>& panels,
                        std::size_t columns);
 
@@ -31,8 +34,10 @@ struct MapPanel {
   std::vector<double> values;  // row by row; negative: no value, drawn grey
 };
 
-// The figure with `columns` panels in each row. All maps have the same colour scale from 0 to
-// `highest`, which is drawn beside the panels. `unit`: the unit of the values.
+// Returns the figure with `columns` panels in each row, row by row. Each map is drawn as a square.
+// All maps have the same colour scale from 0 to `highest`, which is drawn beside the panels. Larger
+// values have the colour of `highest`. `unit`: the text for the unit of the values. Precondition:
+// `columns` and `highest` are positive, and each map has at least one row.
 std::string draw_maps(const std::string& title, const std::vector<MapPanel>& panels,
                       std::size_t columns, double highest, const std::string& unit);
 
