@@ -13,7 +13,7 @@ namespace axial::evaluate {
 struct DepthOptions {
   // Tolerances of the scores [m]: at least one. The histogram ends at 4 * the first tolerance.
   std::vector<double> tolerances{0.005};
-  std::size_t rings = 8;            // number of rings of equal width; at least 1
+  std::size_t rings = 8;            // number of rings around the image centre; at least 1
   std::size_t histogram_bins = 80;  // number of bins of DepthEvaluation::accuracy_histogram
 };
 
@@ -27,6 +27,7 @@ struct Ring {
   double absolute_median = 0;  // of |estimate - truth| [m]; 0 without pixels
 };
 
+// The result of evaluate_depth().
 struct DepthEvaluation {
   cv::Mat1f truth;                            // [m], at the estimate's resolution; 0: no truth
   cv::Mat1f error;                            // estimate - truth [m]; NaN where either is missing

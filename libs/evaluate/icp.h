@@ -20,7 +20,8 @@ struct IcpOptions {
   double trim = 3;
   // The iteration ends after a step that is shorter than stop * radius. The radius is the RMS
   // distance of the used points from their mean. Let t be the translation of the mean by the step
-  // [m], and a the angle of the rotation [rad]. The square of the length is |t|^2 + (radius * a)^2.
+  // [m], and a the angle of the step's rotation [rad]. The square of the step's length is
+  // |t|^2 + (radius * a)^2.
   double stop = 1e-7;
 };
 

@@ -15,8 +15,8 @@ namespace axial::evaluate {
 // are metres, angles are degrees. The median of normals without angles is null.
 nlohmann::ordered_json to_json(const MeshEvaluation& evaluation);
 
-// Returns the same numbers as lines of text, except that lengths are millimetres. Each line ends
-// with a line break.
+// Returns the evaluation as lines of text. Each line ends with a line break. Lengths are
+// millimetres, angles are degrees.
 std::string table(const MeshEvaluation& evaluation);
 
 }  // namespace axial::evaluate

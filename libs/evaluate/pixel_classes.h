@@ -96,8 +96,8 @@ struct ClassErrors {
 // its pixels of all maps.
 std::array<ClassErrors, 4> errors_by_class(std::span<const ClassifiedMap> maps);
 
-// Errors of the pixels whose true position in a source view has a fractional part within [begin,
-// end) [px].
+// Errors of the pixels whose true position in a source view has a fractional part within
+// [begin, end) [px].
 struct PhaseErrors {
   double begin = 0, end = 0;
   std::size_t count = 0;  // number of pixels

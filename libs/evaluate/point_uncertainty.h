@@ -15,8 +15,9 @@ namespace axial::evaluate {
 // is empty if the cloud does not contain the property.
 struct PointUncertainty {
   std::vector<std::uint32_t> views;  // number of depth maps from which the point was fused
-  std::vector<float> error;          // expected standard deviation [m]; not positive: unknown
-  std::vector<float> confidence;     // from 0 to 1; larger: more reliable
+  // Expected standard deviation of the point [m]. Not positive or not finite: unknown.
+  std::vector<float> error;
+  std::vector<float> confidence;  // from 0 to 1; larger: more reliable
 };
 
 // Errors of the points that were fused from `least` to `most` depth maps. Without such points all
@@ -26,8 +27,9 @@ struct ErrorsOfViews {
   std::size_t points = 0;             // number of points in the class
   double share = 0;                   // `points` divided by the number of all points
   double mean = 0, median = 0;        // of the distances of the class to the truth [m]
-  double gross_share = 0;      // share of the class that is farther from the truth than `gross`
-  std::vector<double> within;  // for each tolerance, share of the class at most this far away
+  double gross_share = 0;  // share of the class that is farther from the truth than `gross`
+  // For each tolerance, the share of the class whose distance is at most the tolerance.
+  std::vector<double> within;
 };
 
 // Returns three classes of points, in this order: fused from up to 2 depth maps, from 3, and from 4

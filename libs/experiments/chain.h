@@ -41,9 +41,10 @@ struct SceneOptions {
   double fov_degrees = 80, scale = 1, relief = 1, coarseness = 1;
   std::string medium = "both";  // "air", "water" or "both"
   bool truth = true;            // keep true distances; true normals are always removed
-  Words port;                   // options that replace the preset's port: "--tilt-degrees", "3"
-  // More options. An option in `more` replaces the field of the same name. It must not repeat
-  // `preset`, `seed`, `medium` or an option in `port`.
+  // Options of the port, which replace those of the preset: "--tilt-degrees", "3".
+  Words port;
+  // More options, each name and value in a word of its own. An option replaces the field of the
+  // same name. `more` must not contain --preset, --seed, --medium or an option that is in `port`.
   Words more;
 };
 // Returns the words of SimulateUnderwater's command line, without the output folder, as a list.

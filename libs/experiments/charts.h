@@ -13,9 +13,10 @@ struct Line {
   std::vector<double> x, y;
 };
 
-// The axes cover the values of all lines. A linear y axis begins at 0. So no value may be negative,
-// and with a logarithmic y axis each value must be positive. The colour of a line depends on its
-// index in `lines`. So lines of the same name should have the same index in all panels of a figure.
+// The x axis covers the x values of all lines, and the y axis covers their y values. A linear y
+// axis begins at 0, so no y value may be negative. If `logarithmic`, each y value must be positive.
+// The colour of a line depends on its index in `lines`. So lines of the same name should have the
+// same index in all panels of a figure.
 struct LinePanel {
   std::string title, x_title, y_title;
   std::vector<Line> lines;
@@ -28,6 +29,7 @@ struct LinePanel {
 std::string draw_lines(const std::string& title, const std::vector<LinePanel>& panels,
                        std::size_t columns);
 
+// A map of values in rows of equal length.
 struct MapPanel {
   std::string title;
   std::size_t width = 0;       // number of values in a row

@@ -19,7 +19,8 @@ struct CompletenessOptions {
   // The tolerance of the evaluation [m]. 0: 2 mm for presets whose name starts with "closeup" or
   // "thicket", otherwise 5 mm.
   double tolerance = 0;
-  Words scene, dense;  // more options of SimulateUnderwater and of DensifyPointCloud
+  // `scene`: more options of SimulateUnderwater. `dense`: more options of DensifyPointCloud.
+  Words scene, dense;
 };
 
 // Returns the name of the experiment from preset, medium and poses:
@@ -28,8 +29,9 @@ std::string completeness_name(const CompletenessOptions& options);
 
 // Returns the experiment. It has one part for each seed. The result of a part is the report of
 // EvaluateReconstruction without histograms, and "cpu_seconds", the CPU time of DensifyPointCloud
-// [s]. `chain.work` keeps the scenes and clouds. Errors as for the experiments in chained.h.
-// Precondition: every field of `options` has a value that its comment allows.
+// [s]. The scenes and clouds stay in `chain.work`. Error if a program of the chain cannot be read.
+// Part::compute runs the programs, and throws an Error if a program fails. Precondition: every
+// field of `options` has a value that its comment allows.
 Experiment completeness(const Chain& chain, const CompletenessOptions& options);
 
 // Returns one document, <completeness_name(options)>.md. Its table has one row for each seed and a

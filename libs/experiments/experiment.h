@@ -55,8 +55,9 @@ struct Series {
   std::vector<double> values;
 };
 
-// In the functions below, `series` is a name that vary() accepts, `value` is in the unit in this
-// name, and `stereo_number` is StereoSetup::number. They throw an Error for an unknown name.
+// In the next three functions, `series` is a name that vary() accepts, `value` is in the unit in
+// this name, and `stereo_number` is StereoSetup::number. The functions throw an Error for another
+// name.
 
 // Returns a title for the axis of a chart: "interface distance [mm]".
 std::string series_title(const std::string& series);
@@ -67,8 +68,9 @@ std::string value_title(const std::string& series, double value);
 // setup occurs in every series and has one name for all series: "setup1_default".
 std::string part_name(const std::string& series, double value, int stereo_number);
 
-// Returns one variation for each value of each series, in their order. The default setup is
-// contained only once, where it occurs first.
+// Returns one variation for each value of each series, in the order of the series and values. The
+// default setup is contained only once, where it occurs first. `stereo_number`:
+// StereoSetup::number. Error if vary() does not accept the name of a series.
 std::vector<Variation> variations(const std::vector<Series>& series, int stereo_number);
 
 // Return all fields of the setup, as inputs of a part (Part::inputs).

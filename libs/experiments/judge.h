@@ -15,7 +15,8 @@ struct SceneDistances {
   double median = 0;       // [m]
   double range_ratio = 0;  // 95th percentile / 5th percentile
 };
-// Precondition: the scene has images of `medium` ("air" or "water") with true distances.
+// Returns the statistics for the images of `medium` ("air" or "water"). Precondition: the scene has
+// images of `medium` with true distances.
 SceneDistances scene_distances(const SimulatedScene& scene, const std::string& medium);
 
 // What evaluated() does.
@@ -43,16 +44,19 @@ Json to_json(const EvaluationOptions& options);
 // - The statistics count the points that lie inside the images of at least `min_views` of these
 //   cameras. Occlusion is not tested.
 // - The completeness counts the surface that at least `min_views` of these cameras see.
-// Fields of the result: "points", "mean", "median" and "variance" of the distances of the points to
-// the truth ("points": their number; mean and median [m], variance [m^2]); "recall" and "f_score"
-// at the tolerance; and, if `picture_width` is above 0, "picture" (PNG in base64). If there is
-// nothing to measure, returns null with `options.or_nothing`, and otherwise throws an Error.
+// Fields of the result:
+// - "points": number of points that count
+// - "mean", "median" [m] and "variance" [m^2]: of the distances of these points to the truth
+// - "recall" and "f_score": at the tolerance
+// - "picture": the cloud in colours of its errors (PNG in base64); not if `picture_width` is 0
+// If there is nothing to measure, returns null with `options.or_nothing`, and otherwise throws an
+// Error.
 Json evaluated(const Chain& chain, const std::filesystem::path& dense, const SimulatedScene& scene,
                const EvaluationOptions& options);
 
 // Measures all depth maps in the folder `dense` (a result of densified()) together. `medium`: the
-// medium of the images of these maps, "air" or "water". `tolerance`: [m]. An error is |estimate -
-// truth| [m] of a pixel that has both. Fields of the result:
+// medium of the images of these maps, "air" or "water". `tolerance`: [m]. An error is
+// |estimate - truth| [m] of a pixel that has both. Fields of the result:
 // - "pixels": number of errors
 // - "gross": share of the errors that are gross (evaluate::is_gross())
 // - "mean": mean of the errors that are not gross [m]

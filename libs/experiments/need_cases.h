@@ -13,7 +13,7 @@ namespace axial::experiments {
 // A scene, and the parameter in which the scene differs from the usual case.
 struct NeedCase {
   std::string name;    // name of the part (Part::name)
-  std::string series;  // name of the varied parameter, with its unit: "tilt_degrees"
+  std::string series;  // name of the varied parameter, with its unit if any: "tilt_degrees"
   double value;        // of the parameter, in the unit in `series`; 0 if the parameter has no value
   SceneOptions scene;
   // The scene in which the lens is calibrated. Empty: the lens is calibrated in `scene`.

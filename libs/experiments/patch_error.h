@@ -31,6 +31,7 @@ enum class Warp : std::size_t {
   kFirstOrder,     // affine warp: exact projection of the centre and exact first derivative
   kPerTexel,       // exact projection of every texel, in float
 };
+// The number of warps, and their names in the results of experiments, in the order of Warp.
 inline constexpr std::size_t kWarps = 7;
 inline constexpr std::array<const char*, kWarps> kWarpNames{
     "papers", "rounded", "exact_centre", "scaled_rounded", "scaled", "first_order", "per_texel"};
@@ -66,7 +67,7 @@ class WarpStudy {
   // texel is outside the source image.
   std::optional<PatchErrors> errors(const Vector2<double>& centre) const;
 
-  int size() const { return size_; }
+  int size() const { return size_; }  // width and height of both images [px]
 
  private:
   struct Warps;

@@ -10,7 +10,8 @@
 
 namespace axial::experiments {
 
-// Pose: x_virtual = rotation * (x_camera - centre).
+// Its pose: x_virtual = rotation * (x_camera - centre). Its projection: pixel_from_ray * x_virtual,
+// in homogeneous coordinates.
 template <class T>
 struct ScaledVirtualCamera {
   refractive::Vector3<T> centre;          // C_v in the frame of the real camera [m]
@@ -21,9 +22,9 @@ struct ScaledVirtualCamera {
 // Returns the virtual camera of `pixel` [px], which is not rounded. `camera`: any camera with
 // rotation_to_axis() and a ray() with a Jacobian, such as FlatPortCamera. Let (x, y, z) be the
 // direction of the pixel's ray in water in the frame of the virtual camera, and s = (x/z, y/z). The
-// scale is the 2x2 matrix d(pixel)/ds, the inverse of ds/d(pixel). The principal point is c_v =
-// pixel - scale * s, as in the paper's eq. 3. K has the scale as its upper left 2x2 block and the
-// principal point in its last column.
+// scale is the 2x2 matrix d(pixel)/ds, the inverse of ds/d(pixel). The principal point is
+// c_v = pixel - scale * s, as in the paper's eq. 3. K has the scale as its upper left 2x2 block and
+// the principal point in its last column.
 template <class Camera, class T = typename Camera::Scalar>
 ScaledVirtualCamera<T> scaled_virtual_camera(const Camera& camera,
                                              const refractive::Vector2<T>& pixel) {

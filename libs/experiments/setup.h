@@ -17,6 +17,7 @@ using refractive::PinholeLens;
 using refractive::Vector2;
 using refractive::Vector3;
 
+// A camera behind a flat port.
 struct CameraSetup {
   double fov_degrees = 80;   // field of view, horizontal, in air
   double distance = 0.02;    // d_a, camera centre to glass [m]
