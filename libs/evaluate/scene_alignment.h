@@ -19,7 +19,8 @@ namespace axial::evaluate {
 struct SceneAlignment {
   Similarity similarity;   // from the scene to the frame of the targets
   std::size_t images = 0;  // number of images used
-  // Of the distances between moved centres and their targets, in the unit of the targets.
+  // RMS and maximum of the distances between moved centres and their targets, in the unit of the
+  // targets.
   double rms = 0, largest = 0;
   // Largest angle [rad] between the rotation of a moved image and the rotation of its partner in
   // the reference. Only align_scenes() sets this angle.

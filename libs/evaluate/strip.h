@@ -14,7 +14,7 @@ namespace axial::evaluate {
 
 // A piece of the strip. All pieces have the same length.
 struct StripPiece {
-  double begin = 0, end = 0;           // [m], positions along the strip; the first camera is at 0
+  double begin = 0, end = 0;           // positions along the strip [m]; views[0] is at 0
   std::size_t points = 0, places = 0;  // number of points and of places from `begin` to `end`
 };
 

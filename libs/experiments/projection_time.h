@@ -10,12 +10,13 @@
 
 namespace axial::experiments {
 
-// The order in which the points are projected. kScattered: each point at a random place in the
-// image. kReading: runs of 100 neighbouring points of a row, one pixel apart. The order matters
-// because a search in a table waits for memory if the points are scattered.
+// The order in which the points are projected. kScattered: each point is at a random place in the
+// image. kReading: runs of 100 points in a row of the image, one pixel apart. Each run begins at a
+// random place. The order matters because a search in a table waits for memory if the points are
+// scattered.
 enum class Order { kScattered, kReading };
 
-// All numbers are at least 1.
+// Precondition of time_projections(): all numbers are at least 1.
 struct TimingOptions {
   int points = 20000;          // points per repetition, for all methods but "analytic"
   int analytic_points = 1000;  // points per repetition for "analytic"; at most `points`
@@ -24,6 +25,7 @@ struct TimingOptions {
 
 // Time and error of one method.
 struct MethodTime {
+  // One of:
   // - "exact": the exact projection (FlatPortCamera)
   // - "line_search_compact": the paper's Algorithm 1 (refractive::LineSearchCamera)
   // - "line_search_plain", "line_search_tight": Algorithm 1 with PlainCell, with TightCell
@@ -41,9 +43,10 @@ struct MethodTime {
 };
 
 // Times all methods on random points, which do not depend on the method. "analytic" projects only
-// the first of them. Each point lies on the ray of a position in an image of width x height pixels,
-// 1 to 5 m from the ray's origin. Returns the methods in the order "exact", "line_search_plain",
-// "line_search_compact", "line_search_tight", "analytic".
+// the first of them. Each point lies on the ray in water of a position in an image of width x
+// height pixels, 1 to 5 m from the ray's origin. The position is the true image of the point.
+// Returns the methods in the order "exact", "line_search_plain", "line_search_compact",
+// "line_search_tight", "analytic".
 std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, int height,
                                          Order order, const TimingOptions& options);
 

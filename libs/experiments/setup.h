@@ -37,7 +37,7 @@ FlatPort<double> make_port(const CameraSetup& setup);
 
 // Two cameras with parallel axes, and a plane through the point 4 m in front of the first camera.
 struct StereoSetup {
-  int number = 1;      // position of the second camera; 1: x = 1 m; 2: x = 0.5 m, z = -1 m
+  int number = 1;      // centre of the second camera; 1: (1, 0, 0) m; 2: (0.5, 0, -1) m
   CameraSetup camera;  // of both cameras
   // Rotation of the plane about y. 0: perpendicular to the optical axes. Positive: the plane turns
   // away from the second camera.
