@@ -11,11 +11,16 @@
 
 namespace axial::evaluate {
 
-// Lengths are metres in the JSON and millimetres in the tables.
+// Return an object of statistics, without the values of single points and pixels. Lengths are
+// metres.
 nlohmann::ordered_json to_json(const CloudEvaluation& evaluation);
 nlohmann::ordered_json to_json(const DepthEvaluation& evaluation);
+
+// Returns the homogeneous 4 x 4 matrix as a list of four rows.
 nlohmann::ordered_json to_json(const Similarity& similarity);
 
+// Return the main statistics as lines of text, each with a line break at the end. Lengths are
+// millimetres.
 std::string table(const CloudEvaluation& evaluation);
 std::string table(const DepthEvaluation& evaluation);
 

@@ -14,21 +14,27 @@
 
 namespace axial::evaluate {
 
+// The fit of the camera centres of a scene to their targets, which are centres of another scene or
+// known positions.
 struct SceneAlignment {
-  Similarity similarity;
-  std::size_t images = 0;       // number of images used
-  double rms = 0, largest = 0;  // of the distances between aligned centres and their targets
-  // Largest angle between aligned and reference rotations [rad]. Only align_scenes() sets it.
+  Similarity similarity;   // from the scene to the frame of the targets
+  std::size_t images = 0;  // number of images used
+  // RMS and maximum of the distances between moved centres and their targets, in the unit of the
+  // targets.
+  double rms = 0, largest = 0;
+  // Largest angle [rad] between the rotation of a moved image and the rotation of its partner in
+  // the reference. Only align_scenes() sets this angle.
   std::optional<double> turn = {};
 };
 
-// Pairs of calibrated images: the index in the scene, then the index in the reference.
+// Pairs of calibrated images: the index in the scene, then the index in the reference. The pairs
+// are in the order of the images in the scene.
 struct ImagePairs {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  bool by_name = true;  // false: paired by order
+  bool by_name = true;  // rule of pair_images(); true: rule 1, false: rule 2
 };
 
-// Pairs the calibrated images of two scenes. The rules are, in this order:
+// Pairs the calibrated images (SceneImage::calibrated) of two scenes. The rules are, in this order:
 // 1. By name. An image of one scene is a candidate for an image of the other scene if their paths
 //    have the same file name. The best candidate has the most equal folders directly before the
 //    file name. If two candidates are equally good, there is no best candidate. Two images are a
@@ -38,20 +44,20 @@ struct ImagePairs {
 // Error if rule 2 is needed and the numbers of calibrated images differ.
 ImagePairs pair_images(const Scene& scene, const Scene& reference);
 
-// Returns the similarity that maps the camera centres of `scene` to the camera centres of
-// `reference`. `images`: the pairs of images (pair_images). Without `with_scale` the scale is 1.
-// Error as for fit_similarity.
+// Fits the similarity that maps the camera centres of `scene` to the camera centres of `reference`.
+// `images`: the pairs of images (pair_images). Without `with_scale` the scale is 1. Error as for
+// fit_similarity() (alignment.h).
 SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const ImagePairs& images,
                             bool with_scale);
 
-// Returns the similarity that maps the camera centre of image images[k] of `scene` to positions[k].
-// Precondition: `images` and `positions` have the same length. Without `with_scale` the scale is 1.
-// Error as for fit_similarity.
+// Fits the similarity that maps the camera centre of image images[k] of `scene` to positions[k].
+// Without `with_scale` the scale is 1. Precondition: the images are calibrated. Error as for
+// fit_similarity() (alignment.h).
 SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_t> images,
                                   std::span<const Eigen::Vector3d> positions, bool with_scale);
 
-// Returns the indices of the calibrated images whose path ends in the path `name`. Whole folder and
-// file names are compared.
+// Returns the indices of the calibrated images whose path ends in the path `name`, in ascending
+// order. Whole folder and file names are compared. An empty `name` gives all calibrated images.
 std::vector<std::size_t> images_named(const Scene& scene, const std::string& name);
 
 }  // namespace axial::evaluate

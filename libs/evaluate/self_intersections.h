@@ -10,13 +10,14 @@
 
 namespace axial::evaluate {
 
-// True if two corners of the face are equal or all three lie on one line. Precondition: the indices
-// are in range and the coordinates are finite.
+// True if two corners of `face` have the same position, or if all three corners lie on one line.
+// `face`: indices of vertices of `mesh`. Precondition: the indices are in range and the coordinates
+// are finite.
 bool is_degenerate(const Mesh& mesh, const std::array<std::uint32_t, 3>& face);
 
 // Returns the indices of the faces that intersect another face, in ascending order. A vertex is
-// common to two faces if both have the same vertex index. Two faces intersect if they have a point
-// in common besides their common vertex or edge:
+// common to two faces if both have the same vertex index. An equal position is not enough. Two
+// faces intersect if they have a point in common besides their common vertex or edge:
 // - Without a common vertex, they intersect if the triangles have any common point.
 // - With one common vertex, they intersect if one triangle meets the edge of the other triangle
 //   that is opposite to this vertex.

@@ -14,15 +14,17 @@ namespace axial::evaluate {
 
 // A piece of the strip. All pieces have the same length.
 struct StripPiece {
-  double begin = 0, end = 0;  // position along the strip; the first camera is at 0 [m]
-  std::size_t points = 0, places = 0;
+  double begin = 0, end = 0;           // positions along the strip [m]; views[0] is at 0
+  std::size_t points = 0, places = 0;  // number of points and of places from `begin` to `end`
 };
 
 struct Strip {
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit
-  std::vector<StripPiece> pieces;
-  // The density of a piece is its number of points per place. `least` and `most` are the smallest
-  // and the largest density, divided by the mean density. They are 0 if there are no points.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, in the frame of the views
+  std::vector<StripPiece> pieces;                       // in the order of their positions
+  // The density of a piece is its number of points per place. The mean density is the number of
+  // points in all pieces that count, per place in these pieces. `least` and `most` are the smallest
+  // and the largest density of these pieces, divided by the mean density. They are 0 if the pieces
+  // contain no points. density_along_strip() defines which pieces count.
   double least = 0, most = 0;
 };
 
@@ -31,12 +33,13 @@ struct Strip {
 void require_strip(std::span<const View> views);
 
 // Cuts the strip into pieces and counts the points and places in each piece. The direction of the
-// strip is the principal axis along which the camera centres extend most. It points away from the
-// first camera. The strip covers the whole extent of the places in this direction. The length of a
-// piece is at most 1/5 of the mean spacing of the views. Pieces with fewer than half of the places
-// of the median piece, at the ends of the strip, are left out of `least`, `most` and the mean
-// density. Error as for require_strip, or if the views are so close together that more than 1e5
-// pieces would be needed.
+// strip is the principal axis along which the camera centres extend most. It points from the camera
+// centre of views[0] towards the mean of the centres. The strip covers the whole extent of the
+// places in this direction. Points beyond the strip do not count. The length of a piece is at most
+// 1/5 of the mean spacing of the views. For Strip::least and Strip::most, a piece counts if it has
+// a place, and at least half as many places as the median piece. The other pieces usually lie at
+// the ends of the strip. Precondition: there is at least one place. Error as for require_strip(),
+// or if the views are so close together that more than 1e5 pieces would be needed.
 Strip density_along_strip(std::span<const Eigen::Vector3f> points, const Places& places,
                           std::span<const View> views);
 

@@ -12,20 +12,22 @@
 
 namespace axial::evaluate {
 
+// The point of a surface that is nearest to a query.
 struct ClosestPoint {
-  Eigen::Vector3d point;
-  double distance;
-  std::uint32_t face;
+  Eigen::Vector3d point;  // in the frame of the mesh
+  double distance;        // from the query to `point`
+  std::uint32_t face;     // index of the face on which `point` lies; of several: the lowest
 };
 
-// Error if a face index is out of range or a coordinate is not finite.
+// Error if a face refers to a vertex that does not exist, or if a coordinate is not finite.
 void require_valid(const Mesh& mesh);
 
 // Holds a copy of the triangles in an Embree hierarchy. All queries may run concurrently. The
-// answers do not depend on the number of threads.
+// answers do not depend on the number of threads. Coordinates of queries are in the frame of the
+// mesh, and must be finite.
 class Surface {
  public:
-  // Error if the mesh has no faces, a face index is out of range or a coordinate is not finite.
+  // Error if the mesh has no faces, or as for require_valid().
   explicit Surface(const Mesh& mesh);
   ~Surface();
   Surface(Surface&&) noexcept;
@@ -36,12 +38,13 @@ class Surface {
   // far away.
   ClosestPoint closest(const Eigen::Vector3d& point) const;
 
-  // The unit normal of a face; zero for a face without area.
+  // The unit normal of the face with this index, on the side from which its corners are
+  // counterclockwise. Zero for a face without area. Precondition: the face exists.
   Eigen::Vector3d face_normal(std::uint32_t face) const;
 
-  // True if a triangle crosses the open segment from `from` to `to`. The first part of the segment
-  // does not count, so that a point on the surface does not hide itself. `skip`: the length of this
-  // part divided by the length of the segment.
+  // True if a triangle crosses the segment from `from` to `to`, in either direction. The part of
+  // the segment next to `from` does not count, so that a point on the surface does not hide itself.
+  // `skip`: the length of this part divided by the length of the segment.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
 
  private:
@@ -49,7 +52,7 @@ class Surface {
   std::unique_ptr<Impl> impl_;
 };
 
-// Returns the unsigned distance [m] of every point to the surface, in the points' order.
+// Returns the unsigned distance [m] of every point to the surface, in the order of `points`.
 std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points);
 
 }  // namespace axial::evaluate

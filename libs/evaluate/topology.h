@@ -11,8 +11,8 @@ namespace axial::evaluate {
 // Vertices with different indices are different, even at the same position. Degenerate faces count
 // only in `degenerate_faces`. All other numbers are computed without them.
 struct Topology {
-  std::size_t vertices = 0;  // vertices that a face uses
-  std::size_t faces = 0;
+  std::size_t vertices = 0;          // vertices that a face uses
+  std::size_t faces = 0;             // without the degenerate faces
   std::size_t degenerate_faces = 0;  // two equal corners, or all corners on one line (exact)
   std::size_t edges = 0;
   std::size_t non_manifold_edges = 0;  // edges of more than two faces
@@ -24,10 +24,10 @@ struct Topology {
   std::size_t components = 0;    // connected parts of the mesh; faces connect over common edges
   // Edges of two faces with different orientations: both faces list the edge in the same direction.
   std::size_t inconsistent_edges = 0;
-  std::size_t self_intersecting_faces = 0;  // as self_intersecting_faces()
+  std::size_t self_intersecting_faces = 0;  // number of faces of self_intersecting_faces()
 };
 
-// Error for a face index out of range or a coordinate that is not finite.
+// Error if a face refers to a vertex that does not exist, or if a coordinate is not finite.
 Topology topology_of(const Mesh& mesh);
 
 }  // namespace axial::evaluate

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The nearest points of segments and triangles. All coordinates are in one frame.
 #pragma once
 
 #include <Eigen/Core>

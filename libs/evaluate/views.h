@@ -16,23 +16,26 @@
 
 namespace axial::evaluate {
 
+// The camera of one photograph.
 struct View {
-  std::string name;
-  CameraModel camera;
+  std::string name;    // of the image in the model
+  CameraModel camera;  // with its port, if there is one
   Pose pose;
 };
 
-// Returns one view for each image of the model, with the ports of `housing`. If `housing` is null,
-// the views have no ports. Error if there are no images, if an image refers to a camera that the
-// model does not have, if a lens is neither a pinhole nor a lens with a known distortion
-// (lens_distortion), if the distortion of a lens mirrors the image, or as for Housing::port_at.
+// Returns one view for each image of the model, in the order of the images, with the ports of
+// `housing`. If `housing` is null, the views have no ports. Error if there are no images, if an
+// image refers to a camera that the model does not have, if a lens is neither a pinhole nor a lens
+// with a known distortion (lens_distortion), if the distortion of a lens mirrors the image, or as
+// for Housing::port_at.
 std::vector<View> views_of_model(const io::ColmapModel& model, const io::Housing* housing);
 
 // Returns, for each point [world], the number of views that see the point. A view sees a point
-// under two conditions. First, the point is projected into the image rectangle of the view. Second,
-// `surface` does not cross the straight line from the point to the camera. The line ends at the
-// camera centre, or, behind a port, where the ray of the point's image crosses the outer face of
-// the glass. The orientation of the surface does not matter.
+// under two conditions. First, the point is projected into the image rectangle of the view, which
+// includes the whole area of the outermost pixels. Second, `surface` [world] does not cross the
+// straight line from the point to the camera. The line ends at the camera centre, or, behind a
+// port, where the ray of the point's image crosses the outer face of the glass. The orientation of
+// the surface does not matter.
 std::vector<std::uint32_t> count_views(std::span<const Eigen::Vector3f> points,
                                        std::span<const View> views, const Surface& surface);
 

@@ -8,18 +8,19 @@
 
 namespace axial::experiments {
 
-// The three functions below read the programs of the chain, because the inputs of the parts contain
-// the fingerprints of the programs. Error if a program cannot be read. The parts run the programs,
-// and throw an Error if a program fails. No other experiment may use `chain.work`, because the
-// parts replace and remove folders in `chain.work`. `quick`: few views and small images, for tests.
+// The three functions below return an experiment. They read the programs of the chain, because the
+// inputs of the parts contain the fingerprints of the programs. Error if a program cannot be read.
+// Part::compute runs the programs, and throws an Error if a program fails. No other experiment may
+// use `chain.work`, because the parts replace and remove folders in `chain.work`. `quick`: fewer
+// parts with few views and small images, for tests.
 
 // The paper's figures 5 and 6. A scene is reconstructed in air and through a port. The methods
 // through the port are the paper's method, our method, the paper's projection with our warp, and
 // the paper's warp with our projection.
 Experiment reconstruction(const Chain& chain, bool quick);
 
-// The effect of a wrong port: clouds on true poses, with housing files that differ from the true
-// port.
+// The effect of a wrong port. The clouds are computed on true poses, with housing files that differ
+// from the true port in at most one parameter.
 Experiment sensitivity(const Chain& chain, bool quick);
 
 // Shows where a refractive model is needed. Compares two reconstructions of each scene. The first

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Completeness of clouds by the number of cameras that see a place: simulates, reconstructs and
-// measures scenes of one preset in one command.
+// Completeness of clouds by the number of cameras that see a place of the true surface: simulates,
+// reconstructs and measures scenes of one preset in one command.
 #pragma once
 
 #include <string>
@@ -12,28 +12,33 @@
 namespace axial::experiments {
 
 struct CompletenessOptions {
-  std::string preset = "closeup";      // of SimulateUnderwater
-  std::string medium = "water";        // "air" or "water"
-  std::string poses = "true";          // "true", or "colmap": computed from photographs in air
+  std::string preset = "closeup";      // a preset of SimulateUnderwater
+  std::string medium = "water";        // of the photographs for the cloud: "air" or "water"
+  std::string poses = "true";          // "true", or "colmap": by COLMAP from photographs in air
   std::vector<int> seeds{11, 12, 13};  // seeds of the scenes: at least one, each only once
   // The tolerance of the evaluation [m]. 0: 2 mm for presets whose name starts with "closeup" or
   // "thicket", otherwise 5 mm.
   double tolerance = 0;
-  Words scene, dense;  // more options of SimulateUnderwater and of DensifyPointCloud
+  // `scene`: more options of SimulateUnderwater. `dense`: more options of DensifyPointCloud.
+  Words scene, dense;
 };
 
-// The name of the experiment: "completeness_closeup_water_true".
+// Returns the name of the experiment from preset, medium and poses:
+// "completeness_closeup_water_true".
 std::string completeness_name(const CompletenessOptions& options);
 
 // Returns the experiment. It has one part for each seed. The result of a part is the report of
 // EvaluateReconstruction without histograms, and "cpu_seconds", the CPU time of DensifyPointCloud
-// [s]. `chain.work` keeps the scenes and clouds. Errors as for the experiments in chained.h.
-// Precondition: every field of `options` has a value that its comment allows.
+// [s]. The scenes and clouds stay in `chain.work`. Error if a program of the chain cannot be read.
+// Part::compute runs the programs, and throws an Error if a program fails. Precondition: every
+// field of `options` has a value that its comment allows.
 Experiment completeness(const Chain& chain, const CompletenessOptions& options);
 
-// Returns one document, <completeness_name(options)>.md, with one row for each seed and a row of
-// medians. `results`: results of the experiment with the same options. A number that a seed does
-// not have is "-" and does not count for the median. Precondition as for completeness().
+// Returns one document, <completeness_name(options)>.md. Its table has one row for each seed and a
+// row of medians. If the results have classes of thickness, a second table shows them. `results`:
+// results of the experiment with the same options, in the form that Experiment::documents takes. A
+// number that the result of a seed does not contain is "-" and does not count for the median.
+// Precondition: every field of `options` has a value that its comment allows.
 std::vector<Document> completeness_documents(const CompletenessOptions& options,
                                              const Json& results);
 

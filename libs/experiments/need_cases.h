@@ -12,8 +12,8 @@ namespace axial::experiments {
 
 // A scene, and the parameter in which the scene differs from the usual case.
 struct NeedCase {
-  std::string name;    // name of the part
-  std::string series;  // name of the varied parameter
+  std::string name;    // name of the part (Part::name)
+  std::string series;  // name of the varied parameter, with its unit if any: "tilt_degrees"
   double value;        // of the parameter, in the unit in `series`; 0 if the parameter has no value
   SceneOptions scene;
   // The scene in which the lens is calibrated. Empty: the lens is calibrated in `scene`.
@@ -22,8 +22,9 @@ struct NeedCase {
   bool is_usual() const { return name == "usual"; }
 };
 
-// Returns all cases. The usual case is the first. The names are unique. `quick`: only the usual
-// case, the case with the largest tilt, and one second survey, all with small images and few views.
+// Returns all cases. The usual case comes first. The names are unique. `quick`: only three cases,
+// all with small images and few views: the usual case, the case with the largest tilt, and one case
+// whose lens is calibrated in another scene.
 std::vector<NeedCase> need_cases(bool quick);
 
 // A title for the table, such as "tilt 6°".

@@ -8,12 +8,13 @@
 
 namespace axial::experiments {
 
-// Appends `more`.
+// Appends `more` to `words`. Returns `words`.
 Words& operator+=(Words& words, const Words& more);
 
-// Fills `folder` by make(), unless an earlier call has filled it with the same `inputs`. The folder
-// is empty when make() is called. If make() throws, the folder does not count as filled, and the
-// next call removes its content.
+// Fills `folder` by make(), unless an earlier call, perhaps of another run, has filled it with the
+// same `inputs`. make() takes no arguments. When it is called, the folder exists and is empty. If
+// make() throws, the exception is passed on, the folder does not count as filled, and the next call
+// removes its content. The file made-from.json in the folder keeps the inputs.
 template <class Make>
 void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   const std::filesystem::path mark = folder / "made-from.json";
@@ -24,17 +25,19 @@ void step(const std::filesystem::path& folder, const Json& inputs, Make make) {
   write_atomically(mark, io::to_text(inputs));
 }
 
-// Runs one of the project's programs with `chain.max_threads`. `program` lies beside the running
-// program. The output of the program goes to the file `log`. Returns true if the program succeeds.
-// Returns false if the program fails with one of `excuses` (run_unless_excused). Throws an Error if
-// the program fails otherwise.
+// Runs one of the project's programs with `chain.max_threads`. `program`: its name; it lies beside
+// the running program. The output of the program goes to the file `log`. Returns true if the
+// program ends with exit code 0. Returns false if the program ends with exit code 1 and its output
+// contains one of the texts `excuses`. Otherwise throws an Error that names the program and the
+// log.
 bool run_sibling(const Chain& chain, const std::string& program, const Words& arguments,
                  const std::filesystem::path& log, const Words& excuses = {});
 
-// Returns the CPU time [s] of all child processes of this process that have ended.
+// Returns the CPU time [s] of all child processes of this process that have ended so far.
 double children_seconds();
 
-// Returns the entries of a folder whose paths end in the text `end`, in the order of their names.
+// Returns the paths of the entries of a folder whose names end in the text `end`, in the order of
+// their names. If `end` is empty: of all entries. Precondition: the folder exists.
 std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& folder,
                                                    const std::string& end);
 
@@ -42,9 +45,9 @@ std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& 
 // a folder. Precondition: the folder contains only files. Error if a file cannot be read.
 std::string content_of(const std::filesystem::path& file_or_folder);
 
-// Returns fingerprints of some of the project's programs. If the inputs of a step contain the
-// fingerprints, the step is repeated when a program changes. Error if a program does not lie beside
-// the running program.
+// Returns an object with the fingerprint of each of `programs`, which are names of the project's
+// programs. If the inputs of a step contain the fingerprints, the step is repeated when a program
+// changes. Error if a program does not lie beside the running program.
 Json content_of_programs(const Words& programs);
 
 }  // namespace axial::experiments

@@ -17,18 +17,20 @@ namespace axial::experiments {
 // (2 numbers) the principal point of the virtual camera.
 template <class T>
 struct PlainCell {
-  refractive::Vector3<T> centre, direction;
-  refractive::Vector2<T> principal_point;
+  refractive::Vector3<T> centre, direction;  // C_v [m] and X_v, in the camera frame
+  refractive::Vector2<T> principal_point;    // c_v [px]
 
+  // Returns the entry of `pixel`.
   static PlainCell of(const FlatPortCamera<T>& camera, const Vector2<T>& pixel) {
     const refractive::AxialRay<T> ray = camera.ray(pixel);
     const refractive::VirtualCamera<T> at = refractive::virtual_camera(camera, pixel);
     return {ray.origin, ray.direction, {at.lens.cx, at.lens.cy}};
   }
 
-  // Returns whether Algorithm 1 goes forward: alpha < beta, computed as in the paper. alpha and
-  // beta are cosines. X: the point to project. n: the unit normal of the port. Both are in the
-  // camera frame.
+  // True if the search for the image of X goes on in the half of the line that is farther from the
+  // pinhole image of X. The test is alpha < beta, computed as in the paper. alpha and beta are
+  // cosines. X: the point to project [m]. n: the unit normal of the port. Both are in the camera
+  // frame.
   bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
     const refractive::Vector3<T> from_centre = X - centre;
     return from_centre.dot(n) / from_centre.norm() < direction.dot(n);
@@ -42,11 +44,13 @@ template <class T>
 struct TightCell {
   T along, cosine;
 
+  // Returns the entry of `pixel`.
   static TightCell of(const FlatPortCamera<T>& camera, const Vector2<T>& pixel) {
     const refractive::AxialRay<T> ray = camera.ray(pixel);
     return {ray.origin.dot(camera.port().normal), ray.direction.dot(camera.port().normal)};
   }
 
+  // The result is that of PlainCell::forward(), computed from fewer numbers.
   bool forward(const refractive::Vector3<T>& X, const refractive::Vector3<T>& n) const {
     const T height = X.dot(n);
     const T above = height - along;
@@ -55,12 +59,15 @@ struct TightCell {
   }
 };
 
-// Projects like refractive::LineSearchCamera, with a table whose entries have the type Cell.
+// Projects like refractive::LineSearchCamera, with a table whose entries have the type Cell:
+// PlainCell<T> or TightCell<T>. Two results differ: a point exactly on the axis is not visible, and
+// the pixel of a point whose search ends outside the image is where the search ends.
 template <class T, class Cell>
 class TableSearch {
  public:
   using Scalar = T;
 
+  // `width`, `height`: size of the image [px].
   TableSearch(const FlatPortCamera<T>& camera, int width, int height)
       : camera_(camera), width_(width), height_(height) {
     cells_.reserve(static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height + 2));
@@ -69,6 +76,9 @@ class TableSearch {
         cells_.push_back(Cell::of(camera, Vector2<T>(static_cast<T>(u), static_cast<T>(v))));
   }
 
+  // The projection of X [camera frame, m]. X is visible if the search ends inside the image: u in
+  // [-1/2, width - 1/2], v in [-1/2, height - 1/2]. X is not visible if it lies on the lens's side
+  // of the outer plane, or behind the lens, or is NaN.
   refractive::Projection<T> project(const Vector3<T>& X) const {
     const Vector3<T>& n = camera_.port().normal;
     const refractive::Projection<T> none{Vector2<T>(T(0), T(0)), false};

@@ -10,22 +10,24 @@
 
 namespace axial::io {
 
-// Reads a JSON file. Error that names the file for a file larger than 256 MiB, malformed JSON, or a
-// key that occurs twice in an object.
+// Reads a JSON file. Throws an Error that names the file if it cannot be read, is larger than 256
+// MiB, contains malformed JSON, or contains a key twice in one object.
 nlohmann::json read_json(const std::filesystem::path& path);
 
 // Writes `json` indented, with a newline at the end. The file is written completely or not at all.
-// Error that names the file for text that is not UTF-8.
+// Throws an Error that names the file if it cannot be written, or if a text in `json` is not UTF-8.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 
-// Returns the JSON text on one line, for messages.
+// Returns the JSON text on one line, for messages. Precondition: all texts in `json` are UTF-8,
+// because otherwise the JSON library throws its own exception.
 std::string to_text(const nlohmann::json& json);
 
 // Returns the JSON text on one line if `indent` is negative, otherwise indented by `indent` spaces
 // for each level. Bytes that are not UTF-8 are replaced by U+FFFD.
 std::string to_text(const nlohmann::ordered_json& json, int indent = -1);
 
-// Parses a text. Returns null if the text is malformed.
+// Parses a text. Returns null if the text is malformed. Of a key that occurs twice in an object,
+// the last value is taken.
 nlohmann::ordered_json json_from(std::string_view text);
 
 }  // namespace axial::io
