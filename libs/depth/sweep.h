@@ -40,10 +40,11 @@
 namespace axial::depth {
 
 inline constexpr std::size_t kOwnViews = 4;  // largest number of views for a pixel's own plane
-// Largest number of views for the planes of a pixel on coarse levels, and for the random planes of
-// a restart. The random planes of a search are scored in two of the first kManyViews views. More
-// views do not find better planes: the views alternate from pixel to pixel, and a plane that is
-// good in one view is propagated together with this view.
+// Largest number of views on coarse levels for a pixel's own plane and the planes of its
+// neighbours, and on all levels for the random planes of a restart. The random planes of a search
+// are scored in two of the first kManyViews views. More views do not find better planes: the views
+// alternate from pixel to pixel, and a plane that is good in one view is propagated together with
+// this view.
 inline constexpr std::size_t kManyViews = 5;
 
 struct SweepInput {
