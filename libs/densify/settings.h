@@ -81,7 +81,8 @@ struct Settings {
   bool overwrite_dmaps = false;   // true: maps of other programs may be overwritten
   unsigned estimate_colors = 2;   // 0: no, 1: from the nearest view, 2: from all views of a point
   unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps
-  RegionMode region = RegionMode::adaptive;  // estimation, if the scene has no region of interest
+  // How the region of interest is estimated if the scene has none.
+  RegionMode region = RegionMode::adaptive;
   // Changes the size of the region. A positive value multiplies the half extents. A negative value
   // adds its absolute value [world units] to each half extent. 0: no change.
   double roi_border = 0;
