@@ -61,8 +61,8 @@ void apply(const Similarity& similarity, PointCloud& cloud);
 void apply(const Similarity& similarity, Mesh& mesh);
 
 // The homogeneous matrix of the similarity (Similarity::matrix()) as text: one line for each of the
-// four rows, with four numbers separated by spaces. The numbers have 17 digits, so that reading
-// them gives the identical doubles.
+// four rows, with four numbers separated by spaces. The numbers have up to 17 significant digits,
+// so that reading them gives the identical doubles.
 std::string matrix_text(const Similarity& similarity);
 
 }  // namespace axial::evaluate
