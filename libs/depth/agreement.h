@@ -34,8 +34,9 @@ struct MapAgreement {
   // asked: the number of points S that are compared with the neighbours. S is compared if it
   // projects to a pixel with a depth in at least two neighbours. consistent: the number of compared
   // points S that at least one neighbour confirms. For this test, take the neighbour's ray through
-  // the image of S, and the point on this ray at the neighbour's depth. The neighbour confirms S if
-  // this point projects into the map less than one pixel away from the image of P.
+  // the image of S, and the point on this ray at the depth that the neighbour's map has at the
+  // nearest pixel. The neighbour confirms S if this point projects into the map less than one pixel
+  // away from the image of P.
   std::size_t asked = 0, consistent = 0;
   // The map's confidences at the images of all used points P. Empty if the map has no confidences.
   std::vector<float> scores;
@@ -60,11 +61,11 @@ struct Agreement {
   double share = 0;        // median of PointDifference::share
   double pixels = 0;       // median of |PointDifference::pixels| [px]
   std::size_t cells = 0;   // number of cells with at least 8 points, in all images
-  // Median over cells of |median of PointDifference::pixels in the cell| [px]. The noise of single
-  // points cancels in the median of a cell.
+  // Median over these cells of |median of PointDifference::pixels in the cell| [px]. The noise of
+  // single points cancels in the median of a cell.
   double systematic = 0;
-  // Median over cells of this quotient: |median of PointDifference::pixels in the cell| divided
-  // by the standard error of the median.
+  // Median over these cells of this quotient: |median of PointDifference::pixels in the cell|
+  // divided by the standard error of the median.
   double significance = 0;
   std::size_t asked = 0;   // sum of MapAgreement::asked
   double consistent = 0;   // sum of MapAgreement::consistent divided by `asked`
@@ -99,10 +100,10 @@ struct Disagreement {
   bool any() const { return cameras() || score; }
 };
 
-// Compares an Agreement with the limits. Returns `pixels` if Agreement::pixels is above its limit.
-// Returns `consistent` and `score` if Agreement::consistent and Agreement::score are below their
-// limits. Returns `systematic` if Agreement::systematic and Agreement::significance are both above
-// their limits. Every result is false if there are too few values for its test.
+// Compares an Agreement with the limits. In the result, `pixels` is true if Agreement::pixels is
+// above its limit. `consistent` and `score` are true if the fields of Agreement with these names
+// are below their limits. `systematic` is true if Agreement::systematic and Agreement::significance
+// are both above their limits. A field is false if there are too few values for its test.
 Disagreement judge(const Agreement& agreement, const AgreementLimits& limits = {});
 
 }  // namespace axial::depth

@@ -41,7 +41,8 @@ struct ScorePair {
 struct PlaneScore {
   // From 0 to kMaxCost, computed in four steps. First, the cost c is 1 - ZNCC, or kOutsideCost
   // without a correlation. Second, if the source view has a depth map, geometric_weight times the
-  // geometric term (inconsistency() in geometric_check.h) is added to c. Third, c is blended with
+  // geometric term (inconsistency() in geometric_check.h) is added to c. The term is
+  // geometric_limit if the source view does not show the patch's centre. Third, c is blended with
   // the prior: c += w (min(|depth - prior| / prior, 0.5) - c), where w is the prior's weight.
   // Fourth, a cost above kMaxCost is reduced to kMaxCost.
   float cost;
@@ -74,8 +75,8 @@ class Matcher {
 
   // Sets scores[i] to the score of planes[pairs[i].plane] in the source view pairs[i].view. The
   // smoothness factors compare the planes with `neighbours`, the surface at neighbouring pixels.
-  // `pixel`: the result of pixels().prepare(), with or without a prior.
-  // Preconditions: all indices are valid; `scores` has at least the size of `pairs`.
+  // `pixel`: the result of pixels().prepare(), with or without a prior. Preconditions: all indices
+  // are valid; `scores` has at least the size of `pairs`.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<PlaneScore> scores) const {

@@ -23,8 +23,8 @@ inline constexpr float radians(float degrees) {
 
 struct PatchMatchOptions {
   Warp warp = Warp::affine;
-  int sub_resolution_levels = 1;  // largest number of coarser levels
-  int iterations = 2;             // sweeps per level
+  int sub_resolution_levels = 1;  // largest number of coarser levels, 0 or more
+  int iterations = 2;             // sweeps per level, 1 or more
   // A coarser level is used only if the shorter side of its reference image is at least this [px].
   int coarsest_side = 64;
 
@@ -64,7 +64,7 @@ struct PatchMatchOptions {
   // Range of depth trials: the motion of the surface point's image in the best source view. The
   // range is at most 5 % of the depth, and 0.3 % of the depth if this motion is not known.
   float refinement_pixels = 2.0f;
-  float refinement_angle = radians(28);  // range of normal trials
+  float refinement_angle = radians(28);  // range of normal trials [rad]
   // The cost of a pixel's best plane scales the ranges of trials: by 1/4 if the cost is at most
   // good_cost, otherwise by 1/2 if it is at most fair_cost, otherwise by 1. If the cost is
   // bad_cost or more, the pixel tries restart_trials random planes first.
@@ -73,14 +73,14 @@ struct PatchMatchOptions {
   // In a level's first sweep, a pixel tries `search_planes` random planes perpendicular to the
   // ray if its best plane so far costs more than `certain_cost`. Such a pixel tries
   // `search_pairs` pairs of trials in place of coarse_pairs or first_pairs. With 0 search planes
-  // there is no search. More than 5 search planes are an error. Thin structures need
-  // the random planes: their pixels match the background at a fair cost, and the coarser level
-  // does not resolve them.
+  // there is no search. More than 5 search planes are an error. Thin structures need the random
+  // planes: their pixels match the background at a fair cost, and the coarser level does not
+  // resolve them.
   int search_planes = 4;
   int search_pairs = 2;
   float certain_cost = 0.15f;
 
-  float keep_cost = 1.2f;  // hypotheses with this cost or more are removed
+  float keep_cost = 1.2f;  // hypotheses with this cost or more neither spread nor become depths
 
   float geometric_weight = 0.25f;  // of the geometric-consistency term (eq. 7) in the cost
   float geometric_limit = 4.0f;    // largest value of this term before it is weighted

@@ -31,7 +31,7 @@ struct PlanePixel {
   PlaneHypothesis plane;
   // Surface point of the plane on the pixel's ray [reference camera's frame, m].
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
-  float cost = 2;  // of the plane, 0 (perfect) to 2
+  float cost = 2;  // of the plane, 0 (perfect) to 2; 2 if it is not known
   BestViews views{kNoView, kNoView};
   // Motion of the point in the best view per metre of depth [px/m]; 0: unknown or not visible.
   float motion = 0;

@@ -12,8 +12,8 @@
 
 namespace axial::depth {
 
-// Random numbers for one key, which consists of image, pixel and sweep. The n-th call on a new
-// object gives a value that depends only on the key and n. So results do not depend on the number
+// Random numbers for one key, which consists of image, pixel and sweep. A new object with the same
+// key gives the same values in the same sequence of calls. So results do not depend on the number
 // of threads or on the order of pixels.
 class KeyedRandom {
  public:

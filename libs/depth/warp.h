@@ -46,9 +46,10 @@ inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
 
 // A warp policy has two functions. `between` computes the Map of a hypothesis and a source view.
 // Its arguments are the reference camera, the reference pixel, the plane and its PatchDerivative,
-// the source camera and its pose. `texels` computes the positions of the texels in the source view
-// from this Map and the reference pixel. Precondition of `texels`: Map::visible. The functions are
-// separate, so that the projections into several views can run in parallel in the processor.
+// the source camera and the RelativePose. `texels` computes the positions of the texels in the
+// source view from this Map and the reference pixel. Precondition of `texels`: Map::visible. The
+// functions are separate, so that the projections into several views can run in parallel in the
+// processor.
 
 // The exact projection of the centre and the exact first derivative (docs/refraction.md, "The
 // warp"). Needs no division per texel.

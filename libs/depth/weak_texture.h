@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Removes unreliable depths where the photograph shows little more than the camera's noise, for
-// example on sand, in haze and in open water. Also removes unreliable depths at image borders
+// example on sand, in haze and in open water. Removes unreliable depths at image borders, too
 // (border.h).
 #pragma once
 
@@ -21,9 +21,10 @@ struct WeakTextureOptions {
   float least_confidence = 0.6f;
 };
 
-// A depth is unsure if its pixel has weak texture or is near a border. Clears an unsure depth if
-// the mean confidence of all unsure depths in the 9x9 window around it is below least_confidence.
-// The confidence of a single pixel is not enough for this decision, because the best of many planes
+// A depth is unsure if its pixel has weak texture or is near a border. Sets the depth, normal and
+// confidence of a pixel with an unsure depth to 0 if the mean confidence of all unsure depths in
+// the 9x9 window around it is below least_confidence. The window includes the pixel itself. The
+// confidence of a single pixel is not enough for this decision, because the best of many planes
 // correlates even with noise. `grey`: the image of the map; throws an Error if it does not have the
 // map's size. `border`: border_pixels() of the map; empty: no pixel is near a border. Precondition:
 // `border` is empty or has the map's size. A map without confidences is returned unchanged, with
