@@ -7,15 +7,20 @@
 
 namespace axial::densify {
 
-// Estimates, before the scene is read, the memory for reading the scene of settings.input and for
-// scoring its views. The estimate uses the counts of images and points in the files. Throws an
-// Error if the allowed memory is less. The error names max_memory, its value and the least
-// necessary value. A scene whose estimate is below the memory of the program itself always passes,
-// because plan_memory() checks the whole need later.
+// Throws an Error if the allowed memory is too little for reading the scene of settings.input, with
+// the points of settings.point_cloud, and for scoring its views. The allowed memory is
+// memory_limit() (memory_limit.h). The error names max_memory, its value and the least necessary
+// value. Call this function before the scene is read: it estimates the memory from the counts of
+// images and points in the files. There is no error in two cases:
+// - The estimate is at most kProgramBytes, the memory of the program itself. plan_memory() checks
+//   the whole need later.
+// - The counts cannot be read. The function that reads the scene reports the fault.
 void require_memory_to_read(const Settings& settings);
 
-// The same check for a scene that was read, before its views are scored. The estimate includes
-// the lists of neighbours that scoring makes.
+// Makes the same check for a scene that was read. Call this function before the views are scored.
+// The estimate is closer than that of require_memory_to_read(), because it includes the lists of
+// neighbours that scoring makes. Throws an Error, too, if a point has a view of an image that does
+// not exist.
 void require_memory_to_score(const Scene& scene, const Settings& settings);
 
 }  // namespace axial::densify

@@ -17,35 +17,51 @@
 
 namespace axial::densify {
 
+// Selects the ports of the cameras. automatic: the ports of the housing file, if there is one.
+// pinhole: no ports; the housing file is not read. flat_port: the ports of the housing file; error
+// if it is missing or does not give every calibrated image a flat port.
 enum class CameraChoice { automatic, pinhole, flat_port };
 
-// Selects the depth maps of which pictures are written. The pictures lie beside the maps.
+// Selects the depth maps of which pictures are written. The pictures (.png) lie beside the maps.
 enum class Pictures { none, final_maps, maps_of_every_stage };
 
-// Bits of Settings::postprocess.
+// Bits of Settings::postprocess. Each bit switches on a filter for depth maps (depth/filters.h):
+// remove_speckles(), fill_gaps() and adjust_with_neighbours(), in this order.
 inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
 
-// Paths are absolute. An empty path means "none", unless its comment says otherwise.
+// Paths are absolute. `input`, `output` and `working_folder` are required. Any other path may be
+// empty. An empty path means "none", unless its comment says otherwise.
 struct Settings {
   std::filesystem::path input;           // scene (.mvs)
   std::filesystem::path output;          // scene to write (.mvs); its cloud has the extension .ply
   std::filesystem::path working_folder;  // for depth maps; base of relative paths in the scene
-  std::filesystem::path housing;         // empty: beside the scene, if there is one
-  std::filesystem::path point_cloud;     // empty: the scene's own points
-  std::filesystem::path mask_folder;     // empty: the masks that the scene names
+  std::filesystem::path housing;         // housing file; empty: beside the scene, if there is one
+  std::filesystem::path point_cloud;     // sparse points (.ply); empty: the scene's own points
+  // Folder with a mask for every calibrated image. Empty: the mask that the scene names for the
+  // image, or a mask in the image's folder (io::find_masks).
+  std::filesystem::path mask_folder;
+  // File that replaces computed lists of neighbours (neighbour_lists.h). Empty: all are computed.
   std::filesystem::path neighbour_lists;
   // If not empty, the run only writes the lists of neighbours to this file.
   std::filesystem::path neighbour_lists_output;
-  std::filesystem::path report;                     // results of the agreement check (.json)
-  std::filesystem::path pinhole_export;             // folder; needs `fuse`
+  std::filesystem::path report;  // file to write: results of the agreement check (.json)
+  // Folder to write (pinhole_export.h). Precondition: empty, or `fuse` is true and the run makes
+  // no other export.
+  std::filesystem::path pinhole_export;
   std::vector<std::filesystem::path> other_inputs;  // the caller's files: never overwritten
 
-  int ignore_mask_label = -1;  // below 0: no masks
-  int bit_depth = 0;           // bits that 16-bit images use: 8 to 16; 0: detected
+  int ignore_mask_label = -1;  // value of mask pixels to leave out; below 0: no masks are used
+  // The number of bits that the values of 16-bit images use: 8 to 16. 0: as many as the largest
+  // value in all images needs.
+  int bit_depth = 0;
 
   CameraChoice camera = CameraChoice::automatic;
-  bool refractive = false;     // true: the run needs a housing
-  bool allow_missing = false;  // no error if the housing gives no image a port
+  // True: error if there is no housing file, or if it gives no image a port. Has an effect only
+  // with CameraChoice::automatic.
+  bool refractive = false;
+  // True: a warning instead of an error if the file `housing` has ports, but gives no image a port.
+  // Has no effect if ports are required (`refractive` or CameraChoice::flat_port).
+  bool allow_missing = false;
   ProjectionMethod projection = ProjectionMethod::exact;
 
   ResolutionOptions resolution;
@@ -53,39 +69,44 @@ struct Settings {
   depth::PatchMatchOptions matching;
   depth::SpeckleOptions speckles;
   depth::GapOptions gaps;
-  unsigned number_views = 0;  // source views of an image, at most 32; 0: all suitable views
-  int geometric_iterations = 2;
-  unsigned postprocess = kSpeckles | kGaps;
+  unsigned number_views = 0;     // source views of an image, at most 32; 0: all suitable views
+  int geometric_iterations = 2;  // passes of refine_depth_map() (depth/patch_match.h), 0 or more
+  unsigned postprocess = kSpeckles | kGaps;  // sum of the bits above; 0: no filter
 
-  // densify() sets the field `normals` by estimate_normals, and max_maps and max_loads by the
-  // memory plan.
+  // densify() ignores the fields `normals`, max_maps and max_loads. estimate_normals replaces
+  // `normals`, and the memory plan replaces the other two.
   cloud::FuseOptions fusion;
   bool make_maps = true;          // false: existing maps in the working folder are used unchanged
   bool fuse = true;               // false: the sparse points become the cloud
   bool overwrite_dmaps = false;   // true: maps of other programs may be overwritten
   unsigned estimate_colors = 2;   // 0: no, 1: from the nearest view, 2: from all views of a point
   unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps
+  // How the region of interest is estimated if the scene has none.
   RegionMode region = RegionMode::adaptive;
-  double roi_border = 0;  // see with_border()
-  bool crop_to_roi = true;
-  bool remove_dmaps = false;      // remove the depth maps after fusion
-  bool double_precision = false;  // write the cloud as double, in world coordinates
+  // Changes the size of the region. A positive value multiplies the half extents. A negative value
+  // adds its absolute value [world units] to each half extent. 0: no change.
+  double roi_border = 0;
+  bool crop_to_roi = true;    // leave out points of the dense cloud outside the region, if any
+  bool remove_dmaps = false;  // remove the depth maps after fusion
+  // Positions of the written cloud. True: double, in world coordinates. False: float, relative to
+  // the scene's offset if it has one.
+  bool double_precision = false;
 
-  // The next three ask for an export of the scene's points instead of densifying. For their values
-  // see export_cloud() (cloud_exports.h). 0: no export.
-  int filter_point_cloud = 0;
-  int export_number_views = 0;
-  double estimate_scale = 0;
+  // The next three ask for an export of points instead of densifying (export_cloud() in
+  // cloud_exports.h). With the default 0 of all three there is no export.
+  int filter_point_cloud = 0;   // below 0: points of higher visibility; above 0: no effect
+  int export_number_views = 0;  // N or -N: points that N or more images see; -N: also a scene
+  double estimate_scale = 0;    // above 0: all points, with sizes of this number of pixels
 
   Pictures pictures = Pictures::none;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
-  unsigned max_threads = 0;      // 0: as many as cores
+  unsigned max_threads = 0;      // largest number of threads; 0: as many as cores
 
   // How errors and warnings name the fields of this struct.
   SettingNames name_of = own_name;
 };
 
-// Whether the cloud takes colours from the images.
+// Whether the dense cloud takes colours from the images.
 inline bool needs_colors(const Settings& settings) {
   return settings.fuse && settings.estimate_colors > 0;
 }

@@ -18,8 +18,8 @@ namespace axial::depth {
 // patch of wrong depths 14 pixels wide.
 inline constexpr int kBorderWidth = 3 * kPatchRadius;
 
-// The side [px] of a block. All pixels of a block share one projection into the source views,
-// because projections take most of the time.
+// The side [px] of the square blocks into which border_pixels() divides the map. All pixels of a
+// block share one projection into the source views, because projections take most of the time.
 inline constexpr int kBorderBlock = 4;
 
 // Returns 255 for pixels near borders, 0 elsewhere. The result is 0 for a pixel without a depth.
@@ -27,8 +27,9 @@ inline constexpr int kBorderBlock = 4;
 // kBorderWidth from the border of the reference image. In the second case, no source view shows
 // the surface point of the pixel's block at least kBorderWidth from the border of the source
 // image. The surface point of a block is the point of the first pixel with a depth in the block,
-// row by row. `map`: the depth map of input.reference. Throws an Error if input.projection does
-// not support the cameras. Precondition: the map has the size of its image.
+// row by row. Without source views, every pixel with a depth is near a border. The result has the
+// size of `map`. `map`: the depth map of input.reference. Throws an Error if input.projection does
+// not support the cameras. Precondition: `map` has the size of input.reference->grey.
 cv::Mat1b border_pixels(const MatchInput& input, const DepthMap& map);
 
 }  // namespace axial::depth

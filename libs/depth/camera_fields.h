@@ -14,16 +14,20 @@
 
 namespace axial::depth {
 
+// A camera or a projector that calls a function for each of its numbers (each_field() in
+// refractive/axial_ray.h).
 template <class Fielded>
 concept HasFields = requires(Fielded fielded) {
   fielded.each_field([](auto&) {});
 };
 
-// A camera type that the SIMD code supports.
+// A camera type that the SIMD code supports: one kind of camera, or AnyCamera, which contains a
+// camera of any kind.
 template <class Camera>
 concept InLanes = HasFields<Camera> || std::is_same_v<Camera, AnyCamera<float>>;
 
-// The CameraKind of each camera type that the SIMD code supports.
+// The CameraKind of each camera type that the SIMD code supports, except AnyCamera. The pointer
+// selects the overload and is not read.
 consteval lanes::CameraKind lane_kind(const refractive::PinholeCamera<float>*) {
   return lanes::CameraKind::pinhole;
 }
@@ -42,11 +46,13 @@ consteval lanes::CameraKind lane_kind(const refractive::LensFlatPortCamera<float
 consteval lanes::CameraKind lane_kind(const refractive::LensDomePortCamera<float>*) {
   return lanes::CameraKind::lens_dome_port;
 }
+// The CameraKind of the type Camera.
 template <HasFields Camera>
 inline constexpr lanes::CameraKind kLaneKind = lane_kind(static_cast<const Camera*>(nullptr));
 
-// Returns the float fields of a camera or projector, in the order of each_field(). An integer
-// field becomes CameraFields::steps. Precondition: at most lanes::kMaxCameraFields float fields.
+// Returns the numbers of a camera or projector. The float numbers become CameraFields::value, in
+// the order of each_field(). The integer, if there is one, becomes CameraFields::steps.
+// Preconditions: at most lanes::kMaxCameraFields floats and at most one integer.
 template <HasFields Fielded>
 lanes::CameraFields fields_of(Fielded from) {
   lanes::CameraFields fields;
@@ -60,7 +66,8 @@ lanes::CameraFields fields_of(Fielded from) {
   return fields;
 }
 
-// Calls visit(camera) with the concrete camera type, also if `camera` is an AnyCamera.
+// Calls `visit` with `camera`, or, if `camera` is an AnyCamera, with the camera that it contains.
+// Returns the result of the call.
 template <InLanes Camera, class Visit>
 auto visit_kind(const Camera& camera, Visit&& visit) {
   if constexpr (HasFields<Camera>)
@@ -69,6 +76,7 @@ auto visit_kind(const Camera& camera, Visit&& visit) {
     return std::visit(visit, camera.kind());
 }
 
+// The kind of `camera`, or, if `camera` is an AnyCamera, of the camera that it contains.
 template <InLanes Camera>
 lanes::CameraKind kind_of(const Camera& camera) {
   return visit_kind(camera, []<class Kind>(const Kind&) { return kLaneKind<Kind>; });

@@ -21,8 +21,8 @@ namespace axial::depth {
 // The exact result would need a projection of the moved point, which takes more time. The result
 // |e| equals the exact result to first order in the component of the shift across the ray. The
 // relative error is about half of |e| divided by the focal length: at a focal length of 800 px,
-// 0.2 % for the 3 px at which the term of the cost reaches its limit. The result is not finite
-// where neighbouring rays do not diverge.
+// 0.2 % for the 3 px at which the term of the cost reaches its limit. The result is negative or
+// not finite where neighbouring rays do not diverge at lambda.
 template <class T>
 T shift_in_pixels(const refractive::AxialRay<T>& ray,
                   const refractive::AxialRayJacobian<T>& jacobian, const T& depth,
@@ -39,8 +39,8 @@ T shift_in_pixels(const refractive::AxialRay<T>& ray,
   return sqrt(u * u + v * v) / area;
 }
 
-// The term sqrt(e (e + 2)) of the forward-backward error e = `error` [px]. A term above `limit`
-// is reduced to `limit`.
+// The term sqrt(e (e + 2)) of the forward-backward error e = `error` [px]. The result is `limit` if
+// the term is above `limit` or is NaN.
 template <class T>
 T inconsistency_term(const T& error, const T& limit) {
   using refractive::select;

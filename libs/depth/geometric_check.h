@@ -44,13 +44,14 @@ inline float depth_near(const cv::Mat1f& depth, const Eigen::Vector2f& at, float
 // `limit` if the term is larger. Let A be the surface point of the hypothesis. Let B be the point
 // on the source view's ray through A at the depth that the source view's depth map has there. Then
 // e is the distance between the images of A and B in the reference view, computed to first order
-// (shift_in_pixels). Returns `limit`, too, if every depth of the map next to the image of A differs
-// from the depth of A by the share kSameSurface or more.
+// (shift_in_pixels). Returns `limit`, too, if the image of A is outside the map, or if every depth
+// of the map next to the image of A differs from the depth of A by the share kSameSurface or more.
 //
 // `ray`, `jacobian`: the reference pixel's ray and its derivatives by the pixel, in the reference
 // camera's frame. `depth`: the depth of the hypothesis along this ray [m]. `in_source`: the point A
-// in the source camera's frame [m]. `seen_at`: the image of A in the source view [px].
-// `source_depth`: the depth map of the source view [m].
+// in the source camera's frame [m]. `seen_at`: the image of A in the source view [px]. `source`:
+// the source camera. `from_reference`: from the reference camera's frame to the source camera's
+// frame. `source_depth`: the depth map of the source view [m], at least 2x2 pixels.
 template <class Camera>
 float inconsistency(const refractive::AxialRay<float>& ray,
                     const refractive::AxialRayJacobian<float>& jacobian, float depth,

@@ -21,14 +21,15 @@
 
 namespace axial::depth {
 
-inline constexpr std::size_t kMaxSources = 32;
+inline constexpr std::size_t kMaxSources = 32;  // largest number of source views
 
 template <class Camera>
 struct SourceView {
   Camera camera;
-  RelativePose from_reference;
+  RelativePose from_reference;  // from the reference camera's frame to this camera's frame
   const QuadImage* image = nullptr;
-  const cv::Mat1f* depth = nullptr;  // the source view's depth map; null: photometric cost only
+  // The depth map of the view [m], with the size of `image`. Null: photometric cost only.
+  const cv::Mat1f* depth = nullptr;
 };
 
 // A plane hypothesis and a source view in which the plane is scored, both as indices.
@@ -40,20 +41,24 @@ struct ScorePair {
 struct PlaneScore {
   // From 0 to kMaxCost, computed in four steps. First, the cost c is 1 - ZNCC, or kOutsideCost
   // without a correlation. Second, if the source view has a depth map, geometric_weight times the
-  // geometric term (inconsistency() in geometric_check.h) is added to c. Third, c is blended with
+  // geometric term (inconsistency() in geometric_check.h) is added to c. The term is
+  // geometric_limit if the source view does not show the patch's centre. Third, c is blended with
   // the prior: c += w (min(|depth - prior| / prior, 0.5) - c), where w is the prior's weight.
   // Fourth, a cost above kMaxCost is reduced to kMaxCost.
   float cost;
   // Motion of the patch's centre in the source view per metre of depth [px/m]; 0: not visible.
   float motion;
-  float smoothness;  // factor of the cost (smoothness.h); the same in all views of a plane
+  // Factor of the cost, at most 1 (smoothness.h). `cost` does not contain it. It is equal in all
+  // views of a plane.
+  float smoothness;
 };
 
+// Scores plane hypotheses one after the other. `Warp`: a warp policy (warp.h).
 template <class Camera, class Warp>
 class Matcher {
  public:
-  // The images of the reference view and of the sources, and the sources' depth maps, must outlive
-  // the matcher.
+  // `image`: the reference image. `camera`: the reference camera. `image`, and the images and depth
+  // maps of the sources, must outlive the matcher. Precondition: each source has an image.
   Matcher(const cv::Mat1b& image, Camera camera, std::vector<SourceView<Camera>> sources,
           const PatchMatchOptions& options)
       : pixels_(image, camera, options),
@@ -62,13 +67,16 @@ class Matcher {
         options_(options),
         zncc_(fastest_zncc()) {}
 
-  std::size_t views() const { return sources_.size(); }
+  std::size_t views() const { return sources_.size(); }  // number of source views
+  // Prepares pixels of the reference image for score().
   const PixelSampler<Camera>& pixels() const { return pixels_; }
+  // Sets `tile` to the rays of the reference camera, as RayCaster::rays() does.
   void rays(int x, int y, RayTile& tile) const { caster_.rays(x, y, tile); }
 
   // Sets scores[i] to the score of planes[pairs[i].plane] in the source view pairs[i].view. The
   // smoothness factors compare the planes with `neighbours`, the surface at neighbouring pixels.
-  // Preconditions: all indices are valid; `scores` has at least the size of `pairs`.
+  // `pixel`: the result of pixels().prepare(), with or without a prior. Preconditions: all indices
+  // are valid; `scores` has at least the size of `pairs`.
   void score(const ReferencePixel& pixel, std::span<const PlaneHypothesis> planes,
              std::span<const ScorePair> pairs, std::span<const SurfacePoint> neighbours,
              std::span<PlaneScore> scores) const {

@@ -26,7 +26,7 @@ struct PartSums {
 
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// weight * (intensity - mean)^2 of texel k.
+// The value w d^2 of texel k (PartSums), without the share.
 inline float reference_square(const ReferencePatch& patch, std::size_t k) {
   return patch.weight[k] > 0 ? patch.deviation[k] * patch.deviation[k] / patch.weight[k] : 0.0f;
 }

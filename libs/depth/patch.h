@@ -18,6 +18,7 @@ struct TexelOffsets {
   alignas(32) std::array<float, kPaddedTexels> y{};
 };
 
+// Computes kTexelOffsets.
 constexpr TexelOffsets make_texel_offsets() {
   TexelOffsets offsets;
   int k = 0;
@@ -32,13 +33,14 @@ constexpr TexelOffsets make_texel_offsets() {
 inline constexpr TexelOffsets kTexelOffsets = make_texel_offsets();
 
 // Gathers windows with bilateral weights. The factors of the weights are tabulated: one by the
-// difference of 8-bit intensities, one by texel.
+// difference of 8-bit intensities, one by texel. Of the options, only sigma_color and sigma_space
+// are used.
 class PatchSampler {
  public:
   explicit PatchSampler(const PatchMatchOptions& options);
 
-  // Fills `patch` with the window around pixel (x, y). Deviations refer to intensities from 0 to 1.
-  // Texels outside the image have weight 0. Precondition: (x, y) lies inside the image.
+  // Sets `patch` to the window around pixel (x, y). Texels outside the image have weight 0.
+  // Precondition: (x, y) lies inside the image.
   void gather(const cv::Mat1b& image, int x, int y, ReferencePatch& patch) const;
 
  private:
@@ -50,7 +52,7 @@ class PatchSampler {
   std::array<float, kTexels> space_weight_;
 };
 
-// True if the whole window lies inside an image of this size.
+// True if the whole window around pixel (x, y) lies inside an image of width x height pixels.
 inline bool window_inside(int x, int y, int width, int height) {
   return x >= kPatchRadius && y >= kPatchRadius && x < width - kPatchRadius &&
          y < height - kPatchRadius;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The random numbers of PatchMatch.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,24 +12,24 @@
 
 namespace axial::depth {
 
-// Random numbers for one key, which consists of image, pixel and sweep. The n-th number of a key
-// is always the same. So results do not depend on the number of threads or on the order of
-// pixels.
+// Random numbers for one key, which consists of image, pixel and sweep. A new object with the same
+// key gives the same values in the same sequence of calls. So results do not depend on the number
+// of threads or on the order of pixels.
 class KeyedRandom {
  public:
   KeyedRandom(std::uint64_t image, std::uint64_t pixel, std::uint64_t sweep)
       : key_(scramble(scramble(scramble(image) ^ pixel) ^ sweep)) {}
 
-  float unit() { return unit_float(scramble(key_ + ++count_)); }  // [0, 1)
+  float unit() { return unit_float(scramble(key_ + ++count_)); }  // uniform in [0, 1)
 
   // A random unit normal that faces the camera, uniform over the directions within 80 degrees of
-  // -ray_direction.
+  // -ray_direction. Precondition: ray_direction has unit length.
   Eigen::Vector3f facing_normal(const Eigen::Vector3f& ray_direction) {
     const float cosine = 1.0f - unit() * (1.0f - 0.17365f);
     return tilted(-ray_direction, cosine, unit());
   }
 
-  // Three numbers in [-1, 1) of 21 bits each.
+  // Three independent numbers, uniform over the multiples of 2^-20 in [-1, 1).
   std::array<float, 3> symmetric_triple() {
     const std::uint64_t bits = scramble(key_ + ++count_);
     const auto part = [bits](int shift) {

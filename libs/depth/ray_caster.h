@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Computes the rays of a camera's pixels, for kRayTile pixels of a row at a time. For the camera
-// types that the SIMD code supports, the rays are computed with SIMD, for other types one after the
-// other.
+// types that the SIMD code supports (InLanes), the rays are computed with SIMD, for other types one
+// after the other. All rays and their derivatives are in the camera's frame.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 
 namespace axial::depth {
 
+// The ray caster for any camera type, without SIMD.
 template <class Camera>
 class RayCaster {
  public:
@@ -33,10 +34,12 @@ class RayCaster {
 // The ray caster with SIMD. Its rays are bit-identical to the results of the camera's ray().
 class LaneRayCaster {
  public:
-  // Precondition: `set` is available.
+  // `tables`: the result of ray_tables(). Precondition: `set` is available.
   LaneRayCaster(std::unique_ptr<const lanes::SceneTables> tables, lanes::InstructionSet set)
       : tables_(std::move(tables)), scorer_(lanes::make_scorer(*tables_, set)) {}
 
+  // Sets `tile` to the rays of the pixels (x, y) to (x + kRayTile - 1, y), with their derivatives.
+  // The pixels may lie outside the image.
   void rays(int x, int y, RayTile& tile) const;
 
  private:
@@ -49,6 +52,7 @@ class LaneRayCaster {
 template <InLanes Camera>
 std::unique_ptr<const lanes::SceneTables> ray_tables(const Camera& camera);
 
+// The ray caster for the camera types that the SIMD code supports.
 template <InLanes Camera>
 class RayCaster<Camera> : public LaneRayCaster {
  public:
@@ -57,7 +61,8 @@ class RayCaster<Camera> : public LaneRayCaster {
       : LaneRayCaster(ray_tables(camera), set) {}
 };
 
-// Calls visit(x, ray) for the first `width` pixels of row y, from left to right.
+// Calls visit(x, ray) for the first `width` pixels of row y, from left to right. `ray` is the
+// AxialRay of the pixel.
 template <class Camera, class Visit>
 void each_ray_of_row(const RayCaster<Camera>& caster, int y, int width, Visit&& visit) {
   RayTile tile;
@@ -67,7 +72,8 @@ void each_ray_of_row(const RayCaster<Camera>& caster, int y, int width, Visit&& 
   }
 }
 
-// Calls visit(x, y, ray) for every pixel, row by row.
+// Calls visit(x, y, ray) for every pixel of an image of width x height pixels, row by row. `ray` is
+// the AxialRay of the pixel.
 template <class Camera, class Visit>
 void each_ray(const Camera& camera, int width, int height, Visit&& visit) {
   const RayCaster<Camera> caster(camera);

@@ -9,26 +9,28 @@
 
 namespace axial::depth {
 
-inline constexpr int kPatchRadius = 4;
-inline constexpr int kPatchStep = 2;
-inline constexpr int kTexels = 25;
-inline constexpr int kCentreTexel = 12;
+inline constexpr int kPatchRadius = 4;    // from the centre to the outermost texels [px]
+inline constexpr int kPatchStep = 2;      // between texels [px]
+inline constexpr int kTexels = 25;        // number of texels
+inline constexpr int kCentreTexel = 12;   // index of the texel at the centre
 inline constexpr int kPaddedTexels = 32;  // four vectors of eight; the padding has weight zero
 
 // The window around a reference pixel. It is computed once per pixel and used for all hypotheses
-// and source views.
+// and source views. Texels are in row-major order.
 struct ReferencePatch {
-  alignas(32) std::array<float, kPaddedTexels> weight;     // bilateral, sums to 1
-  alignas(32) std::array<float, kPaddedTexels> deviation;  // weight * (intensity - mean)
-  // Weighted mean of the intensities, 0 to 255. This mean is also subtracted from the grey levels
-  // of the source image, so that the sums over these grey levels stay small.
+  // Bilateral weights (PatchMatchOptions::sigma_color and sigma_space). Their sum is 1.
+  alignas(32) std::array<float, kPaddedTexels> weight;
+  // weight * (intensity - mean intensity), with intensities from 0 to 1.
+  alignas(32) std::array<float, kPaddedTexels> deviation;
+  // Weighted mean of the grey levels, 0 to 255. ZNCC subtracts this mean from the grey levels of
+  // the source image, too, so that the sums over these grey levels stay small.
   float mean;
-  float variance;  // sum of weight * (intensity - mean)^2 with intensities from 0 to 1
-  float texture;   // as `variance`, but with the weights before normalisation (at most 1)
+  float variance;  // sum of weight * (intensity - mean intensity)^2, with intensities from 0 to 1
+  float texture;   // `variance` times the sum of the weights before they were divided by this sum
 };
 
 inline constexpr float kOutsideCost = 1.2f;  // cost of a patch without a correlation
-inline constexpr float kMaxCost = 2.0f;
+inline constexpr float kMaxCost = 2.0f;      // largest cost
 
 // The result for a patch without a correlation. A patch has no correlation if its centre lies
 // outside the source image or is NaN, if too little of the patch lies inside the image
@@ -51,7 +53,7 @@ inline constexpr float kFlatVariance = 0.25f;
 inline constexpr float kFlatReference = kFlatVariance / (255 * 255);
 
 // If the depth in the map of a source view differs from the depth of a hypothesis by less than this
-// share, both count as the same surface.
+// share of the hypothesis's depth, both count as the same surface.
 inline constexpr float kSameSurface = 0.03f;
 
 }  // namespace axial::depth

@@ -15,7 +15,8 @@ namespace axial::depth {
 struct SmoothnessOptions {
   float depth_sigma = 0.02f;  // standard deviation of d_v / |X|
   float depth_bonus = 0.07f;  // largest reduction of the factor by d_v of one neighbour
-  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;  // of the angle [rad]
+  // Standard deviation of the angle between the normals of hypothesis and neighbour [rad].
+  float normal_sigma = 13 * std::numbers::pi_v<float> / 180;
   float normal_bonus = 0.0672f;  // largest reduction of the factor by one neighbour's normal
 };
 
@@ -38,9 +39,11 @@ T fading(const T& x) {
   return y * y;
 }
 
-// Returns the factor of the cost of the plane through `point` [m] with the unit normal `normal`.
-// The factor is at most 1. It is smaller the closer the neighbours' points lie to the plane, and
-// the better the neighbours' normals agree with `normal`. It is 1 without neighbours.
+// Returns the factor of the cost of the plane through `point` [m] with the unit normal `normal`,
+// both in the reference camera's frame. The factor is the product, over the neighbours, of
+// (1 - depth_bonus exp(-d_v^2 / (2 |X|^2 depth_sigma^2))) and
+// (1 - normal_bonus exp(-angle^2 / (2 normal_sigma^2))), with fading() for exp(-x). So it is at
+// most 1, and 1 without neighbours.
 template <class T>
 T smoothness(const refractive::Vector3<T>& point, const refractive::Vector3<T>& normal,
              std::span<const SurfacePoint> neighbours, const SmoothnessOptions& options) {

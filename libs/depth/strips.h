@@ -14,9 +14,10 @@
 
 namespace axial::depth {
 
-inline constexpr int kStripHeight = 32;
+inline constexpr int kStripHeight = 32;  // rows of a strip; the last strip may have fewer
 
-// The surface at the up to four pixels next to a pixel. Pixels without a plane are left out.
+// The surface at the up to four pixels that share an edge with a pixel. Pixels without a plane are
+// left out.
 struct Neighbourhood {
   std::array<SurfacePoint, 4> points;
   std::size_t count = 0;
@@ -24,6 +25,7 @@ struct Neighbourhood {
   std::span<const SurfacePoint> all() const { return {points.data(), count}; }
 };
 
+// The strips of a map, numbered from the top from 0.
 class Strips {
  public:
   // The map must outlive the strips.
@@ -35,8 +37,8 @@ class Strips {
   int top(int strip) const { return strip * kStripHeight; }
   int bottom(int strip) const { return std::min(top(strip) + kStripHeight, map_.height); }
 
-  // Copies the two rows at each edge between strips. Call this function before the sweep changes
-  // a pixel.
+  // Copies the two rows at each edge between strips: the last row of a strip and the first row of
+  // the next. Call this function before the sweep changes a pixel.
   void copy_edges() {
     const auto width = static_cast<std::ptrdiff_t>(map_.width);
     edges_.clear();
@@ -47,7 +49,8 @@ class Strips {
   }
 
   // Returns pixel (x, y): its current state if the pixel belongs to the strip, or its state at the
-  // call of copy_edges() if the pixel is in the row above or below the strip.
+  // call of copy_edges() if the pixel is in the row above or below the strip. Precondition: the
+  // pixel lies inside the map, in the strip or in one of these two rows.
   const PlanePixel& neighbour(int strip, int x, int y) const {
     const int first = top(strip);
     if (y >= first && y < first + kStripHeight) return map_.at(x, y);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One PatchMatch sweep. The image is divided into strips of rows. The pixels of a strip are
-// visited row by row, forwards or backwards, so that a good hypothesis propagates through the
-// whole strip. Across the edge of a strip, pixels read the state before the sweep. So strips are
-// independent, and the results are bit-identical for any number of threads.
+// visited row by row, forwards (from the top left) or backwards (from the bottom right), so that a
+// good hypothesis propagates through the whole strip. Across the edge of a strip, pixels read the
+// state before the sweep. So strips are independent, and the results are bit-identical for any
+// number of threads.
 //
 // A visit scores the pixel's own plane in at most four views. It scores the planes of the two
 // neighbours visited before, each in the two best views of the plane. These are at most eight
@@ -11,9 +12,10 @@
 // the other planes (one AVX-512 register). In this case, the best plane is not known yet, so the
 // trials lie near the plane with the lowest earlier cost.
 //
-// In a level's first sweep, a pixel whose plane is not certain also tries random planes
-// (PatchMatchOptions::search_planes). On coarse levels every plane is scored in five views,
-// because the best views are not known yet and these levels have few pixels.
+// In a level's first sweep, a pixel whose plane is not certain tries random planes, too
+// (PatchMatchOptions::search_planes). On coarse levels the pixel's own plane and the planes of its
+// neighbours are scored in up to five views, because the best views are not known yet and these
+// levels have few pixels.
 #pragma once
 
 #include <algorithm>
@@ -37,38 +39,54 @@
 
 namespace axial::depth {
 
-inline constexpr std::size_t kOwnViews = 4;  // number of views for a pixel's own plane
-// Number of views for all planes of a pixel on coarse levels, and for random planes. More views do
-// not find better planes: the views alternate from pixel to pixel, and a plane that is good in one
-// view is propagated together with this view.
+inline constexpr std::size_t kOwnViews = 4;  // largest number of views for a pixel's own plane
+// Largest number of views on coarse levels for a pixel's own plane and the planes of its
+// neighbours, and on all levels for the random planes of a restart. The random planes of a search
+// are scored in two of the first kManyViews views. More views do not find better planes: the views
+// alternate from pixel to pixel, and a plane that is good in one view is propagated together with
+// this view.
 inline constexpr std::size_t kManyViews = 5;
 
 struct SweepInput {
-  std::uint32_t image_id = 0;
-  std::uint32_t sweep = 0;  // unique over levels and passes; odd sweeps run backwards
+  std::uint32_t image_id = 0;  // global id of the reference image: a key of the random numbers
+  std::uint32_t sweep = 0;     // unique over levels and passes; odd sweeps run backwards
+  // Range of depths [m], above 0. A plane at another depth counts as no hypothesis.
   float min_depth = 0;
   float max_depth = 0;
-  // Prior depths [m] from the coarser level, of the map's size; null: no prior.
+  // Prior depths from the coarser level [m]; 0: this pixel has no prior; null: no pixel has a
+  // prior.
   const cv::Mat1f* prior = nullptr;
-  // Prior depths that replace `prior` at textureless pixels; null: `prior` is used there, too. In a
-  // geometric pass, they keep the depths that textureless pixels got from the coarser levels.
+  // Prior depths [m] that replace `prior` at textureless pixels; 0: this pixel has no prior; null:
+  // `prior` counts at textureless pixels, too. A textureless pixel without a prior loses its
+  // hypothesis. A geometric pass sets this field to the current depths: so textureless pixels,
+  // which have their depths from the coarser levels, do not lose these depths.
   const cv::Mat1f* textureless_prior = nullptr;
-  const cv::Mat1b* mask = nullptr;  // non-zero: visit this pixel; null: all pixels
-  int trial_pairs = 0;              // pairs of trials around the best hypothesis, at most 4
-  bool first = false;               // true: a pixel without a hypothesis gets a random plane
-  bool many_views = false;          // score all planes in kManyViews views
+  // Non-zero: visit this pixel. Zero: the pixel loses its hypothesis. Null: visit all pixels.
+  const cv::Mat1b* mask = nullptr;
+  int trial_pairs = 0;  // pairs of trials around the best hypothesis, at most 4
+  // True in the first sweep of a level: a pixel without a hypothesis gets a random plane, and a
+  // pixel whose plane is not certain tries random planes. False: neither happens.
+  bool first = false;
+  // True: the pixel's own plane and the planes of its neighbours are scored in up to kManyViews
+  // views.
+  bool many_views = false;
 };
 
+// One sweep over the planes of `map`. `matcher`: Matcher or LaneMatcher (lane_matcher.h).
 template <class Matcher>
 class Sweep {
  public:
+  // All arguments except `input`, and the images to which `input` points, must outlive the sweep.
+  // Preconditions: `map` and the images of `input` have the size of the reference image; there are
+  // 1 to kMaxSources source views.
   Sweep(const Matcher& matcher, PlaneMap& map, const PatchMatchOptions& options,
         const SweepInput& input)
       : matcher_(matcher), map_(map), options_(options), input_(input), strips_(map) {
     for (std::size_t i = 0; i < matcher.views(); ++i) all_views_[i] = static_cast<std::uint8_t>(i);
   }
 
-  // Runs the sweep on all threads. Returns the number of scores (of one plane in one view).
+  // Runs the sweep on all threads and changes the map. Returns the number of computed scores. A
+  // score is for one plane in one view.
   std::uint64_t run() {
     prepare();
     std::vector<std::uint64_t> scores(static_cast<std::size_t>(strips()));
@@ -77,11 +95,13 @@ class Sweep {
     return std::accumulate(scores.begin(), scores.end(), std::uint64_t{0});
   }
 
-  // The steps of run(): first prepare(), then run_strip() for each strip, in any order.
+  // The steps of run(): first prepare(), then run_strip() for each strip, in any order or at the
+  // same time. strips() returns the number of strips.
   int strips() const { return strips_.count(); }
 
   void prepare() { strips_.copy_edges(); }
 
+  // `number`: from 0 to strips() - 1. Returns the number of computed scores.
   std::uint64_t run_strip(int number) {
     const int top = strips_.top(number), bottom = strips_.bottom(number);
     Strip strip{number, {}, 0};
@@ -122,6 +142,8 @@ class Sweep {
     return depth >= input_.min_depth && depth <= input_.max_depth;
   }
 
+  // A random plane with a random normal. The square root of its depth is uniformly distributed over
+  // the depth range.
   PlaneHypothesis random_plane(const ReferencePixel& pixel, KeyedRandom& random) const {
     const float low = std::sqrt(input_.min_depth);
     const float root = low + random.unit() * (std::sqrt(input_.max_depth) - low);

@@ -14,6 +14,7 @@
 
 namespace axial::depth {
 
+// The transformation of points [m] from the reference camera's frame to the source camera's frame:
 // x_in_source = rotation * x_in_reference + translation.
 struct RelativePose {
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
@@ -27,13 +28,15 @@ struct RelativePose {
   Eigen::Vector3f apply(const Eigen::Vector3f& x) const { return rotation * x + translation; }
 };
 
-// The surface point of a hypothesis at the window's centre and the point's derivative by the
-// reference pixel [m/px], in the reference camera's frame.
+// The surface point [m] of a hypothesis at the window's centre and the point's derivative by the
+// reference pixel (u, v) [m/px], in the reference camera's frame.
 struct PatchDerivative {
   Eigen::Vector3f point;
   refractive::Matrix32<float> by_pixel;
 };
 
+// `ray`, `jacobian`: the ray of the reference pixel and its derivatives, in the reference camera's
+// frame.
 inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
                                         const refractive::AxialRayJacobian<float>& jacobian,
                                         const PlaneHypothesis& plane) {
@@ -42,8 +45,11 @@ inline PatchDerivative patch_derivative(const refractive::AxialRay<float>& ray,
 }
 
 // A warp policy has two functions. `between` computes the Map of a hypothesis and a source view.
-// `texels` computes the positions of the texels in the source view from this Map. The functions
-// are separate, so that the projections into several views can run in parallel in the processor.
+// Its arguments are the reference camera, the reference pixel, the plane and its PatchDerivative,
+// the source camera and the RelativePose. `texels` computes the positions of the texels in the
+// source view from this Map and the reference pixel. Precondition of `texels`: Map::visible. The
+// functions are separate, so that the projections into several views can run in parallel in the
+// processor.
 
 // The exact projection of the centre and the exact first derivative (docs/refraction.md, "The
 // warp"). Needs no division per texel.
@@ -78,9 +84,9 @@ struct AffineWarp {
 // For pinhole cameras this is the usual homography of a plane.
 struct HomographyWarp {
   struct Map {
-    Eigen::Vector2f centre;  // image of the surface point in the source view [px], not rounded
-    bool visible;            // false: the other members have no meaning
-    Eigen::Matrix3f homography;
+    Eigen::Vector2f centre;      // image of the surface point in the source view [px], not rounded
+    bool visible;                // false: the other members have no meaning
+    Eigen::Matrix3f homography;  // from the reference pixel to the source pixel, homogeneous
   };
 
   template <class Camera>

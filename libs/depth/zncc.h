@@ -14,16 +14,16 @@ namespace axial::depth {
 
 // An 8-bit image prepared for bilinear sampling. One 32-bit word per pixel holds the grey levels of
 // the pixel and of its right, lower and lower right neighbours in bytes 0 to 3, so that a texel
-// needs one load. In the last column and row, the border pixels are repeated. Precondition: the
-// image is not empty.
+// needs one load. In the last column and row, the border pixels are repeated.
 class QuadImage {
  public:
-  QuadImage() = default;
+  QuadImage() = default;  // an image without pixels
+  // Precondition: `image` is not empty.
   explicit QuadImage(const cv::Mat1b& image);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  const std::uint32_t* words() const { return words_.data(); }
+  const std::uint32_t* words() const { return words_.data(); }  // row-major, width() * height()
 
  private:
   int width_ = 0;
@@ -39,8 +39,9 @@ struct TexelPositions {
 };
 
 // A function that returns the correlation in [-1, 1] of the reference patch with the source image
-// at the texel positions, or kNoCorrelation. All implementations add in the same order and use no
-// fused multiply-add. So their results are bit-identical.
+// at the texel positions, or kNoCorrelation, whose comment lists the cases. Positions may lie
+// outside the image. All implementations add in the same order and use no fused multiply-add. So
+// their results are bit-identical.
 using ZnccFunction = float (*)(const ReferencePatch&, const QuadImage&, const TexelPositions&);
 
 // The reference implementation, in plain C++.
@@ -50,9 +51,10 @@ float zncc_scalar(const ReferencePatch& patch, const QuadImage& source, const Te
 ZnccFunction fastest_zncc();
 
 namespace detail {
-// Returns the correlation of a patch that lies partly outside the source image. All sums, also the
-// sums over the reference patch, take only the texels inside the source image.
+// Returns the correlation of a patch that lies partly outside the source image. All sums, including
+// those over the reference patch, take only the texels inside the source image.
 float zncc_of_part(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
+// The implementation with AVX2, which the processor must support.
 float zncc_avx2(const ReferencePatch& patch, const QuadImage& source, const TexelPositions& at);
 }  // namespace detail
 

@@ -17,46 +17,52 @@ namespace axial::evaluate {
 
 using axial::Similarity;
 
-// Returns the least-squares similarity (best_similarity) that maps source[i] to target[i]. The
-// scale is 1 unless `with_scale`. Error if `source` and `target` have different lengths or fewer
-// than three points, if a coordinate is not finite, or if `source` or `target` lies on one line,
-// because the rotation about this line would be unknown. Points lie on one line if their
-// relative_width() is at most kLineWidth (scene/decompositions.h).
+// Returns the least-squares similarity (best_similarity) that maps source[i] to target[i], for any
+// unit and frame of both. The scale is 1 unless `with_scale`. Error if `source` and `target` have
+// different lengths or fewer than three points, if a coordinate is not finite, or if `source` or
+// `target` lies on one line, because the rotation about this line would be unknown. Points lie on
+// one line if their relative_width() is at most kLineWidth (scene/decompositions.h).
 Similarity fit_similarity(std::span<const Eigen::Vector3d> source,
                           std::span<const Eigen::Vector3d> target, bool with_scale = true);
 
+// The result of align_centres(). Aligned means moved by `similarity`.
 struct CentreAlignment {
-  Similarity similarity;
-  std::vector<std::string> names;  // images that are in both models
+  Similarity similarity;           // from the model's world to the reference's world
+  std::vector<std::string> names;  // images that are in both models, in the order of the model
   // `residuals` and `turns` are in the order of `names`.
   std::vector<double> residuals;  // distances of aligned and reference centres [reference unit]
   std::vector<double> turns;      // angles between aligned and reference rotations [rad]
-  double rms = 0;                 // of `residuals`
+  double rms = 0;                 // root mean square of `residuals` [reference unit]
 };
 
-// Returns the similarity that maps the camera centres of `model` to the camera centres of
-// `reference`. Images are matched by name. Images without a partner are ignored. Errors as for
-// fit_similarity, for the matched images.
+// Returns the least-squares similarity that maps the camera centres of `model` to the camera
+// centres of `reference`. Images are matched by name. Images without a partner are ignored. Error
+// if fewer than three images match, if a matched centre is not finite, or if the matched centres of
+// one model lie on one line (see fit_similarity()).
 CentreAlignment align_centres(const io::ColmapModel& model, const io::ColmapModel& reference);
 
-// Reports the images of `reference` that have no partner in the model. Returns one line with the
-// number of these images and the name of the first one. Returns nothing if all images have a
-// partner. `alignment`: the result of align_centres for this reference.
+// Reports the images of `reference` that have no partner in the model. Returns one line of text
+// with the number of these images and the name of the first one in the order of `reference`.
+// Returns no line if all images have a partner. `alignment`: the result of align_centres() for this
+// reference.
 std::vector<std::string> not_matched(const CentreAlignment& alignment,
                                      const io::ColmapModel& reference);
 
 // Converts a similarity between local frames to a similarity between world coordinates.
-// `similarity` maps coordinates in the frame `from` to coordinates in the frame `to`.
+// `similarity` maps coordinates in the frame `from` to coordinates in the frame `to`. The result
+// maps coordinates in the world of `from` to coordinates in the world of `to`.
 Similarity between_worlds(const Similarity& similarity, const LocalFrame& from,
                           const LocalFrame& to);
 
-// Apply the similarity to the poses, points and normals of the argument. The images of the points
-// do not change.
+// Apply the similarity to the poses, points and normals that the argument has. Normals are only
+// rotated. Each point keeps its pixel in each image, because poses and points move together.
 void apply(const Similarity& similarity, io::ColmapModel& model);
 void apply(const Similarity& similarity, PointCloud& cloud);
 void apply(const Similarity& similarity, Mesh& mesh);
 
-// The matrix as text: four lines of four numbers, with all digits.
+// The homogeneous matrix of the similarity (Similarity::matrix()) as text: one line for each of the
+// four rows, with four numbers separated by spaces. The numbers have up to 17 significant digits,
+// so that reading them gives the identical doubles.
 std::string matrix_text(const Similarity& similarity);
 
 }  // namespace axial::evaluate

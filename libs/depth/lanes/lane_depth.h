@@ -11,6 +11,7 @@ namespace axial::depth::lanes {
 
 namespace detail {
 
+// base[at] for each lane.
 template <class Abi>
 auto gather_floats(const float* base, const typename Pack<Abi>::Ints& at) {
   using Part = typename Pack<Abi>::Part;
@@ -30,9 +31,11 @@ auto gather_floats(const float* base, const typename Pack<Abi>::Ints& at) {
 }  // namespace detail
 
 // depth_near() of geometric_check.h in SIMD lanes, with the tolerance kSameSurface. `depths`: the
-// depth maps of all views [m]. `image`: where each lane's map begins in `depths`, and the size of
-// the map. `at`: the position in each lane's map [px]. `expected`: the expected depths [m]. The
-// result is 0 in lanes whose position is not visible.
+// depth maps of all views [m], row-major, one after the other. `image`: where each lane's map
+// begins in `depths`, and the size of the map, at least 2x2 pixels. `at`: the position in each
+// lane's map [px]. `expected`: the expected depths [m]. Returns the depth [m] of each lane, or 0 if
+// no pixel around the position has a depth near the expected depth, or if the position is outside
+// the map or not visible.
 template <class Abi>
 Pack<Abi> lane_depth_near(const float* depths, const LaneImages<Abi>& image,
                           const refractive::Projection<Pack<Abi>>& at, const Pack<Abi>& expected) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The source image of each lane: the index of the image's first word in SceneTables::words, and the
-// size of the image [px].
+// The places of source images in the tables of a scene, with one image per SIMD lane.
 #pragma once
 
 #include "depth/lanes/pack.h"
@@ -8,14 +7,17 @@
 
 namespace axial::depth::lanes {
 
+// The source image of each lane.
 template <class Abi>
 struct LaneImages {
+  // Index of the image's first word in SceneTables::words, and of its first depth in
+  // SceneTables::depths.
   typename Pack<Abi>::Ints begin;
-  Pack<Abi> width, height;
+  Pack<Abi> width, height;  // [px]
 };
 
-// Returns the image of one view for each lane. `view`: the index of each lane's view. The array is
-// aligned to the size of the register.
+// Returns the image of one view for each lane. `view`: one index per lane, of the lane's view in
+// `tables`. Precondition: the array is aligned to the size of the register.
 template <class Abi>
 LaneImages<Abi> lane_images(const SceneTables& tables, const std::int32_t* view) {
   using Ints = typename Pack<Abi>::Ints;

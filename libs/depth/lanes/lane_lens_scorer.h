@@ -9,7 +9,8 @@
 
 namespace axial::depth::lanes {
 
-// Makes a scorer. Returns nullptr if the kind of camera in `tables` has no distorted lens.
+// Makes a scorer for the kind of camera in `tables`, which must outlive the scorer. Returns nullptr
+// if this kind has no distorted lens. Narrow, Wide: see LaneScorer.
 template <class Narrow, class Wide = Narrow>
 std::unique_ptr<Scorer> make_lane_lens_scorer(const SceneTables& tables) {
   switch (tables.kind) {

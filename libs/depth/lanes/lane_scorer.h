@@ -19,6 +19,10 @@
 
 namespace axial::depth::lanes {
 
+// A scorer for one kind of camera. `Camera`: the template of the camera type, with the scalar as
+// its argument. `Narrow` and `Wide`: ABIs of std::experimental::simd, which may be equal. `tables`
+// must outlive the scorer.
+//
 // Projects in registers of `Wide` and correlates in registers of `Narrow`. A projection is a long
 // chain of dependent operations. Two narrow registers need two passes through this chain, but one
 // wide register needs only one pass, which takes no longer if half of the register is unused.
@@ -49,6 +53,7 @@ class LaneScorer final : public Scorer {
   }
 
  private:
+  // Stores the costs of T::kWidth pairs, from pair `first` on.
   void compare(const LanePixel& pixel, const LanePairs& pairs, const LaneProjections& projected,
                std::size_t first, LaneScores& scores) const {
     const auto at = [&](const LaneFloats& floats) { return T::load(floats.data() + first); };
@@ -73,7 +78,8 @@ class LaneScorer final : public Scorer {
   View view_;
 };
 
-// Makes a scorer. Returns nullptr if the kind of camera in `tables` has a distorted lens.
+// Makes a scorer for the kind of camera in `tables`, which must outlive the scorer. Returns nullptr
+// if this kind has a distorted lens. Narrow, Wide: see LaneScorer.
 template <class Narrow, class Wide = Narrow>
 std::unique_ptr<Scorer> make_lane_scorer(const SceneTables& tables) {
   switch (tables.kind) {

@@ -55,11 +55,14 @@ inline __m128i lower_half_twice() {
 }
 #endif
 
-// Operations on the 16-bit halves of 32-bit lanes.
-//   upper_halves: upper half of the result: the upper half of `upper`; lower half of the result:
-//                 the upper half of `lower`.
-//   dot_halves:   the sum of the products of the upper halves and of the lower halves.
-//   fractions:    the upper 15 bits of the fraction of a 16.16 number, in both halves.
+// Operations on the signed 16-bit halves of 32-bit lanes.
+//   upper_bytes:     each half shifted right by 8 bits.
+//   times_128, add_halves, subtract_halves: the result of each half.
+//   multiply_halves: the product of each pair of halves, divided by 2^15 and rounded.
+//   dot_halves:      the sum of the products of the upper halves and of the lower halves, 32 bits.
+//   upper_halves:    upper half of the result: the upper half of `upper`; lower half of the result:
+//                    the upper half of `lower`.
+//   fractions:       the upper 15 bits of the fraction of a 16.16 number, in both halves.
 #ifdef __AVX2__
 inline __m256i upper_bytes(__m256i a) {
   return _mm256_srli_epi16(a, 8);
@@ -97,8 +100,8 @@ class LaneSampler {
   using Part = typename Pack<Abi>::Part;
   using Ints = typename Pack<Abi>::Ints;
 
-  // `words`: SceneTables::words. `begin`: the index of the first word of each lane's image.
-  // `width`: the width of each lane's image [px].
+  // `words`: SceneTables::words, which must outlive the sampler. `begin`: the index of the first
+  // word of each lane's image. `width`: the width of each lane's image [px].
   LaneSampler(const std::uint32_t* words, const Ints& begin, const Ints& width)
       : words_(words), begin_(begin), width_(kHalves ? (width << 16) | Ints(1) : width) {}
 
@@ -112,6 +115,7 @@ class LaneSampler {
   }
 
  private:
+  // Whether by_halves() is used, which needs AVX2 and registers of eight lanes.
 #ifdef __AVX2__
   static constexpr bool kHalves = Ints::size() == 8;
   using Register = __m256i;
@@ -119,7 +123,7 @@ class LaneSampler {
   static constexpr bool kHalves = false;
 #endif
 
-  // The arithmetic of by_halves() on whole 32-bit lanes, with the same results.
+  // Computes the result in whole 32-bit lanes.
   Part by_lanes(const Ints& x, const Ints& y) const {
     const Ints word = detail::gather<Abi>(words_, begin_ + (y >> 16) * width_ + (x >> 16));
     const Ints fx = (x >> 1) & Ints(0x7FFF), fy = (y >> 1) & Ints(0x7FFF);
@@ -134,6 +138,7 @@ class LaneSampler {
     return stdx::static_simd_cast<Part>(grey);
   }
 
+  // Computes the result of by_lanes(), bit for bit, in 16-bit halves.
   Part by_halves(const Ints& x, const Ints& y) const {
 #ifdef __AVX2__
     using namespace detail;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The part of a score that needs cameras, with one pair of plane and source view per SIMD lane:
-// projection, warp, smoothness and geometric consistency. Also the reference camera's rays. Only
-// the scorers' translation units include this file (lane_scorer.h).
+// projection, warp, smoothness and geometric consistency. This file computes the reference camera's
+// rays, too. Only the scorers' translation units include it (lane_scorer.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,12 +17,15 @@ namespace axial::depth::lanes {
 // The results of LaneView::look() that the correlation and the cost need.
 struct LaneProjections {
   LaneFloats x, y;                 // the patch's centre in the source view [px]
-  LaneFloats visible;              // 1 or 0
+  LaneFloats visible;              // 1 if the source camera sees the patch's centre, else 0
   std::array<LaneFloats, 4> warp;  // d(source pixel)/d(reference pixel), row-major
   LaneFloats depth;                // depth of the plane [m]
-  LaneFloats inconsistency;        // geometric term of the cost, times its weight
+  LaneFloats inconsistency;        // geometric term of the cost, times its weight; 0 without maps
 };
 
+// Computes with kWidth pairs or pixels at a time. `Camera`: the template of the type of the source
+// cameras in `tables`, and for rays() of the reference camera. `Abi`: the ABI of the registers.
+// `tables` must outlive the object.
 template <template <class> class Camera, class Abi>
 class LaneView {
   using T = Pack<Abi>;
@@ -54,8 +57,8 @@ class LaneView {
     fill(first_projector_, tables.steps, [&](std::size_t k) { return T(tables.projector[k][0]); });
   }
 
-  // Processes kWidth pairs, from pair `first` on. Stores `projected` and all scores except the
-  // cost.
+  // Processes kWidth pairs, from pair `first` on. Stores their entries in `projected` and in
+  // `scores`, except for the cost. Precondition: `first` is a multiple of kWidth.
   void look(const LanePixel& pixel, const LanePlanes& lane_planes, const LanePairs& pairs,
             std::span<const SurfacePoint> neighbours, std::size_t first, LaneScores& scores,
             LaneProjections& projected) const {
@@ -92,7 +95,8 @@ class LaneView {
         .store(scores.motion.data() + first);
   }
 
-  // Computes the rays of the pixels (x, y) to (x + kWidth - 1, y); stores them from `first` on.
+  // Computes the rays of the pixels (x, y) to (x + kWidth - 1, y). Stores them in the entries of
+  // `rays` from `first` on. Precondition: `first` is a multiple of kWidth.
   void rays(float x, float y, std::size_t first, LaneRays& rays) const {
     T u;
     u.part = typename T::Part([&](auto k) { return x + static_cast<float>(k); });
@@ -149,7 +153,8 @@ class LaneView {
       views.translation(i) = of(tables_.translation[static_cast<std::size_t>(i)].data());
   }
 
-  // inconsistency() of geometric_check.h times its weight; 0 for views without a depth map.
+  // inconsistency() of geometric_check.h times SceneTables::geometric_weight. The result is 0 for
+  // views without a depth map.
   T inconsistency(const LanePixel& pixel, const refractive::AxialRay<T>& ray, const T& depth,
                   const std::int32_t* view, const Views& views, const Vector& point,
                   const Image& image) const {

@@ -9,11 +9,12 @@
 
 namespace axial::depth::lanes {
 
-// The window of every lane in its source image, in 16.16 fixed point.
+// The window of every lane in its source image. Positions and steps [px] are 16.16 fixed-point
+// numbers.
 template <class Abi>
 struct LaneWindow {
   using Ints = typename Pack<Abi>::Ints;
-  Ints x, y;              // the first texel
+  Ints x, y;              // position of the first texel
   Ints right_x, right_y;  // the step to the next texel of a row
   Ints down_x, down_y;    // the step to the next row
   // The members below are set only if the window of some lane lies partly outside its image.
@@ -23,11 +24,13 @@ struct LaneWindow {
 
 namespace {  // one copy per translation unit: instruction sets must not share this code
 
-// Computes the sums over one window per lane, with grey levels in units of kGreyUnit. With kPart,
-// windows may lie partly outside their images. A texel outside its image then has a share
-// (kLeastWeight) of 0, and its sample is taken at the edge of the image. For a window inside its
-// image, the sums have the same bytes with and without kPart. Without kPart, all windows must lie
-// inside their images, and the first three sums stay 0.
+// Computes the sums over one window per lane. Grey levels are multiplied by kGreyUnit, so
+// PartSums::mean and PartSums::cross have this factor and PartSums::square has its square. With
+// kPart, windows may lie partly outside their images. A texel outside its image then has a share
+// (kLeastWeight) of 0, and its sample is taken at the edge of the image. Without kPart, all windows
+// must lie inside their images, and the sums `weights`, `reference` and `reference_square` stay 0.
+// The sums `mean`, `square` and `cross` of a window inside its image have the same bytes with and
+// without kPart.
 template <bool kPart, class Abi>
 PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<Abi>& sample,
                                 const LaneWindow<Abi>& window) {
@@ -68,7 +71,8 @@ PartSums<Pack<Abi>> window_sums(const ReferencePatch& patch, const LaneSampler<A
 }
 
 // Returns the correlation in the lanes of `whole`, whose windows lie completely inside their
-// images, and kNoCorrelation in the other lanes.
+// images. Returns kNoCorrelation in the other lanes, and where the source patch or the reference
+// patch is flat. `sums`: the result of window_sums().
 template <class Abi>
 Pack<Abi> whole_correlation(const ReferencePatch& patch, const PartSums<Pack<Abi>>& sums,
                             const PackMask<Abi>& whole) {
@@ -101,9 +105,10 @@ template <class Abi>
 
 }  // namespace
 
-// Returns the correlation of each lane in [-1, 1], or kNoCorrelation in the same cases as
-// ZnccFunction. `words`: SceneTables::words. `centre`: the patch's centre in each lane's source
-// image [px]. `warp`: d(source pixel)/d(reference pixel).
+// Returns the correlation of each lane in [-1, 1], or kNoCorrelation if the centre of the patch is
+// not visible or the patch has no correlation (kNoCorrelation in reference_patch.h). `words`:
+// SceneTables::words. `image`: each lane's source image. `centre`: the patch's centre in this image
+// [px]. `warp`: d(source pixel)/d(reference pixel).
 //
 // The result of a lane does not depend on the other lanes. The warp is affine, so a test of the
 // window's corners tells whether the whole window is inside the image. The centre of the window and

@@ -28,6 +28,8 @@ struct PackMask {
   friend PackMask operator!(const PackMask& a) { return {!a.part}; }
 };
 
+// kWidth floats in one register. All operators work lane by lane. A default Pack has undefined
+// values.
 template <class Abi>
 struct Pack {
   using Part = stdx::simd<float, Abi>;
@@ -44,6 +46,8 @@ struct Pack {
 
   explicit Pack(const Part& lanes) : part(lanes) {}
 
+  // load() reads and store() writes kWidth floats. The pointers must be aligned to the size of the
+  // register.
   static Pack load(const float* aligned) {
     Pack pack;
     pack.part.copy_from(aligned, stdx::vector_aligned);
@@ -92,6 +96,7 @@ template <class Abi>
   return no;
 }
 
+// The square root and the absolute value of each lane.
 template <class Abi>
 Pack<Abi> sqrt(Pack<Abi> a) {
   a.part = stdx::sqrt(a.part);
@@ -135,6 +140,8 @@ Pack<Abi> greater(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(a > b, a, b);
 }
 
+// min() returns the smaller number of each lane, and max() the larger number. Both return a if a or
+// b is NaN.
 template <class Abi>
 Pack<Abi> min(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(b < a, b, a);
@@ -145,8 +152,9 @@ Pack<Abi> max(const Pack<Abi>& a, const Pack<Abi>& b) {
   return select(a < b, b, a);
 }
 
-// Table lookup: lane k of the result is table[index[k]]. The table has kLanes entries and is
-// aligned to 64 bytes. The indices, from 0 to kLanes - 1, are aligned to the size of the register.
+// Table lookup: lane k of the result is table[aligned[k]]. `aligned`: one index per lane, from 0 to
+// kLanes - 1. The array must outlive the object and be aligned to the size of the register. `table`
+// has kLanes entries and is aligned to 64 bytes.
 template <class Abi>
 class Lookup {
  public:
@@ -188,9 +196,10 @@ class Lookup {
 }  // namespace axial::depth::lanes
 
 namespace axial::refractive {
+// Cameras of packs project with a fixed number of solver steps (refractive/scalar.h).
 template <class Abi>
 inline constexpr bool kFixedSteps<depth::lanes::Pack<Abi>> = true;
-}
+}  // namespace axial::refractive
 
 // The properties that Eigen requires of a scalar type.
 namespace Eigen {

@@ -19,9 +19,11 @@ inline constexpr std::size_t kLanes = 16;
 // Largest side of a source image [px], because columns and rows are signed 16-bit numbers.
 inline constexpr int kLargestSide = 32767;
 
+// kLanes numbers in memory, aligned for every SIMD register.
 struct alignas(64) LaneFloats : std::array<float, kLanes> {};
 
-// Up to kLanes plane hypotheses of one reference pixel: depths [m] and unit normals.
+// Up to kLanes plane hypotheses of one reference pixel: depths along its ray [m], and unit normals
+// in the reference camera's frame.
 struct LanePlanes {
   LaneFloats depth;
   LaneFloats nx;
@@ -39,13 +41,12 @@ struct LanePairs {
 };
 
 // The reference pixel. Its ray and the ray's derivatives by the pixel (u, v) are in the reference
-// camera's frame. `prior_depth` and `prior_weight` are explained at ReferencePixel. `patch` is
-// the pixel's window.
+// camera's frame.
 struct LanePixel {
-  std::array<float, 3> origin, direction;
+  std::array<float, 3> origin, direction;  // [m], unit vector
   std::array<float, 3> origin_u, origin_v, direction_u, direction_v;
-  float prior_depth, prior_weight;
-  const ReferencePatch* patch;
+  float prior_depth, prior_weight;  // [m], 0 to 1; prior_weight 0: no prior (PlaneScore::cost)
+  const ReferencePatch* patch;      // the pixel's window
 };
 
 // The rays of kLanes pixels of a row, with their derivatives. Each of the 18 entries holds one
@@ -53,9 +54,10 @@ struct LanePixel {
 // origin_u, origin_v, direction_u, direction_v.
 struct LaneRays : std::array<LaneFloats, 18> {};
 
+// The scores of the pairs. PlaneScore (matcher.h) explains them.
 struct LaneScores {
   LaneFloats cost;        // 0 to kMaxCost
-  LaneFloats motion;      // see PlaneScore::motion (matcher.h)
+  LaneFloats motion;      // [px/m]; 0: not visible
   LaneFloats smoothness;  // factor of the lane's plane (smoothness.h)
 };
 
