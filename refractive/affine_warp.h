@@ -52,7 +52,8 @@ Matrix2<T> warp_derivative(const Matrix23<T>& projection_jacobian, const Matrix3
   return projection_jacobian * rotated;
 }
 
-// The warp from the reference image to the source image around the pixel p.
+// The warp from the reference image to the source image around the pixel p. X is the point of the
+// plane that the pixel p shows.
 template <class T>
 struct AffineWarp {
   Vector2<T> from;    // p in the reference image

@@ -29,6 +29,7 @@ struct Topology {
   std::vector<bool> border;  // the vertex has an edge that does not belong to exactly two faces
 };
 
+// Precondition: check_mesh() accepts the mesh (scene/check_mesh.h).
 Topology topology_of(const Mesh& mesh);
 
 // Normals, edge lengths and areas, one of each per vertex [mesh units].

@@ -10,8 +10,8 @@
 
 namespace axial {
 
-// A camera of the kind that it is made from. It has those functions of a camera
-// (refractive/axial_ray.h) that geometry needs.
+// A camera of the kind that it is made from, with the functions ray() and project() of a camera
+// (refractive/axial_ray.h).
 template <class T>
 class AnyCamera {
  public:

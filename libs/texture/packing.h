@@ -18,8 +18,8 @@ struct PackingOptions {
 struct Place {
   std::uint32_t texture = 0;  // index into Packing::sizes
   cv::Point corner;           // of the rectangle: its upper left pixel in the texture
-  double scale = 1;           // factor of the rectangle's sides; below 1 if a side would be larger
-                              // than the largest texture
+  // Factor of the rectangle's sides. It is below 1 if a side would be larger than a texture may be.
+  double scale = 1;
 };
 
 struct Packing {
