@@ -43,7 +43,7 @@ struct Shape {
   std::vector<float> area;  // a third of the area of the vertex's faces
 };
 
-// `topology`: of `mesh`.
+// Computes the Shape of `mesh`, whose Topology is `topology`.
 Shape shape_of(const Mesh& mesh, const Topology& topology);
 
 // Twice the area of the face, times its unit normal. `face`: the indices of its corners.

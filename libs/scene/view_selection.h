@@ -24,14 +24,16 @@ struct ViewSelectionOptions {
   std::size_t min_views = 2;
   double weight_outside_region = 0.7;  // weight of points outside Scene::region in the score
 
-  // Limits for filter_neighbours(). ViewScore explains the quantities.
+  // Limits for filter_neighbours(). A neighbour is unsuitable if its ViewScore::area, scale or
+  // angle [rad] is outside the limits. `max_views`: largest number of neighbours that are kept.
   double min_area = 0.05;
   double min_scale = 0.2, max_scale = 3.2;
   double min_angle = 3.0 * std::numbers::pi / 180.0;
   double max_angle = 65.0 * std::numbers::pi / 180.0;
   std::size_t max_views = 12;
 
-  // Limits for choose_source_views().
+  // Limits for choose_source_views(). A neighbour with a smaller ViewScore::score than one of the
+  // two limits is not chosen.
   double min_score = 2.0;
   double min_score_ratio = 0.03;  // relative to the best score
 };
