@@ -7,8 +7,9 @@
 //     warp(q) = project_j(X_j(p)) + A (q - p),    A = Jproj_j(X_j) * R_ij * dX/dp
 //
 // Frames: the point X, the plane and the ray are in the frame of the reference camera i.
-// X_j = R_ij (X - C_ij) is in the frame of the source camera j. Units: metres and pixels. No
-// function checks its arguments. NaN arguments give NaN results.
+// X_j = R_ij (X - C_ij) is in the frame of the source camera j. C_ij is the centre of camera j in
+// the frame of camera i. Units: metres and pixels. No function checks its arguments. NaN arguments
+// give NaN results. docs/refraction.md names the paper whose equation numbers are used here.
 #pragma once
 
 #include "refractive/axial_ray.h"
@@ -16,7 +17,8 @@
 namespace axial::refractive {
 
 // The distance [m] along `ray` at which the ray meets the plane through X with the normal n (the
-// paper's eq. 8). n may have any length. A ray parallel to the plane gives infinity or NaN.
+// paper's eq. 8). The distance is negative if the plane lies behind the ray's origin. n may have
+// any length and either sign. A ray parallel to the plane gives infinity or NaN.
 template <class T>
 T plane_intersection(const AxialRay<T>& ray, const Vector3<T>& X, const Vector3<T>& n) {
   return (X - ray.origin).dot(n) / ray.direction.dot(n);
@@ -50,20 +52,24 @@ Matrix2<T> warp_derivative(const Matrix23<T>& projection_jacobian, const Matrix3
   return projection_jacobian * rotated;
 }
 
-// The warp from the reference image to the source image around the pixel p.
+// The warp from the reference image to the source image around the pixel p. X is the point of the
+// plane that the pixel p shows.
 template <class T>
 struct AffineWarp {
   Vector2<T> from;    // p in the reference image
-  Vector2<T> to;      // exact image of the plane's point in the source image
+  Vector2<T> to;      // warp(p), the exact image of X in the source image
   Matrix2<T> linear;  // A
-  Mask<T> visible;    // false: the source camera does not see the point, the warp is meaningless
+  Mask<T> visible;    // false: the source camera does not see X, the warp is meaningless
 
+  // The pixel of the source image for the pixel q of the reference image, exact to first order in
+  // q - p.
   Vector2<T> operator()(const Vector2<T>& q) const { return to + linear * (q - from); }
 };
 
-// Computes the warp from `reference` to `source` around the pixel p of `reference`. Let X be the
-// point at the distance `lambda` [m] on the ray of p. The plane passes through X and has the
-// normal n [frame of `reference`], of any length. `rotation` and `centre`: R_ij and C_ij.
+// Computes the warp from `reference` to `source`, two axial cameras (axial_ray.h), around the pixel
+// p of `reference`. Let X be the point at the distance `lambda` [m] on the ray of p. The plane
+// passes through X and has the normal n [frame of `reference`], of any length. `rotation` and
+// `centre` are R_ij and C_ij: X_j = rotation * (X - centre).
 template <class Reference, class Source, class T = typename Reference::Scalar>
 AffineWarp<T> affine_warp(const Reference& reference, const Source& source,
                           const Matrix3<T>& rotation, const Vector3<T>& centre, const Vector2<T>& p,

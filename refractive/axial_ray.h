@@ -4,18 +4,22 @@
 // The lines of all pixels' rays in the scene medium meet one axis through the camera centre. A
 // camera is any type with
 //
-//     AxialRay<T>   ray(pixel)                      back-projection
-//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   with the derivatives by the pixel
+//     AxialRay<T>   ray(pixel)                      back-projection: the pixel's ray in the scene
+//                                                   medium, in the camera frame
+//     AxialRay<T>   ray(pixel, AxialRayJacobian&)   back-projection that also writes the
+//                                                   derivatives of the ray by the pixel
 //     Projection<T> project(X)                      exact forward projection
-//     Projection<T> project(X, Jacobian*)           with the 2x3 derivative d(pixel)/dX
-//     Vector3<T>    exit_point(pixel)               where the pixel's light enters the scene medium
+//     Projection<T> project(X, Matrix23<T>*)        forward projection that also writes d(pixel)/dX
+//                                                   [px/m]; a null pointer is allowed
+//     Vector3<T>    exit_point(pixel)               where the back-projected ray enters the scene
+//                                                   medium [camera frame, m]
 //
 // The SIMD code also needs
 //
 //     void               each_field(visit)          calls visit(number) for every number of the
 //                                                   camera in a fixed order
-//     Projector          projector()                the part of the camera that projects points;
-//                                                   it also has each_field(visit)
+//     Projector          projector()                the part of the camera that projects points; a
+//                                                   projector has each_field(visit), too
 //     RigidTransform<T>  projector_frame()          from the camera frame to the projector's frame
 //     Image              projector().image(X)       for a point X in the projector's frame: the
 //                                                   projection of X, the derivative of the pixel
@@ -51,6 +55,8 @@ struct AxialRay {
   Vector3<T> origin;
   Vector3<T> direction;
 
+  // The point X at the distance `lambda` [m] from the origin. A negative `lambda` gives a point
+  // behind the origin.
   Vector3<T> at(const T& lambda) const { return origin + lambda * direction; }
 };
 
@@ -62,7 +68,7 @@ struct AxialRayJacobian {
   Matrix32<T> direction;
 };
 
-// Maps a point x to rotation * x + translation.
+// Maps a point x [m] to rotation * x + translation.
 template <class T>
 struct RigidTransform {
   Matrix3<T> rotation;

@@ -24,7 +24,7 @@ T range_from_distance(const AxialRay<T>& ray, const T& distance) {
 
 // The distance [m] of the point with the given range [m] on the line of `ray`. If two points have
 // this range, the result is the larger distance. If every point of the line has a larger range,
-// the result is the distance of the point nearest to the camera centre.
+// the result is the distance of the point nearest to the camera centre. Precondition: range >= 0.
 template <class T>
 T distance_from_range(const AxialRay<T>& ray, const T& range) {
   using std::sqrt;
@@ -41,7 +41,8 @@ T z_depth_from_distance(const AxialRay<T>& ray, const T& distance) {
   return ray.origin.z() + distance * ray.direction.z();
 }
 
-// A ray perpendicular to the optical axis gives infinity or NaN.
+// The distance [m] of the point with the given z-depth [m] on the line of `ray`. A ray
+// perpendicular to the optical axis gives infinity or NaN.
 template <class T>
 T distance_from_z_depth(const AxialRay<T>& ray, const T& z_depth) {
   return (z_depth - ray.origin.z()) / ray.direction.z();

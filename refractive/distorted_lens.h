@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A lens with distortion: converts between pixels and tangents. The tangents (u, v) stand for the
-// direction in air (u, v, 1) in the camera frame.
+// direction in air (u, v, 1) in the camera frame. e is the plane point of lens_distortion.h.
 #pragma once
 
 #include "refractive/lens_field.h"
@@ -11,12 +11,15 @@ template <class T>
 struct DistortedLens {
   PinholeLens<T> pinhole;  // focal lengths and principal point [px]
   LensDistortion<T> distortion;
-  T field = T(0);         // largest |e| of the lens (lens_field.h)
+  T field = T(0);         // largest |e| at which the lens sees a direction (lens_field())
   WidenedImage<T> image;  // a direction is visible if its pixel lies in this rectangle
 
   DistortedLens() = default;  // invalid until each_field() has filled it
 
-  // width, height, margin [px]: as in the constructor of FlatPortCamera.
+  // `lens`: focal lengths and principal point [px]. `bends`: the distortion. `width`, `height`:
+  // size of the image [px]. `margin` [px]: the image is widened by this margin on every side. A
+  // negative margin stands for an eighth of the longer side, rounded down. The constructor computes
+  // `field` with lens_field().
   DistortedLens(const PinholeLens<double>& lens, const LensDistortion<double>& bends, int width,
                 int height, int margin = -1)
       : pinhole(lens.cast<T>()), distortion(bends.template cast<T>()) {
@@ -26,7 +29,7 @@ struct DistortedLens {
   }
 
   // True if the lens images a direction of its field at `pixel` (to 0.01 px). False if the pixel
-  // lies beyond the image of the field.
+  // lies beyond the image of the field, or is NaN. The image rectangle is not tested.
   bool shows(const Vector2<T>& pixel) const {
     const Vector2<T> found = project(tangents(pixel).point).projection.pixel;
     return (found - pixel).squaredNorm() < T(1e-4);
@@ -41,7 +44,8 @@ struct DistortedLens {
     return all;
   }
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the lens, in a fixed order. The SIMD code uses it as it
+  // uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(pinhole.fx), visit(pinhole.fy), visit(pinhole.cx), visit(pinhole.cy);
@@ -50,9 +54,10 @@ struct DistortedLens {
     image.each_field(visit);
   }
 
-  // The image of a direction in air. `projection`: not visible if the direction lies beyond the
-  // lens's field or if the pixel lies outside the widened image. `by`: d(pixel)/d(tangents) [px].
-  // Finite tangents give finite results.
+  // The image of a direction in air, given by its tangents. `projection`: not visible if the
+  // direction lies beyond the lens's field or if the pixel lies outside the widened image. `by`:
+  // d(pixel)/d(tangents) [px]. Finite tangents give finite results. The pixel of a direction that
+  // is not visible is meaningless.
   struct Image {
     Projection<T> projection;
     Matrix2<T> by;

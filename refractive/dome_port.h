@@ -50,7 +50,7 @@ struct DomePort {
 // C. All members are functions of k^2.
 template <class T>
 struct DomeTurn {
-  T sine;                      // S = sin(delta) / k
+  T sine;                      // S = sin(delta) / k [1/m]
   T cosine;                    // cos(delta)
   T sine_slope, cosine_slope;  // derivatives of `sine` and `cosine` by k^2
 };
@@ -58,14 +58,14 @@ struct DomeTurn {
 // The port's geometry and media, in the symbols of the formulas above.
 template <class T>
 struct DomePortOptics {
-  Vector3<T> centre;
-  T centre2;  // |C|^2
-  T outer_radius;
-  T in_air, in_glass;      // i_1, i_2
-  T out_glass, out_water;  // i_3, i_4
+  Vector3<T> centre;       // C [camera frame, m]
+  T centre2;               // |C|^2 [m^2]
+  T outer_radius;          // r_out [m]
+  T in_air, in_glass;      // i_1, i_2 [1/m]
+  T out_glass, out_water;  // i_3, i_4 [1/m]
   T inv_mu;                // 1/mu_w
 
-  DomePortOptics() = default;
+  DomePortOptics() = default;  // invalid until each_field() has filled it
   explicit DomePortOptics(const DomePort<T>& port)
       : centre(port.centre),
         centre2(port.centre.squaredNorm()),
@@ -76,7 +76,8 @@ struct DomePortOptics {
         out_water(port.n_air / (port.n_water * outer_radius)),
         inv_mu(port.n_air / port.n_water) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every member above, in a fixed order. The SIMD code uses it as it uses
+  // FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(centre.x()), visit(centre.y()), visit(centre.z());
@@ -85,10 +86,11 @@ struct DomePortOptics {
     visit(inv_mu);
   }
 
-  // The value of S on the axis, where k is 0.
+  // The value of S [1/m] on the axis, where k is 0.
   T axial_sine() const { return in_air - in_glass + out_glass - out_water; }
 
   // The functions of delta for one ray. `k2`: squared distance of the ray in air from C [m^2].
+  // Precondition: k2 < inner_radius^2. Every ray through the camera centre fulfils it.
   DomeTurn<T> turn(const T& k2) const {
     const DomeTurn<T> inner = difference(in_air, in_glass, k2);
     const DomeTurn<T> outer = difference(out_glass, out_water, k2);

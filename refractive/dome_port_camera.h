@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pinhole lens behind a dome port: the exact axial camera. The ray of a pixel has a closed form.
+// A pinhole lens behind a dome port: the exact axial camera. C_v and C are defined in dome_port.h.
+// The ray of a pixel has a closed form.
 // The projection of a point is the root of one scalar equation (dome_port_projector.h). The axis
 // runs through the camera centre and the centre of the dome. A dome that is centred on the camera
 // centre does not refract.
@@ -21,9 +22,10 @@ class DomePortCamera {
  public:
   using Scalar = T;
 
-  // `width`, `height`: size of the image [px]. `margin` [px]: the image is widened by this margin
-  // on every side. A negative margin stands for an eighth of the longer side, rounded down. Points
-  // whose images lie outside the widened image are not visible (see project()).
+  // `lens`: the lens in air. `width`, `height`: size of the image [px]. `margin` [px]: the image is
+  // widened by this margin on every side. A negative margin stands for an eighth of the longer
+  // side, rounded down. Points whose images lie outside the widened image are not visible (see
+  // project()). The preconditions of DomePort are not checked.
   DomePortCamera(const PinholeLens<T>& lens, const DomePort<T>& port, int width, int height,
                  int margin = -1)
       : DomePortCamera(lens, port,
@@ -41,7 +43,8 @@ class DomePortCamera {
 
   DomePortCamera() = default;  // invalid until each_field() has filled it
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the camera, in a fixed order. The SIMD code uses it as
+  // it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -64,6 +67,7 @@ class DomePortCamera {
     return ray(pixel, unused);
   }
 
+  // The ray of `pixel`, as above. `jacobian` receives the derivatives of the ray by the pixel.
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
     using std::sqrt;
     const Vector3<T>& C = optics().centre;
@@ -101,13 +105,15 @@ class DomePortCamera {
     return ray.at(sqrt(back * back + outer2 - from_centre.squaredNorm()) - back);
   }
 
-  // The projector takes points in the camera frame. So projector_frame() is the identity.
+  // The part of the camera that projects points. It takes points in the camera frame. So
+  // projector_frame() is the identity.
   using Projector = DomePortProjector<T>;
   const Projector& projector() const { return projector_; }
   RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
-  // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
+  // Exact forward projection of X [camera frame, m]. `jacobian` receives d(pixel)/dX [px/m].
+  // `origin` receives the origin of the ray through X, which is the virtual centre C_v of this ray
+  // [camera frame, m]. Both pointers may be null.
   //
   // X is not visible in any of these cases:
   //   - X lies inside the outer sphere of the dome.

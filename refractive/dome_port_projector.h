@@ -11,7 +11,7 @@
 //
 //     h(zeta) = zeta - (1 - 1/(mu_w Q)) / |X| + S N / Q = 0.
 //
-// zeta is small. Therefore h is nearly linear in zeta.
+// zeta [1/m] is small. Therefore h is nearly linear in zeta.
 #pragma once
 
 #include <cmath>
@@ -47,18 +47,20 @@ struct DomePortImage {
   PinholeImage<T> in_air;      // the pinhole image of d - zeta C, taken as a point
 };
 
+// The part of a DomePortCamera that projects points.
 template <class T>
 class DomePortProjector {
  public:
   DomePortProjector() = default;  // invalid until each_field() has filled it
 
-  // A point is visible only if `image` [px] contains its pixel. image() returns finite but
-  // meaningless numbers for a point that is not visible.
+  // `lens`: the lens in air. `image` [px]: the rectangle that must contain the pixel of a visible
+  // point. The preconditions of DomePort are not checked.
   DomePortProjector(const PinholeLens<T>& lens, const DomePort<T>& port,
                     const WidenedImage<T>& image)
       : optics_(port), in_air_(lens), image_(image), steps_(steps_for(optics_)) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the projector, in a fixed order. The SIMD code uses it
+  // as it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     optics_.each_field(visit);
@@ -70,7 +72,7 @@ class DomePortProjector {
   const DomePortOptics<T>& optics() const { return optics_; }
 
   // The image of X [camera frame, m]. DomePortCamera::project states when X is visible. Every
-  // number of the result is finite, for every X.
+  // number of the result is finite, for every X. The numbers are meaningless if X is not visible.
   DomePortImage<T> image(const Vector3<T>& X) const {
     using std::sqrt;
     const Vector3<T>& C = optics_.centre;

@@ -51,7 +51,8 @@ T tangent_over_arc_in_fixed_steps(const T& theta2) {
 
 }  // namespace detail
 
-// theta / tan(theta) as a function of r2 = tan^2(theta), for theta from 0 to below 90 degrees.
+// theta / tan(theta) as a function of r2 = tan^2(theta), for theta from 0 to below 90 degrees. The
+// result is 1 for r2 = 0.
 template <class T>
 T arc_over_tangent(const T& r2) {
   if constexpr (kFixedSteps<T>) {
@@ -66,7 +67,8 @@ T arc_over_tangent(const T& r2) {
   }
 }
 
-// tan(theta) / theta as a function of theta^2 [rad^2]. Precondition: theta below 90 degrees.
+// tan(theta) / theta as a function of theta^2 [rad^2]. The result is 1 for theta = 0. Precondition:
+// theta below 90 degrees.
 template <class T>
 T tangent_over_arc(const T& theta2) {
   if constexpr (kFixedSteps<T>) {

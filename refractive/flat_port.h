@@ -38,15 +38,16 @@ struct FlatPort {
   }
 };
 
-// A medium with the refractive index mu relative to air. Its q(s), defined above, is sqrt(b + c s)
-// with b = mu^2 and c = mu^2 - 1.
+// A medium with the refractive index mu relative to air. Its q(s), defined above as q_g and q_w, is
+// sqrt(b + c s) with b = mu^2 and c = mu^2 - 1. inv_mu is 1/mu.
 template <class T>
 struct Medium {
   T b, c, inv_mu;
 
-  Medium() = default;
+  Medium() = default;  // the members have no values
   explicit Medium(const T& mu) : b(mu * mu), c(mu * mu - T(1)), inv_mu(T(1) / mu) {}
 
+  // q(s)^2 and q(s). `s`: squared tangent of the angle between the direction in air and the normal.
   T q2(const T& s) const { return b + c * s; }
   T q(const T& s) const {
     using std::sqrt;
@@ -57,17 +58,18 @@ struct Medium {
 // The port's geometry and media in the axis frame. The normal is not needed in this frame.
 template <class T>
 struct FlatPortOptics {
-  T distance, thickness;
+  T distance, thickness;  // of FlatPort [m]
   Medium<T> glass, water;
 
-  FlatPortOptics() = default;
+  FlatPortOptics() = default;  // invalid until each_field() has filled it
   explicit FlatPortOptics(const FlatPort<T>& port)
       : distance(port.distance),
         thickness(port.thickness),
         glass(port.n_glass / port.n_air),
         water(port.n_water / port.n_air) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the members, in a fixed order. The SIMD code uses it as
+  // it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(distance), visit(thickness);
@@ -78,7 +80,7 @@ struct FlatPortOptics {
   // The z [m] of the outer (glass/water) plane.
   T outer() const { return distance + thickness; }
 
-  // The limit [m] of radius(t, z_water) / t for t -> 0.
+  // The limit [m] of radius(t, z_water) / t for t -> 0: radius() over t for a ray near the axis.
   T paraxial_secant(const T& z_water) const {
     return distance + thickness * glass.inv_mu + z_water * water.inv_mu;
   }

@@ -25,9 +25,10 @@ class FlatPortCamera {
  public:
   using Scalar = T;
 
-  // `width`, `height`: size of the image [px]. `margin` [px]: the image is widened by this margin
-  // on every side. A negative margin stands for an eighth of the longer side, rounded down. Points
-  // whose images lie outside the widened image are not visible (see project()).
+  // `lens`: the lens in air. `width`, `height`: size of the image [px]. `margin` [px]: the image is
+  // widened by this margin on every side. A negative margin stands for an eighth of the longer
+  // side, rounded down. Points whose images lie outside the widened image are not visible (see
+  // project()). The preconditions of FlatPort are not checked.
   FlatPortCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                  int margin = -1)
       : lens_(lens),
@@ -73,12 +74,15 @@ class FlatPortCamera {
   const PinholeLens<T>& lens() const { return lens_; }
   const FlatPort<T>& port() const { return port_; }
   const FlatPortOptics<T>& optics() const { return optics_; }
+
+  // The rotation from the camera frame to the axis frame (flat_port.h), as axis_from_camera()
+  // returns it. The frames of virtual cameras (virtual_camera.h) have the same rotation.
   const Matrix3<T>& rotation_to_axis() const { return rotation_to_axis_; }
 
   // The ray of `pixel` in water, in the camera frame. The origin of the ray is the virtual centre
-  // C_v on the axis. A pixel has no ray in water if its direction in air is parallel to the port
-  // or points away from the port. The result is then a finite grazing ray, and its Jacobian is
-  // finite but meaningless. A NaN pixel gives a NaN ray.
+  // C_v on the axis. A pixel has no ray in water if its direction in air is nearly parallel to the
+  // port or points away from the port. The result is then a finite grazing ray. A NaN pixel gives a
+  // NaN ray.
   AxialRay<T> ray(const Vector2<T>& pixel) const {
     using std::sqrt;
     const Vector3<T> across = air_direction(pixel).across;
@@ -90,26 +94,30 @@ class FlatPortCamera {
             (inv_qw * inv_norm) * across + inv_norm * port_.normal};
   }
 
+  // The ray of `pixel`, as above. `jacobian` receives the derivatives of the ray by the pixel. They
+  // are finite but meaningless if the pixel has no ray in water.
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const;
 
   // The point at which the ray of `pixel` crosses the outer plane, between glass and water [camera
-  // frame, m].
+  // frame, m]. The point is finite but meaningless if the pixel has no ray in water.
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     const Vector3<T> across = air_direction(pixel).across;
     const T k = optics_.distance + optics_.thickness / optics_.glass.q(across.squaredNorm());
     return k * across + optics_.outer() * port_.normal;
   }
 
-  // The projector takes points in the port's frame. projector_frame() is the transformation from
-  // the camera frame to the port's frame.
+  // The part of the camera that projects points. It takes points in the port's frame
+  // (flat_port_projector.h). projector_frame() is the transformation from the camera frame to the
+  // port's frame.
   using Projector = FlatPortProjector<T>;
   const Projector& projector() const { return projector_; }
   RigidTransform<T> projector_frame() const {
     return {rotation_to_axis_, Vector3<T>(T(0), T(0), -optics_.outer())};
   }
 
-  // Exact forward projection of X [camera frame, m]. `jacobian`: d(pixel)/dX [px/m]. `origin`: the
-  // origin of the ray through X, which is the virtual centre C_v of this ray [camera frame, m].
+  // Exact forward projection of X [camera frame, m]. `jacobian` receives d(pixel)/dX [px/m].
+  // `origin` receives the origin of the ray through X, which is the virtual centre C_v of this ray
+  // [camera frame, m]. Both pointers may be null.
   //
   // X is not visible in any of these cases:
   //   - X lies on the lens's side of the outer plane.

@@ -25,10 +25,10 @@ Matrix3<T> axis_from_camera(const Vector3<T>& n) {
 }
 
 // Returns the tangent of the largest angle of incidence on the port in air, over the image
-// rectangle of width x height pixels, widened by `margin` pixels on every side. Testing the four
-// corners is sufficient, because the pixels below a given incidence form a convex set. A larger
-// tangent than kGrazing is reduced to kGrazing. The result is also kGrazing if a corner looks
-// parallel to the port or away from the port.
+// rectangle of width x height pixels, widened by `margin` pixels on every side. The result is
+// limited to the range from 0.001 to 50. The result is 50, too, if a corner looks parallel to the
+// port or away from the port. Testing the four corners is sufficient, because the pixels below a
+// given incidence form a convex set.
 template <class T>
 T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port, int width,
                             int height, const T& margin) {
@@ -48,8 +48,10 @@ T largest_incidence_tangent(const PinholeLens<T>& lens, const FlatPort<T>& port,
   return largest < kGrazing ? largest : kGrazing;
 }
 
-// The image of a point, and the derivative of the pixel by the point. Points are in the port's
-// frame.
+// The image of a point (x, y, z), and the derivative of the pixel by the point. Points and
+// directions are in the port's frame. Let rho be the point's distance from the axis, and t its
+// in-air tangent (flat_port_solver.h). The in-air direction of the point is
+// (x t/rho, y t/rho, 1).
 template <class T>
 struct FlatPortImage {
   Projection<T> projection;
@@ -58,12 +60,10 @@ struct FlatPortImage {
   // The origin of the ray through the point: the virtual centre C_v [port's frame, m].
   Vector3<T> origin() const { return {T(0), T(0), origin_height}; }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [port's frame, m]. Let (x,
-  // y, z) be the point, rho its distance from the axis, and t its in-air tangent
-  // (flat_port_solver.h). The in-air direction is (x t/rho, y t/rho, 1). A motion of the point
-  // perpendicular to the axis and to the radius changes the direction by t/rho times the motion. A
-  // motion along the radius changes the direction by dt/d(rho) times the motion. A motion in +z
-  // turns the direction towards the axis.
+  // First-order motion of the pixel [px] when the point moves by `step` [port's frame, m]. A motion
+  // of the point perpendicular to the axis and to the radius changes the in-air direction by t/rho
+  // times the motion. A motion along the radius changes the direction by dt/d(rho) times the
+  // motion. A motion in +z turns the direction towards the axis.
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     const T radial = across.x() * step.x() + across.y() * step.y();
     const T outwards = stretch * radial - sink * step.z();
@@ -71,13 +71,17 @@ struct FlatPortImage {
            Vector2<T>(m * step.x() + outwards * across.x(), m * step.y() + outwards * across.y());
   }
 
-  Vector2<T> across;  // the point's x and y
-  // Let depth be the z of the in-air direction in the camera frame. Then m = t / (rho depth),
-  // stretch = (dt/d(rho) - t/rho) / (rho^2 depth), sink = -(dt/dz) / (rho depth).
+  Vector2<T> across;  // the point's x and y [m]
+  // Let depth be the camera frame's z of the in-air direction (x t/rho, y t/rho, 1). Then
+  // m = t / (rho depth) [1/m], stretch = (dt/d(rho) - t/rho) / (rho^2 depth) [1/m^3] and
+  // sink = -(dt/dz) / (rho depth) [1/m^2].
   T m, stretch, sink;
-  Matrix2<T> lens;  // d(pixel)/d(x and y of the in-air direction), times depth
+  // Let (a, b, 1) be a direction in air in the port's frame. `lens` is the derivative
+  // d(pixel)/d(a, b) [px] at the in-air direction, multiplied by depth. Columns: by a, by b.
+  Matrix2<T> lens;
 };
 
+// The part of a FlatPortCamera that projects points.
 template <class T>
 class FlatPortProjector {
  public:
@@ -85,8 +89,8 @@ class FlatPortProjector {
 
   // `lens`: the lens in air. `width`, `height`: size of the image [px]. `margin` [px], >= 0: the
   // image is widened by this margin on every side: u from -margin to width - 1 + margin, v from
-  // -margin to height - 1 + margin. For a point whose image lies outside the widened image, image()
-  // returns a projection with `visible` false and finite but meaningless numbers.
+  // -margin to height - 1 + margin. A point whose image lies outside the widened image is not
+  // visible. The preconditions of FlatPort are not checked.
   FlatPortProjector(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height,
                     const T& margin)
       : FlatPortProjector(
@@ -108,7 +112,8 @@ class FlatPortProjector {
     row_z_ = axis.col(2);
   }
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the projector, in a fixed order. The SIMD code uses it
+  // as it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     optics_.each_field(visit);
@@ -120,7 +125,7 @@ class FlatPortProjector {
   }
 
   // The image of X [port's frame, m]. FlatPortCamera::project states when X is visible. Every
-  // number of the result is finite, for every X.
+  // number of the result is finite, for every X. The numbers are meaningless if X is not visible.
   FlatPortImage<T> image(const Vector3<T>& X) const {
     FlatPortImage<T> image;
     const T radius2 = X.x() * X.x() + X.y() * X.y();

@@ -29,7 +29,7 @@ namespace axial::refractive {
 // fixed-step solver, because the solver could return a pixel inside the image for them.
 template <class T>
 struct FlatPortField {
-  T offset, slope;  // offset [m]; slope [m/m]
+  T offset, slope;  // of the disc's radius: offset [m]; slope [m/m]
   // At a fixed tangent t, the secant radius / t is a linear function of z_water. `known_...`: the
   // coefficients of this function at t = `promised` (see the constructor), where the first guess of
   // the solver is exact. `paraxial_...`: the coefficients for t -> 0, on the axis. inv_known2 is
@@ -38,7 +38,7 @@ struct FlatPortField {
   T paraxial_offset, paraxial_slope;
   int steps;  // of the solver in single precision; all other scalars ignore it
 
-  FlatPortField() = default;
+  FlatPortField() = default;  // invalid until each_field() has filled it
   // `tangent`: the largest in-air tangent of the field. `promised`: the largest in-air tangent
   // with full accuracy in single precision. Precondition: 0 < promised <= tangent. The number of
   // steps in single precision is chosen for `promised`. In an image of 1024 px width, the errors
@@ -58,6 +58,8 @@ struct FlatPortField {
     offset *= tangent, slope *= tangent;
   }
 
+  // Calls visit(number) for every member above, in a fixed order. The SIMD code uses it as it uses
+  // FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(offset), visit(slope);
@@ -66,10 +68,13 @@ struct FlatPortField {
     visit(steps);
   }
 
+  // The radius [m] of the disc at the height `z_water` [m].
   T radius(const T& z_water) const { return offset + slope * z_water; }
 
   // True if the field contains the point. rho2: squared distance of the point to the axis [m^2].
-  // z_water: height of the point above the outer plane [m]. False for NaN.
+  // z_water: height of the point above the outer plane [m]. False for NaN. False if z_water is
+  // 0.1 mm or less, or 100 km or more, in single precision; for all other scalars the limits are
+  // 1 nm and a million kilometres.
   Mask<T> contains(const T& rho2, const T& z_water) const {
     const T edge = radius(z_water);
     return z_water > T(kLowest) && z_water < T(kHighest) && rho2 <= edge * edge;

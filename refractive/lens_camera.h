@@ -14,23 +14,25 @@
 namespace axial::refractive {
 
 // The image of a point, and the derivative of the pixel by the point. Points are in the frame of
-// the inner projector.
+// the inner projector, the projector of the inner camera.
 template <class T, class InnerImage>
 struct LensImage {
   Projection<T> projection;
 
-  // The origin of the ray through the point.
+  // The origin of the ray through the point [frame of the inner projector, m].
   Vector3<T> origin() const { return inner.origin(); }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [m].
+  // First-order motion of the pixel [px] when the point moves by `step` [frame of the inner
+  // projector, m].
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     return by_tangents * inner.pixel_motion(step);
   }
 
   InnerImage inner;        // the inner camera's image, in tangents
-  Matrix2<T> by_tangents;  // d(pixel)/d(tangents)
+  Matrix2<T> by_tangents;  // d(pixel)/d(tangents) [px]
 };
 
+// The part of a LensCamera that projects points.
 template <class T, class InnerProjector>
 class LensProjector {
  public:
@@ -38,14 +40,17 @@ class LensProjector {
   LensProjector(const DistortedLens<T>& lens, const InnerProjector& inner)
       : lens_(lens), inner_(inner) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the projector, in a fixed order. The SIMD code uses it
+  // as it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     lens_.each_field(visit);
     inner_.each_field(visit);
   }
 
-  // The image of X [frame of the inner projector].
+  // The image of X [frame of the inner projector, m]. LensCamera::project states when X is visible.
+  // Every number of the result is finite, for every X. The numbers are meaningless if X is not
+  // visible.
   auto image(const Vector3<T>& X) const {
     LensImage<T, decltype(inner_.image(X))> image;
     image.inner = inner_.image(X);
@@ -76,9 +81,10 @@ WidenedImage<T> all_tangents() {
 
 namespace detail {
 
-// Returns the tangent of the largest angle of incidence on the port in air, over `image` [px]. A
-// larger tangent than kGrazing is reduced to kGrazing. Only the border of `image` is sampled,
-// because the incidence grows towards the border.
+// Returns the tangent of the largest angle of incidence on the port in air, over `image` [px]. The
+// result is about 0.2% too large, as a reserve between the samples, and is at least 0.001 and at
+// most 50. The result is 50 if a sampled pixel looks parallel to the port or away from the port.
+// Only the border of `image` is sampled, because the incidence grows towards the border.
 template <class T>
 T largest_incidence_tangent(const DistortedLens<T>& lens, const FlatPort<T>& port,
                             const WidenedImage<T>& image) {
@@ -139,15 +145,17 @@ class LensCamera {
 
   LensCamera() = default;  // invalid until each_field() has filled it
 
-  // The camera is without a port if Inner is PinholeCamera. Otherwise it is behind `port`: a
-  // FlatPort for FlatPortCamera, a DomePort for DomePortCamera.
+  // The first constructor is for Inner = PinholeCamera, a camera without a port. The second
+  // constructor is for a camera behind `port`: a FlatPort for Inner = FlatPortCamera, a DomePort
+  // for Inner = DomePortCamera. The preconditions of the port are not checked.
   explicit LensCamera(const DistortedLens<T>& lens)
       : lens_(lens), inner_(detail::inner_camera(lens)) {}
   template <class Port>
   LensCamera(const DistortedLens<T>& lens, const Port& port)
       : lens_(lens), inner_(detail::inner_camera(lens, port)) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the camera, in a fixed order. The SIMD code uses it as
+  // it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     lens_.each_field(visit);
@@ -157,10 +165,12 @@ class LensCamera {
   const DistortedLens<T>& distorted_lens() const { return lens_; }
   const Inner& inner() const { return inner_; }
 
-  // The ray of the inner camera for the tangents of `pixel`. If the lens images no direction at
-  // the pixel, the result is the ray of a direction at the edge of the lens's field.
+  // The ray of `pixel` in the scene medium, in the camera frame. If the lens images no direction at
+  // the pixel, the result is the ray of a direction at the edge of the lens's field. A NaN pixel
+  // gives a ray with a NaN direction.
   AxialRay<T> ray(const Vector2<T>& pixel) const { return inner_.ray(lens_.tangents(pixel).point); }
 
+  // The ray of `pixel`, as above. `jacobian` receives the derivatives of the ray by the pixel.
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
     const PlanePoint<T> tangents = lens_.tangents(pixel);
     AxialRayJacobian<T> by_tangents;
@@ -170,17 +180,25 @@ class LensCamera {
     return ray;
   }
 
+  // The point at which the ray of `pixel` enters the scene medium [camera frame, m]. Without a
+  // port: the camera centre.
   Vector3<T> exit_point(const Vector2<T>& pixel) const {
     return inner_.exit_point(lens_.tangents(pixel).point);
   }
 
+  // The part of the camera that projects points. It takes points in the frame of the inner
+  // projector. projector_frame() is the transformation from the camera frame to this frame.
   using Projector = LensProjector<T, typename Inner::Projector>;
   Projector projector() const { return {lens_, inner_.projector()}; }
   RigidTransform<T> projector_frame() const { return inner_.projector_frame(); }
 
-  // As project() of the inner camera, but with the pixel and the Jacobian of the distorted lens. A
-  // point that the inner camera sees is not visible if its direction lies beyond the lens's field,
-  // or if its pixel lies outside the widened image of the lens.
+  // Exact forward projection of X [camera frame, m]. `jacobian` receives d(pixel)/dX [px/m].
+  // `origin` receives the origin of the ray through X [camera frame, m]. Both pointers may be null.
+  // X is visible if all three conditions hold:
+  //   - X is visible to the inner camera (see Inner::project()).
+  //   - The direction in air in which the lens sees X lies within the lens's field.
+  //   - The pixel lies in the widened image of the lens.
+  // The numbers of a point that is not visible are finite but meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     Matrix23<T> by_point;

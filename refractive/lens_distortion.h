@@ -29,13 +29,13 @@ struct PlanePoint {
   Matrix2<T> by;
 };
 
-// The parameters of the formula above. Their defaults describe a lens without distortion.
+// The parameters of the formulas above. Their defaults describe a lens without distortion.
 template <class T>
 struct LensDistortion {
   T fisheye = T(0);  // 1: fisheye, 0: perspective; a T, so that each SIMD lane has its own value
   T spread = T(1);
-  std::array<T, 5> above{T(1), T(0), T(0), T(0), T(0)};
-  std::array<T, 3> below{T(0), T(0), T(0)};
+  std::array<T, 5> above{T(1), T(0), T(0), T(0), T(0)};  // above_0 to above_4; above_0 is not 0
+  std::array<T, 3> below{T(0), T(0), T(0)};              // below_1 to below_3
   T p1 = T(0), p2 = T(0);
   Vector2<T> prism{T(0), T(0)};
 
@@ -44,7 +44,8 @@ struct LensDistortion {
   template <class U>
   LensDistortion<U> cast() const;
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the distortion, in a fixed order. The SIMD code uses it
+  // as it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(fisheye), visit(spread);
@@ -58,7 +59,7 @@ struct LensDistortion {
   PlanePoint<T> spread_out(const Vector2<T>& tangents) const;
   PlanePoint<T> drawn_in(const Vector2<T>& e) const;
 
-  // Maps e to d.
+  // Maps e to d. `by` is d(d)/d(e).
   PlanePoint<T> bent(const Vector2<T>& e) const;
 
   // The inverse of bent() by Newton's method: maps d to e. `by` is d(e)/d(d). The result is limited
@@ -67,6 +68,8 @@ struct LensDistortion {
   PlanePoint<T> straightened(const Vector2<T>& d, const T& radius) const;
 };
 
+// The determinant and the inverse of m, for every scalar type. The inverse of a singular m has
+// elements that are infinite or NaN.
 template <class T>
 T determinant_of(const Matrix2<T>& m) {
   return m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);

@@ -30,13 +30,13 @@ struct FieldCircle {
   // True if each sampled point of the curve moves outwards when the angle from the optical axis
   // grows, and if the distortion does not mirror the image.
   bool grows = true;
-  double reaches = 1e9;  // smallest distance of the curve from the image's centre [focal lengths]
+  double reaches = 1e9;  // smallest distance of the curve from the optical axis [focal lengths]
 };
 
 // Samples the circle |e| = radius at 16 points. `by_angle`: d|e|/d(angle) at this radius.
 inline FieldCircle field_circle(const LensDistortion<double>& distortion, double radius,
                                 double by_angle) {
-  // Least growth of the distance from the image's centre [focal lengths per radian]. If the growth
+  // Least growth of the distance from the optical axis [focal lengths per radian]. If the growth
   // is smaller, the inverse of the distortion is not accurate in single precision.
   constexpr double kLeastGrowth = 0.02;
   constexpr int kDirections = 16;
@@ -55,10 +55,11 @@ inline FieldCircle field_circle(const LensDistortion<double>& distortion, double
 
 }  // namespace detail
 
-// Returns the field of the lens: the largest |e| (lens_distortion.h) up to which directions that
-// move away from the optical axis also move outwards in the image. The search runs in steps from
-// the axis outwards. It ends at the first step at which all sampled directions lie beyond the
-// corners of `image` [px], and at kWidestAngle at the latest. The result is 0 if directions next
+// Returns the field of the lens: the largest |e| (lens_distortion.h) up to which the image of a
+// direction moves outwards when the direction moves away from the optical axis. The search runs in
+// steps from the axis outwards. It ends at the first step at which all sampled directions lie
+// beyond the corners of `image` [px], and at kWidestAngle at the latest. So the result may be
+// smaller than the largest such |e|, but then it covers `image`. The result is 0 if directions next
 // to the axis already do not move outwards, for example because the lens mirrors the image.
 inline double lens_field(const PinholeLens<double>& lens, const LensDistortion<double>& distortion,
                          const WidenedImage<double>& image) {

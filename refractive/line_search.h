@@ -106,8 +106,8 @@ class LineSearchCamera {
  public:
   using Scalar = T;
 
-  // `width`, `height`: size of the image [px]. Copies of the camera share one table of 4 numbers
-  // per pixel.
+  // `lens`: the lens in air. `width`, `height`: size of the image [px]. Copies of the camera share
+  // one table of 4 numbers per pixel. The preconditions of FlatPort are not checked.
   LineSearchCamera(const PinholeLens<T>& lens, const FlatPort<T>& port, int width, int height)
       : exact_(lens, port, width, height),
         low_(T(-1), T(-1)),
@@ -117,9 +117,11 @@ class LineSearchCamera {
   const PinholeLens<T>& lens() const { return exact_.lens(); }
   const FlatPort<T>& port() const { return exact_.port(); }
   Matrix3<T> rotation_to_axis() const { return exact_.rotation_to_axis(); }
+  // The exact camera, and the table of the pixels' rays.
   const FlatPortCamera<T>& exact() const { return exact_; }
   const PixelLookup<T>& lookup() const { return *lookup_; }
 
+  // The ray of `pixel` and its derivatives by the pixel, from FlatPortCamera::ray().
   AxialRay<T> ray(const Vector2<T>& pixel) const { return exact_.ray(pixel); }
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
     return exact_.ray(pixel, jacobian);
@@ -128,7 +130,8 @@ class LineSearchCamera {
   // The projection of X [camera frame, m]. X is visible if the search ends inside the image
   // without a margin: u in [-1/2, width - 1/2], v in [-1/2, height - 1/2]. X is not visible if it
   // lies on the lens's side of the outer plane, or behind the lens, or is NaN. The pixel of a
-  // point that is not visible is (0, 0). `jacobian`: d(pixel)/dX of the exact projection.
+  // point that is not visible is (0, 0). `jacobian` receives d(pixel)/dX [px/m] of
+  // FlatPortCamera::project(). It may be null.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr) const {
     if (jacobian) exact_.project(X, jacobian);
     const Projection<T> none{Vector2<T>(T(0), T(0)), false};

@@ -9,8 +9,8 @@
 namespace axial::refractive {
 
 // The normal equations of the point nearest to several rays: normal * point = right. The solution
-// is the point with the smallest sum of squared distances to the lines of the rays. `normal` is
-// singular if all rays are parallel or if there are no rays.
+// [m, frame of the rays] is the point with the smallest sum of squared distances to the lines of
+// the rays. `normal` is singular if all rays are parallel or if there are no rays.
 template <class T>
 struct NearestPointEquations {
   Matrix3<T> normal = Matrix3<T>::Zero();

@@ -31,7 +31,8 @@ struct PinholeLens {
   }
 };
 
-// The image of a point, and the derivative of the pixel by the point.
+// The image of a point, and the derivative of the pixel by the point. Points are in the camera
+// frame.
 template <class T>
 struct PinholeImage {
   Projection<T> projection;
@@ -39,17 +40,18 @@ struct PinholeImage {
   // The origin of the ray through the point: the camera centre.
   Vector3<T> origin() const { return {T(0), T(0), T(0)}; }
 
-  // First-order motion of the pixel [px] when the point moves by `step` [m].
+  // First-order motion of the pixel [px] when the point moves by `step` [camera frame, m].
   Vector2<T> pixel_motion(const Vector3<T>& step) const {
     return {scale_u * (step.x() - x * step.z()), scale_v * (step.y() - y * step.z())};
   }
 
   T x, y;              // x and y of the point, divided by z
-  T scale_u, scale_v;  // focal lengths divided by z
+  T scale_u, scale_v;  // fx/z and fy/z [px/m]
 };
 
-// A camera without a port: all rays start at the camera centre. A point (x, y, z) is visible if
-// 1e-20 < z < 1e20, |x| <= 1e6 z and |y| <= 1e6 z. There is no test against an image rectangle.
+// A camera without a port: all rays start at the camera centre. A point (x, y, z) [camera frame, m]
+// is visible if 1e-20 < z < 1e20, |x| <= 1e6 z and |y| <= 1e6 z. There is no test against an image
+// rectangle.
 template <class T>
 class PinholeCamera {
  public:
@@ -58,7 +60,8 @@ class PinholeCamera {
   PinholeCamera() = default;  // invalid until each_field() has filled it
   explicit PinholeCamera(const PinholeLens<T>& lens) : lens_(lens) {}
 
-  // See FlatPortCamera::each_field().
+  // Calls visit(number) for every number of the camera, in a fixed order. The SIMD code uses it as
+  // it uses FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lens_.fx), visit(lens_.fy), visit(lens_.cx), visit(lens_.cy);
@@ -73,6 +76,7 @@ class PinholeCamera {
     return {Vector3<T>::Zero(), bearing * (T(1) / sqrt(bearing.squaredNorm()))};
   }
 
+  // The ray of `pixel`, as above. `jacobian` receives the derivatives of the ray by the pixel.
   AxialRay<T> ray(const Vector2<T>& pixel, AxialRayJacobian<T>& jacobian) const {
     using std::sqrt;
     const Vector3<T> bearing = lens_.bearing(pixel);
@@ -86,7 +90,7 @@ class PinholeCamera {
     return {Vector3<T>::Zero(), direction};
   }
 
-  // The point at which the pixel's light leaves the scene medium: the camera centre.
+  // The start of the pixel's ray in the scene medium: the camera centre.
   Vector3<T> exit_point(const Vector2<T>&) const { return Vector3<T>::Zero(); }
 
   // The projector is the camera itself. It takes points in the camera frame.
@@ -94,7 +98,7 @@ class PinholeCamera {
   const Projector& projector() const { return *this; }
   RigidTransform<T> projector_frame() const { return {Matrix3<T>::Identity(), Vector3<T>::Zero()}; }
 
-  // The image of X [camera frame]. If X is not visible, the numbers of the result are finite but
+  // The image of X [camera frame, m]. If X is not visible, the numbers of the result are finite but
   // meaningless.
   PinholeImage<T> image(const Vector3<T>& X) const {
     using std::abs;
@@ -113,8 +117,9 @@ class PinholeCamera {
     return image;
   }
 
-  // Projects X [camera frame]. `jacobian`: d(pixel)/dX. `origin`: the origin of the ray through X,
-  // which is the camera centre.
+  // Projects X [camera frame, m]. `jacobian` receives d(pixel)/dX [px/m]. `origin` receives the
+  // origin of the ray through X, which is the camera centre. Both pointers may be null. If X is not
+  // visible, the numbers are finite but meaningless.
   Projection<T> project(const Vector3<T>& X, Matrix23<T>* jacobian = nullptr,
                         Vector3<T>* origin = nullptr) const {
     const PinholeImage<T> image = this->image(X);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's lookup table L(pixel) = {C_v, X_v, c_v}: an axial camera as a table of the rays of
 // its pixels. C_v is the origin and X_v the direction of the pixel's ray in water. c_v is the
-// principal point of the pixel's virtual camera (virtual_camera.h).
+// principal point of the pixel's virtual camera (virtual_camera.h). docs/refraction.md names the
+// paper.
 #pragma once
 
 #include <cstddef>
@@ -22,18 +23,20 @@ template <class T>
 class PixelLookup {
  public:
   struct Entry {
-    Vector3<T> centre;           // C_v [camera frame]
-    Vector3<T> direction;        // unit, in water [camera frame]
-    Vector2<T> principal_point;  // c_v
+    Vector3<T> centre;           // C_v [camera frame, m]
+    Vector3<T> direction;        // X_v: unit, in water [camera frame]
+    Vector2<T> principal_point;  // c_v [px]
   };
 
+  // The four numbers that the table stores for one pixel.
   struct Cell {
-    T along;  // C_v = along * axis
-    Vector3<T> direction;
+    T along;               // C_v = along * axis() [m]
+    Vector3<T> direction;  // X_v
   };
 
-  // Fills the table with the rays of `camera`. The table covers the image of width x height
-  // pixels, widened by `border` pixels on every side. `camera` is any camera with a flat port.
+  // Fills the table with the rays of `camera`, any type with lens(), port(), rotation_to_axis() and
+  // ray() as FlatPortCamera has them. The table covers the image of width x height pixels, widened
+  // by `border` (>= 0) pixels on every side.
   template <class Camera>
   PixelLookup(const Camera& camera, int width, int height, int border = 0)
       : lens_(camera.lens()),
@@ -52,6 +55,7 @@ class PixelLookup {
     }
   }
 
+  // The camera's axis: the unit normal of the port, in the camera frame.
   const Vector3<T>& axis() const { return axis_; }
 
   // The pixel of the table nearest to `pixel`. Halves are rounded upwards. A coordinate outside
@@ -69,6 +73,7 @@ class PixelLookup {
                   static_cast<std::size_t>(p.u - low_)];
   }
 
+  // The ray of the pixel p in water, in the camera frame. Precondition: p lies inside the table.
   AxialRay<T> ray(const IntegerPixel& p) const {
     const Cell& c = cell(p);
     return {c.along * axis_, c.direction};

@@ -38,6 +38,7 @@ namespace polynomial {
 template <class T, std::size_t N>
 using Polynomial = std::array<T, N>;
 
+// a * b.
 template <class T, std::size_t N, std::size_t M>
 Polynomial<T, N + M - 1> product(const Polynomial<T, N>& a, const Polynomial<T, M>& b) {
   Polynomial<T, N + M - 1> c{};
@@ -55,8 +56,9 @@ Polynomial<T, N> plus(Polynomial<T, N> a, const T& scale, const Polynomial<T, M>
 }
 
 // The complex roots of a monic polynomial, computed as the eigenvalues of its companion matrix.
-// `monic`: the coefficients, the constant term first. Precondition: degree at most 12. All degrees
-// share one matrix type, because matrices of fixed size are no faster and double the compile time.
+// `monic`: the coefficients, the constant term first. Precondition: degree from 1 to 12. All
+// degrees share one matrix type, because matrices of fixed size are no faster and double the
+// compile time.
 template <class T>
 auto roots(std::span<const T> monic) {
   constexpr int kMostRoots = 12;

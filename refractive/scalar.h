@@ -15,6 +15,7 @@ namespace axial::refractive {
 template <class T>
 using Mask = std::decay_t<decltype(std::declval<const T&>() < std::declval<const T&>())>;
 
+// `yes` if `condition` is true, otherwise `no`. For a SIMD pack: chosen lane by lane.
 template <class T>
 T select(bool condition, const T& yes, const T& no) {
   return condition ? yes : no;

@@ -17,9 +17,9 @@ namespace axial::refractive {
 
 template <class T>
 struct VirtualCamera {
-  Vector3<T> centre;    // C_v in the frame of the real camera
-  Matrix3<T> rotation;  // virtual_from_camera
-  PinholeLens<T> lens;  // f_v = f, principal point c_v
+  Vector3<T> centre;    // C_v [frame of the real camera, m]
+  Matrix3<T> rotation;  // virtual_from_camera: from the real camera's frame to the virtual camera's
+  PinholeLens<T> lens;  // f_v = f, principal point c_v [px]
 
   // The pixel of X [frame of the real camera, m]. Precondition: X lies in front of the virtual
   // camera.
@@ -28,7 +28,8 @@ struct VirtualCamera {
 
 // The principal point c_v [px] of a virtual camera (eq. 3, corrected). With this principal point,
 // the virtual camera images the ray in water with the direction `direction` [frame of the real
-// camera] at `pixel`. `rotation`: virtual_from_camera.
+// camera] at `pixel`. `lens`: the real lens. `rotation`: virtual_from_camera. Precondition: the
+// direction points forwards from the virtual camera.
 template <class T>
 Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>& rotation,
                                    const Vector3<T>& direction, const Vector2<T>& pixel) {
@@ -36,7 +37,8 @@ Vector2<T> virtual_principal_point(const PinholeLens<T>& lens, const Matrix3<T>&
   return {pixel.x() - lens.fx * d.x() / d.z(), pixel.y() - lens.fy * d.y() / d.z()};
 }
 
-// The virtual camera of `pixel`. `ray`: the pixel's ray in water [frame of the real camera].
+// The virtual camera of `pixel`. `lens`: the real lens. `ray`: the pixel's ray in water [frame of
+// the real camera, m].
 // `rotation`: virtual_from_camera. Without refraction and with the identity as `rotation`, the
 // result is the pinhole camera of the lens.
 template <class T>
@@ -46,9 +48,9 @@ VirtualCamera<T> virtual_camera(const PinholeLens<T>& lens, const Matrix3<T>& ro
   return {ray.origin, rotation, {lens.fx, lens.fy, c.x(), c.y()}};
 }
 
-// The virtual camera of `pixel` of `camera`, which may be of any type with lens(). The pixel is not
-// rounded. The result for a camera without rotation_to_axis(), such as PinholeCamera, is the camera
-// itself.
+// The virtual camera of `pixel` of `camera`, which may be of any type with lens() and ray(). The
+// pixel is not rounded. If the camera has no function rotation_to_axis(), like PinholeCamera, the
+// result is the pinhole camera of lens() at the camera centre.
 template <class Camera, class T = typename Camera::Scalar>
 VirtualCamera<T> virtual_camera(const Camera& camera, const Vector2<T>& pixel) {
   if constexpr (requires { camera.rotation_to_axis(); }) {
@@ -67,6 +69,7 @@ struct RelativePose {
   Vector3<T> centre;
 };
 
+// Computes this pose from the pose of the real cameras, x_source = R (x_reference - C).
 template <class T>
 RelativePose<T> relative_pose(const VirtualCamera<T>& reference, const VirtualCamera<T>& source,
                               const Matrix3<T>& R, const Vector3<T>& C) {
@@ -98,6 +101,8 @@ Matrix3<T> virtual_homography(const VirtualCamera<T>& reference, const VirtualCa
   return K * euclidean * K_inverse;
 }
 
+// The pixel to which the homography H maps `pixel`. If this is a point at infinity, the result is
+// infinite or NaN.
 template <class T>
 Vector2<T> apply_homography(const Matrix3<T>& H, const Vector2<T>& pixel) {
   const Vector3<T> image = H * Vector3<T>(pixel.x(), pixel.y(), T(1));

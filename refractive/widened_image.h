@@ -12,7 +12,9 @@ struct WidenedImage {
   // Limits [px]: `lowest` of u and of v, `highest_u` of u, `highest_v` of v.
   T lowest, highest_u, highest_v;
 
-  WidenedImage() = default;
+  WidenedImage() = default;  // the limits have no values
+  // `width`, `height`: size of the image [px]. `margin` [px]: widening on every side. A negative
+  // margin makes the rectangle smaller than the image.
   WidenedImage(int width, int height, const T& margin)
       : lowest(-margin), highest_u(T(width - 1) + margin), highest_v(T(height - 1) + margin) {}
 
@@ -22,6 +24,8 @@ struct WidenedImage {
     return T(margin >= 0 ? margin : (width > height ? width : height) / 8);
   }
 
+  // Calls visit(number) for every limit, in a fixed order. The SIMD code uses it as it uses
+  // FlatPortCamera::each_field().
   template <class Visit>
   void each_field(Visit&& visit) {
     visit(lowest), visit(highest_u), visit(highest_v);

@@ -9,14 +9,16 @@
 
 namespace axial::pose {
 
-// Returns one line for each reason why known lengths or positions of `options` cannot be used to
-// determine the scale of the bundle. Empty if there is no reason. A distance cannot be used if one
-// of its ends has no observations, or if no chain of common points connects its ends. The position
-// of an image without observations is lost. If positions are lost, the remaining positions cannot
-// be used if they are fewer than three or lie on one line.
+// Returns one line for each reason why `options.distances` or `options.positions` cannot be used to
+// determine the scale of the bundle: first the lines of the distances, in their order, then at most
+// one line of the positions. Empty if there is no reason. A distance cannot be used if one of its
+// ends has no observations or is not in the bundle, or if no chain of common points connects its
+// ends. The position of an image without observations is lost. If positions are lost, the remaining
+// positions cannot be used if they are fewer than three or lie on one line.
 std::vector<std::string> lost_knowledge(const Bundle& bundle, const AdjustOptions& options);
 
-// The indices into `options.positions` of the lost positions: their images have no observations.
+// The indices into `options.positions` of the lost positions, in ascending order. A position is
+// lost if its image has no observations.
 std::vector<std::size_t> lost_positions(const Bundle& bundle, const AdjustOptions& options);
 
 }  // namespace axial::pose

@@ -19,24 +19,28 @@ namespace axial::pose {
 inline constexpr int kPoseNumbers = 6;
 using PoseNumbers = std::array<double, kPoseNumbers>;
 
-// numbers_of() returns the numbers of `start` itself, with w = 0. pose_with() returns the pose of
-// `numbers`, where R is the rotation of `start`.
+// `start`: the pose at which the adjustment starts. numbers_of() returns the numbers of `start`
+// itself: w = 0 and C = start.centre. pose_with() returns the pose that has the numbers `numbers`.
 PoseNumbers numbers_of(const Pose& start);
 Pose pose_with(const Pose& start, const PoseNumbers& numbers);
 
-// The left Jacobian J of the rotation group: d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
+// The left Jacobian J of the rotation group at the rotation vector w [rad]. For every vector v,
+// d(exp([w]x) v)/dw = -[exp([w]x) v]x J.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 
-// The cameras for the present values of the solver's parameter blocks. They are built once for
-// each evaluation point, and not for each observation.
+// The cameras for the present values of the solver's parameter blocks. They are built once for each
+// point at which the solver evaluates the cost, and not for each observation.
 class CurrentCameras : public ceres::EvaluationCallback {
  public:
-  // `changes`: the solver's parameter blocks, one per camera. Both arguments must outlive this.
+  // `changes`: the solver's parameter blocks, one per camera, in the order of `cameras`. Both
+  // arrays must outlive the object.
   CurrentCameras(std::span<const BundleCamera> cameras,
                  std::span<const HousingChange<double>> changes);
 
+  // Called by the solver. Rebuilds the cameras from `changes` if `new_evaluation_point` is true.
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
+  // The camera with the index `camera`. The reference stays valid as long as the object.
   const PhotographCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
 
  private:
@@ -46,16 +50,20 @@ class CurrentCameras : public ceres::EvaluationCallback {
 };
 
 // The residual [px of the photograph] of one observation: the projected minus the observed pixel.
-// Parameter blocks: the numbers of the pose, the point [m, world frame] and the change of the
-// camera. A point that is not visible (PhotographImage::visible) has a large constant residual
-// with zero derivatives. The loss function bounds the weight of this residual.
+// Parameter blocks, in this order: the numbers of the pose (PoseNumbers), the point [m, world
+// frame] and the change of the camera (HousingChange). A point that is not visible
+// (PhotographImage::visible) has the residual (width, height) of the photograph with zero
+// derivatives. The loss function bounds the weight of this residual.
 class ObservationCost : public ceres::SizedCostFunction<2, kPoseNumbers, 3, kHousingNumbers> {
  public:
-  // All arguments must outlive the cost.
+  // `start`: the pose of the observation's image at which the adjustment starts. `measured`: the
+  // image's camera in the bundle. `now`: this camera in CurrentCameras. All arguments must outlive
+  // the cost.
   ObservationCost(const Observation& observation, const Pose& start, const BundleCamera& measured,
                   const PhotographCamera& now)
       : observation_(observation), start_(start), measured_(measured), now_(now) {}
 
+  // Called by the solver. `jacobians` and each of its entries may be null. Returns true.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 

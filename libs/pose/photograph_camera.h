@@ -15,8 +15,9 @@ namespace axial::pose {
 struct HousedCamera {
   lens::Lens lens;
   std::optional<refractive::Port<double>> port = {};  // empty: no port
-  // The field of `lens`. If both focal lengths are multiplied by the same factor, field.reach stays
-  // exact. field.corner becomes an estimate, which only affects the speed.
+  // The field of `lens` (lens/lens.h). It need not be computed anew if both focal lengths are
+  // multiplied by one factor: field.reach stays exact, and field.corner becomes an estimate, which
+  // only affects the speed.
   lens::Field field = field_of(lens);
 };
 
@@ -26,24 +27,26 @@ struct PhotographImage {
   // lens has no image of this light, or if the image lies outside the photograph widened by an
   // eighth of its longer side. If false, all other members are meaningless.
   bool visible = false;
-  Eigen::Vector2d pixel;
+  Eigen::Vector2d pixel;        // in the photograph
   Eigen::Vector2d tangents;     // (u, v) of the in-air direction (u, v, 1) of the light
-  Eigen::Matrix2d by_tangents;  // d(pixel)/d(tangents)
-  refractive::Matrix23<double> tangents_by_point;
+  Eigen::Matrix2d by_tangents;  // d(pixel)/d(tangents) [px]
+  refractive::Matrix23<double> tangents_by_point;  // d(tangents)/d(point) [1/m]
   Eigen::Vector3d origin;  // origin of the ray in water through the point [m]
 };
 
+// A HousedCamera that projects points and returns the rays of pixels.
 class PhotographCamera {
  public:
   explicit PhotographCamera(HousedCamera camera);
 
-  // The image of X [camera frame] by the exact projection, with derivatives.
+  // The image of X [camera frame, m] by the exact projection, with derivatives.
   PhotographImage image(const Eigen::Vector3d& X) const;
 
-  // The ray in water of `pixel`, in the camera frame [m]. Origin and direction are NaN if the
-  // lens images no direction at this pixel.
+  // The ray in water of `pixel`, in the camera frame [m]. Without a port, it is the ray in air.
+  // Origin and direction are NaN if the lens images no direction at this pixel.
   refractive::AxialRay<double> ray(const Eigen::Vector2d& pixel) const;
 
+  // The principal point (cx, cy) of the lens [px].
   const Eigen::Vector2d& principal_point() const { return principal_point_; }
 
  private:

@@ -16,21 +16,21 @@
 namespace axial::pose {
 
 // Up to three pairs of images of a sample, with their photographs in memory. The images of a pair
-// have many points in common. Pairs are left out if a photograph cannot be read or has another
-// size than its camera.
+// have many points in common, and no image is in two pairs. A pair is not used if one of its
+// photographs cannot be read or has another size than its camera.
 class TrackPictures {
  public:
-  // `in_air`: the bundle of `sample` with its cameras in air. Images and points have the same
-  // order as in `sample`, and the points are triangulated from the tracks. Both objects must
-  // outlive this object.
+  // `in_air`: the bundle of `sample` with its cameras in air. Images and points have the same order
+  // as in `sample`, and the points are triangulated from the tracks. Both objects must outlive this
+  // object. `image_folder`: the folder to which the names of the images are relative.
   TrackPictures(const io::ColmapModel& sample, const Bundle& in_air,
                 const std::filesystem::path& image_folder);
 
-  // Return the median of the normalised cross-correlations of corresponding patches: 1 for equal
-  // patches, near 0 for unrelated places. at_tracks() centres the patches at the pixels of the
-  // tracks. behind() centres the patches at the projections of the points into the cameras of
-  // `bundle`. `bundle` is `in_air` with other cameras or at another scale. Nothing if fewer than 30
-  // points have patches that lie in both photographs and have enough texture.
+  // Both functions return the median of the normalised cross-correlations of corresponding patches:
+  // 1 for equal patches, near 0 for unrelated places. at_tracks() centres the patches at the pixels
+  // of the tracks. behind() centres the patches at the projections of the points into the cameras
+  // of `bundle`, which is `in_air` with other cameras or at another scale. Empty if fewer than 30
+  // points of all pairs together have patches that lie in both photographs and have enough texture.
   std::optional<double> at_tracks() const;
   std::optional<double> behind(const Bundle& bundle) const;
 

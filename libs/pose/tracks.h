@@ -10,37 +10,43 @@
 
 namespace axial::pose {
 
-// The point with the smallest sum of squared distances to the rays [m, any common frame]. Nothing
-// for fewer than two rays, for parallel rays, or if the point lies behind the origin of a ray.
+// The point [m, frame of the rays] with the smallest sum of squared distances to the lines of the
+// rays. Empty for fewer than two rays, for parallel rays, or if the point lies behind the origin of
+// a ray. Precondition: all rays are in one frame.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
-// Triangulates all points from the rays of their observations. A point for which triangulate(rays)
-// returns nothing keeps its position.
+// Triangulates all points from the rays of their observations. Observations at whose pixel the lens
+// images no direction are not used. A point for which triangulate(rays) returns nothing keeps its
+// position.
 void triangulate(Bundle& bundle);
 
 // For each point with several observations in one image, as in the tracks of some engines, keeps
-// only the observation with the smallest error (the first of equal errors). Returns the number of
-// dropped observations.
+// only the observation with the smallest reprojection error (the first of equal errors). Returns
+// the number of dropped observations.
 std::size_t drop_repeated(Bundle& bundle);
 
 struct TrackLimits {
-  double max_error = 4;               // of an observation [px]
-  double min_angle = 1.5;             // least widest angle between two rays of a point [degrees]
-  std::size_t min_observations = 30;  // of an image; fewer observations may fit a wrong pose
+  double max_error = 4;  // largest reprojection error of an observation [px]
+  // The widest angle between two rays of a point must be at least this large [degrees].
+  double min_angle = 1.5;
+  // Least number of observations of an image. Fewer observations may fit a wrong pose.
+  std::size_t min_observations = 30;
 };
 
-// Why observations were dropped.
+// The numbers of observations that were dropped, by reason.
 struct DropCounts {
   std::size_t errors = 0;       // error too large
   std::size_t weak_images = 0;  // image with too few observations left
   std::size_t weak_points = 0;  // point seen by one image, or under too narrow an angle
 };
 
-// Drops observations that do not fit. First drops all observations with errors above the limit.
-// Then repeats two steps until nothing changes:
-// - Drops all observations of images with fewer than `min_observations`.
+// Drops observations that do not fit. First drops all observations with reprojection errors above
+// `max_error`. Then repeats two steps until nothing changes:
+// - Drops all observations of images with fewer than `min_observations`. The images stay in the
+//   bundle.
 // - Removes points that fewer than two images observe or whose widest angle is below `min_angle`,
-//   with their observations.
+//   with their observations. The other points and observations keep their order, but indices
+//   change.
 //
 // Returns the number of dropped observations. Adds the numbers by reason to `counts` if it is not
 // null.

@@ -10,19 +10,25 @@
 
 namespace axial::refine {
 
+// The anchor term: the sum over the vertices of weight * (offset after the step)^2. Both arrays
+// have one entry per vertex.
 struct Anchor {
-  std::vector<float> offset;   // from the first position, along the vertex's normal [mesh units]
-  std::vector<double> weight;  // of the square of the offset after the step
+  // The signed distance from the first position, along the vertex's normal, before the step [mesh
+  // units].
+  std::vector<float> offset;
+  std::vector<double> weight;
 };
 
 struct AnchorOptions {
-  // Information of the first position divided by the information of the photographs.
+  // Information of the first position divided by the information of the photographs, for a first
+  // position that the photographs do not contradict.
   double weight = 0.25;
   double factor = 1;  // image size of the step / full image size
 };
 
 // The signed distance of every vertex from its first position, along the vertex's normal in `shape`
-// [mesh units]. All arguments have one entry per vertex.
+// [mesh units]. `vertices`: the present positions. `first`: the first positions. Both have one
+// entry per vertex.
 std::vector<float> offsets(std::span<const Eigen::Vector3f> vertices,
                            std::span<const Eigen::Vector3f> first, const Shape& shape);
 

@@ -14,8 +14,9 @@ namespace axial::refine {
 // candidates whose area is below a tenth of the image, and candidates whose angle is not between
 // 2.5 and 45 degrees. It stops when only max(4, 3/4 max_views) candidates remain, so that
 // unsuitable candidates can stay. Then choose_source_views() takes the candidates with the highest
-// scores. Returns pairs of indices of views, each pair once. The smaller index is the first of a
-// pair, and the pairs are sorted.
+// scores. `visibility`: which views see which vertices of `mesh` (find_visibility()). Returns pairs
+// of indices of views, each pair once. The smaller index is the first of a pair, and the pairs are
+// sorted.
 std::vector<std::pair<std::size_t, std::size_t>> choose_pairs(const Mesh& mesh,
                                                               const ScaledViews& views,
                                                               const Visibility& visibility,

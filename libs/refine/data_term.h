@@ -15,8 +15,8 @@
 namespace axial::refine {
 
 // The contribution of one face to the normal equations of a Gauss-Newton step: matrix * t = right.
-// The unknowns t are the displacements of the face's three corners. `matrix` holds the entries 00,
-// 01, 02, 11, 12 and 22 of the symmetric 3 x 3 matrix.
+// The unknowns t are the displacements of the face's three corners along their normals [mesh
+// units]. `matrix` holds the entries 00, 01, 02, 11, 12 and 22 of the symmetric 3 x 3 matrix.
 struct FaceEquations {
   std::array<float, 6> matrix{};
   std::array<float, 3> right{};
@@ -32,22 +32,23 @@ struct Residuals {
 class ReferenceView {
  public:
   // `images`: the images of the mesh's vertices in the reference view. `raster`: the mesh drawn
-  // into the reference view. `picture` and `mask`: the pixels of the reference view, in the size of
-  // `raster`. `mesh` and `shape` must outlive the object.
+  // into the reference view. `picture` (0 to 255) and `mask` (empty, or 0 where pixels are not
+  // used): the pixels of the reference view, in the size of `raster`. `mesh` and `shape` must
+  // outlive the object.
   ReferenceView(const Mesh& mesh, const Shape& shape, std::span<const VertexImage> images,
                 Raster raster, cv::Mat1f picture, cv::Mat1b mask);
 
-  // A source view: the images of the mesh's vertices in the source view, its pixels (as
-  // ScaledViews::Pixels), and its index.
+  // A source view.
   struct Source {
-    std::span<const VertexImage> images;
-    const cv::Mat1f& picture;
-    const cv::Mat1b& mask;
-    std::size_t view;
+    std::span<const VertexImage> images;  // of the mesh's vertices in the source view
+    const cv::Mat1f& picture;             // grey levels, 0 to 255
+    const cv::Mat1b& mask;                // empty, or 0 where pixels are not used
+    std::size_t view;                     // index of the source view
   };
 
   // Compares the reference view with `source`, and adds the result to the sums over the pairs.
-  // `reference`: the index of the reference view. Returns the residuals of this pair.
+  // `reference`: the index of the reference view. `visibility`: which views see which vertices, by
+  // the two indices. Returns the residuals of this pair.
   Residuals add(const Source& source, std::size_t reference, const Visibility& visibility);
 
   // Adds the sums over all pairs to `equations`, which has one entry per face of the mesh. Nothing

@@ -8,7 +8,7 @@
 namespace axial::refine {
 
 // Moves every vertex along its normal in `shape`, by its entry of `displacement` [mesh units].
-// Exceptions, in this order:
+// `topology` and `shape`: of `mesh` before the call. Exceptions, in this order:
 //   - A displacement that is not finite counts as zero.
 //   - A step longer than a third of Shape::edge is reduced to this length.
 //   - If a face turns by more than 60 degrees from its former normal, the steps of its three
@@ -19,10 +19,10 @@ namespace axial::refine {
 void displace(Mesh& mesh, const Topology& topology, const Shape& shape,
               std::span<const float> displacement);
 
-// Flattens folds, in three rounds. A face is part of a fold if its normal is more than 90 degrees
-// from the sum of the normals (Shape::normals) of its three corners. Each round moves the corners
-// of such faces to the mean of their neighbours' positions before the round. Vertices on borders
-// stay.
+// Flattens folds of `mesh`, in three rounds. `topology`: of `mesh`. A face is part of a fold if its
+// normal is more than 90 degrees from the sum of the normals (Shape::normals) of its three corners.
+// Each round moves the corners of such faces to the mean of their neighbours' positions before the
+// round. Vertices on borders stay.
 //
 // Reason: folds are narrower than the noise of the cloud, so they show no detail of the surface. No
 // view measures the hidden side of a fold, and a step of displace() would push the visible side

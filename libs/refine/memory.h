@@ -8,16 +8,17 @@
 
 namespace axial::refine {
 
+// The numbers on which the memory depends.
 struct Sizes {
-  std::uint64_t vertices = 0, faces = 0, views = 0;
-  std::uint64_t pixels = 0;  // number of pixels of the largest view
+  std::uint64_t vertices = 0, faces = 0, views = 0;  // of the mesh, and of all views
+  std::uint64_t pixels = 0;                          // number of pixels of the largest view
 };
 
 // Returns the number of views whose VertexImages are kept in memory: the largest number for which
 // bytes_needed() does not exceed Options::max_bytes, but at most max(sizes.views, 2). With
-// max_bytes 0, the result is max(sizes.views, 2). Error if two views need more than max_bytes. The
-// message contains Options::name_of("max_memory"), the number of vertices and the missing
-// megabytes.
+// max_bytes 0, the result is max(sizes.views, 2). Throws an Error if bytes_needed() for two views
+// exceeds max_bytes. The message contains Options::name_of("max_memory"), the number of vertices
+// and the missing megabytes.
 std::size_t views_to_keep(const Sizes& sizes, const Options& options);
 
 // An estimate of the memory [bytes] of the steps if the VertexImages of `kept` views are kept.

@@ -12,13 +12,14 @@
 
 namespace axial::refine {
 
-inline constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;  // Raster::face() of a pixel without a face
 
 // Depth and face of the nearest surface at every pixel centre, in the size of the view's image.
 struct Raster {
   cv::Mat1f depth;                   // along the ray [mesh units]; infinite where there is no face
   cv::Mat_<std::int32_t> face_bits;  // the bits of face()
 
+  // The index of the face that the pixel (x, y) shows, or kNoFace.
   std::uint32_t face(int x, int y) const { return static_cast<std::uint32_t>(face_bits(y, x)); }
 };
 
@@ -27,8 +28,9 @@ struct Raster {
 // in the image. Of several faces at the same depth, the face with the smallest index is drawn.
 Raster draw(const Mesh& mesh, std::span<const VertexImage> images, cv::Size size);
 
-// Barycentric weights of the corners b and c of the face (a, b, c) at the position (x, y) [px]. The
-// weight of corner a is 1 - b1 - b2. The face must have an area in the image.
+// Barycentric weights in the image, at the position (x, y) [px], of the corners b (weight b1) and c
+// (weight b2) of the face whose corners have the images a, b and c. The weight of corner a is 1 -
+// b1 - b2. The face must have an area in the image.
 struct Barycentric {
   float b1, b2;
 };

@@ -55,7 +55,8 @@ struct Picture {
   cv::Mat1b mask;  // empty, or 0 where pixels are not used
 };
 
-// Returns the pixels of a view. Called by one thread at a time.
+// Returns the pixels of the view with the index `view`. Called by one thread at a time, several
+// times for each view. It must return the same pixels each time.
 using Pictures = std::function<Picture(std::size_t view)>;
 
 // Which of the two views of a pair is the reference view.
@@ -72,7 +73,7 @@ struct Options {
   // The number of partners that a view chooses. More views may choose this view as their partner.
   unsigned max_views = 8;
   References references = References::both;
-  double smoothness = 1000;  // 0: none
+  double smoothness = 1000;  // factor of the smoothness term in the sum above; 0: none
   double anchor = 0.25;      // factor of a_v; 0: the first position does not count
   // Before the first step, a face is split if its area in the image is larger than this value
   // [px^2] in at least two views that see all three corners. The parts of a face are tested in the
@@ -90,8 +91,9 @@ struct Options {
 struct Report {
   std::size_t split_faces = 0;  // number of faces that splitting has added
   std::size_t pairs = 0;        // number of pairs of views
-  std::size_t measured = 0;     // number of vertices that the last step measured
-  unsigned steps = 0;           // number of Gauss-Newton steps at all resolutions
+  // Number of vertices that the last step measured: their position affects a residual (system.h).
+  std::size_t measured = 0;
+  unsigned steps = 0;  // number of Gauss-Newton steps at all resolutions
   // The median distance of the measured vertices from their positions before the first step [mesh
   // units].
   double moved = 0;
@@ -104,11 +106,12 @@ struct Report {
 // term moves them with the surface. Faces of the result may intersect each other. The result does
 // not depend on the number of threads.
 //
-// `views`: all views. `pictures` is called with indices into `views`.
+// `views`: all views. `pictures` is called with indices into `views`. `progress` is called after
+// each reference view of a step.
 //
-// Error if the mesh has no faces, a face has an index out of range, a coordinate is not finite, no
-// two views see the same surface, or max_bytes is not enough. After the last two errors, faces of
-// `mesh` may have been split.
+// Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
+// faces. Throws an Error if no two views see the same surface, or if max_bytes is not enough. After
+// the last two errors, faces of `mesh` may have been split.
 Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
               const Options& options = {}, const ProgressSink& progress = {});
 

@@ -15,16 +15,18 @@
 
 namespace axial::refine {
 
+// The views, resized to one resolution.
 class ScaledViews {
  public:
-  // `factor`: the image size relative to that of `views`, at most 1. `pictures` must outlive the
-  // object.
+  // `factor`: the image size relative to that of `views`, above 0 and at most 1. `pictures` must
+  // outlive the object.
   ScaledViews(std::span<const View> views, const Pictures& pictures, double factor);
 
+  // All functions below take indices into the `views` of the constructor.
   std::size_t count() const { return views_.size(); }
   bool used(std::size_t view) const { return views_[view].camera.width > 0; }
-  const View& view(std::size_t i) const { return views_[i]; }
-  cv::Size size(std::size_t view) const;
+  const View& view(std::size_t i) const { return views_[i]; }  // with the resized camera
+  cv::Size size(std::size_t view) const;                       // of the resized image [px]
 
   struct Pixels {
     cv::Mat1f grey;  // 0 to 255
@@ -43,12 +45,13 @@ class ScaledViews {
 // `capacity` most recently requested views.
 class MeshImages {
  public:
-  // `mesh` and `views` must outlive the object. If vertices move, images that are kept do not
-  // change.
+  // `mesh` and `views` must outlive the object. `capacity`: at least 1. If vertices move, images
+  // that are kept do not change.
   MeshImages(const Mesh& mesh, const ScaledViews& views, std::size_t capacity)
       : cache_([&](std::size_t view) { return vertex_images(mesh.vertices, views.view(view)); },
                capacity) {}
 
+  // The images in the view with the index `view`, one per vertex.
   std::shared_ptr<const std::vector<VertexImage>> get(std::size_t view) { return cache_.get(view); }
 
  private:
@@ -56,6 +59,7 @@ class MeshImages {
 };
 
 // Finds the vertices that each view sees (mark_seen() of visibility.h). Unused views see none.
+// `shape`: of `mesh`. `images`: the images of the vertices of `mesh` in `views`.
 Visibility find_visibility(const Mesh& mesh, const Shape& shape, const ScaledViews& views,
                            MeshImages& images);
 

@@ -11,14 +11,15 @@
 
 namespace axial::refine {
 
-// The normal equations of the sum that refine.h explains. A vertex is measured if its sum of w g^2
-// is positive.
+// The normal equations of the sum that refine.h explains, without the anchor term (add_anchor()).
+// The symbols e, w and g are those of refine.h. A vertex is measured if its sum of w g^2 is
+// positive.
 //
-// Smoothness: let n_v be the normal of vertex v (Shape::normals), e its Shape::edge, area its
+// Smoothness: let n_v be the normal of vertex v (Shape::normals), l its Shape::edge, area its
 // Shape::area, and H the mean curvature of the surface at v. The bending at v is b = n_v . (mean of
-// the neighbours - vertex), about H e^2 / 2. The system contains the square of b after the step,
-// with the weight smoothness * area / e^4. The sum over the vertices then approximates smoothness /
-// 4 times the integral of H^2. At edges of the surface, where |b| / e is large, the weight is
+// the neighbours - vertex), about H l^2 / 2. The system contains the square of b after the step,
+// with the weight smoothness * area / l^4. The sum over the vertices then approximates smoothness /
+// 4 times the integral of H^2. At edges of the surface, where |b| / l is large, the weight is
 // smaller, as in Cauchy's loss. The weight is zero on borders, and where neither the vertex nor a
 // neighbour is measured.
 //
@@ -29,16 +30,17 @@ namespace axial::refine {
 // anchor.h.
 class System {
  public:
-  // `equations`: one per face of the mesh. `mesh`, `topology` and `shape` must outlive the system.
+  // `equations`: one per face of the mesh. `smoothness`: Options::smoothness. `mesh`, `topology`
+  // and `shape` must outlive the system.
   System(const Mesh& mesh, const Topology& topology, const Shape& shape,
          std::span<const FaceEquations> equations, double smoothness);
 
   // The sum of w g^2 for every vertex. Zero for a vertex that is not measured.
   std::vector<double> information() const { return diagonal_; }
 
-  // Adds weight * (displacement + offset)^2 for every vertex to the sum that is minimised. The
-  // slopes are then those of displacement + offset, not those of the displacement alone. Both spans
-  // have one entry per vertex. Call it at most once.
+  // Adds weight * (displacement + offset)^2 for every vertex to the sum that is minimised. `weight`
+  // and `offset` [mesh units]: of the anchor term (Anchor), one entry per vertex. The slopes are
+  // then those of displacement + offset, not those of the displacement alone. Call it at most once.
   void add_anchor(std::span<const double> weight, std::span<const float> offset);
 
   // The displacement of every vertex along its normal [mesh units]. The method is conjugate

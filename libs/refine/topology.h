@@ -15,19 +15,24 @@ struct Lists {
   std::vector<std::uint32_t> begin;  // list k is at [begin[k], begin[k + 1]) of `item`
   std::vector<std::uint32_t> item;
 
+  // The numbers of one list.
   std::span<const std::uint32_t> of(std::size_t list) const {
     return {item.data() + begin[list], item.data() + begin[list + 1]};
   }
 };
 
+// The neighbourhoods of the vertices. The neighbours of a vertex are the vertices to which an edge
+// leads from it.
 struct Topology {
   Lists faces;               // for each vertex, its faces in ascending order
   Lists neighbours;          // for each vertex, its neighbours in ascending order
   std::vector<bool> border;  // the vertex has an edge that does not belong to exactly two faces
 };
 
+// Precondition: check_mesh() accepts the mesh (scene/check_mesh.h).
 Topology topology_of(const Mesh& mesh);
 
+// Normals, edge lengths and areas, one of each per vertex [mesh units].
 struct Shape {
   // For every vertex, a unit normal: the normalised sum of the area-weighted normals of the vertex
   // and of its neighbours. Zero if the sum is zero, for example because all faces have no area.
@@ -38,9 +43,10 @@ struct Shape {
   std::vector<float> area;  // a third of the area of the vertex's faces
 };
 
+// Computes the Shape of `mesh`, whose Topology is `topology`.
 Shape shape_of(const Mesh& mesh, const Topology& topology);
 
-// Twice the area of the face, times its unit normal.
+// Twice the area of the face, times its unit normal. `face`: the indices of its corners.
 inline Eigen::Vector3f face_vector(const Mesh& mesh, const std::array<std::uint32_t, 3>& face) {
   const Eigen::Vector3f& a = mesh.vertices[face[0]];
   return (mesh.vertices[face[1]] - a).cross(mesh.vertices[face[2]] - a);

@@ -32,12 +32,13 @@ class Visibility {
 inline constexpr float kBehind = 0.003f;
 
 // The surface at a vertex faces the camera if the cosine of the angle between the vertex's normal
-// and the direction to the camera is larger than this value.
+// (Shape::normals) and the direction to the camera, against the ray, is larger than this value.
 inline constexpr float kLeastCosine = 0.1f;
 
-// Marks in `visibility` the vertices that `view` sees. The image of such a vertex is inside the
-// view, the surface at the vertex faces the camera (kLeastCosine), and the vertex is not hidden
-// (kBehind). `images`: of all vertices in the view. `raster`: the mesh drawn into the view.
+// Marks in `visibility` the vertices that the view with the index `view` sees. The image of such a
+// vertex is inside the view, the surface at the vertex faces the camera (kLeastCosine), and the
+// vertex is not hidden (kBehind). `images`: of all vertices in the view. `raster`: the mesh drawn
+// into the view. A view of less than 2 x 2 pixels sees none.
 void mark_seen(std::span<const VertexImage> images, const Shape& shape, const Raster& raster,
                std::size_t view, Visibility& visibility);
 

@@ -7,8 +7,9 @@
 
 namespace axial::refine {
 
-// Returns for each face whether its area [px^2] is larger than `limit` in at least two views that
-// see all three corners of the face.
+// Returns for each face of `mesh` whether the area of its image is larger than `limit` [px^2] in at
+// least two views that see all three corners of the face. `visibility` and `images`: of the
+// vertices of `mesh` in `views`.
 std::vector<bool> larger_than(double limit, const Mesh& mesh, const ScaledViews& views,
                               const Visibility& visibility, MeshImages& images);
 

@@ -23,11 +23,14 @@ struct Windows {
   static constexpr float kMiddle = 128;
   // The variance of grey levels that comes from noise and rounding [grey levels^2].
   static constexpr float kNoise = 1.0f;
+  // The least number of valid pixels, and the correlation that comparable() requires.
   static constexpr float kLeastPixels = 20;
   static constexpr float kLeastCorrelation = 0.3f;
 
   float count, r, w, rr, ww, rw;
 
+  // Means [grey levels], variances and covariance [grey levels^2], and correlation (-1 to 1) of the
+  // two images in the window. Without pixels they are NaN.
   float reference_mean() const { return r / count + kMiddle; }
   float warped_mean() const { return w / count + kMiddle; }
   float reference_variance() const { return rr / count - r / count * (r / count); }
@@ -38,6 +41,7 @@ struct Windows {
   }
   // Standard deviation of the reference view's grey levels / that of the warped grey levels.
   float gain() const { return std::sqrt(reference_variance() / warped_variance()); }
+  // Whether the window has enough pixels, both images have texture in it, and they look alike.
   bool comparable() const {
     return count >= kLeastPixels && reference_variance() > kNoise / 4 &&
            warped_variance() > kNoise / 4 && correlation() > kLeastCorrelation;
@@ -49,7 +53,8 @@ struct Windows {
   }
 };
 
-// The number of bands of an image with `rows` rows.
+// The number of bands of kBandHeight rows of an image with `rows` rows. The last band may have
+// fewer rows.
 inline std::size_t window_bands(int rows) {
   return static_cast<std::size_t>((rows + kBandHeight - 1) / kBandHeight);
 }
@@ -75,7 +80,7 @@ class ColumnSums {
     }
   }
 
-  // The sums over the seven columns around x.
+  // The sums over the seven columns around x. Columns beyond the image add nothing.
   Windows window(int x) const {
     std::array<float, 6> total{};
     for (std::size_t c = 0; c < 6; ++c) {
@@ -94,8 +99,9 @@ class ColumnSums {
 };
 
 // Calls visit(x, y, windows) for every pixel of a band whose warped grey level is not NaN.
-// `windows` are the sums over the window around (x, y), without pixels beyond the image. Band k
-// consists of the kBandHeight rows from row k * kBandHeight.
+// `windows` are the sums over the window around (x, y), without pixels beyond the image. `band`:
+// the index of the band, which begins at row band * kBandHeight. `reference` and `warped` have one
+// size.
 template <class Visit>
 void for_each_window(const cv::Mat1f& reference, const cv::Mat1f& warped, std::size_t band,
                      Visit&& visit) {

@@ -10,6 +10,8 @@
 
 namespace axial {
 
+// A camera of the kind that it is made from, with the functions ray() and project() of a camera
+// (refractive/axial_ray.h).
 template <class T>
 class AnyCamera {
  public:
@@ -17,10 +19,14 @@ class AnyCamera {
 
   explicit AnyCamera(CameraVariant<T> camera) : camera_(std::move(camera)) {}
 
+  // The camera, as the type of its kind.
   const CameraVariant<T>& kind() const { return camera_; }
 
-  // Each function below calls the function of the same name of the camera in kind() (see
-  // refractive/axial_ray.h).
+  // Each function below calls the function with this name of the camera in kind(). ray() returns
+  // the ray of `pixel` in the scene medium [camera frame, m], and writes its derivatives by the
+  // pixel to `jacobian`. project() returns the projection of X [camera frame, m], and writes
+  // d(pixel)/dX [px/m] to `jacobian` and the origin of the ray through X [camera frame, m] to
+  // `origin` unless they are null.
   refractive::AxialRay<T> ray(const refractive::Vector2<T>& pixel) const {
     return std::visit([&](const auto& camera) { return camera.ray(pixel); }, camera_);
   }

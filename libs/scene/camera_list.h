@@ -30,11 +30,15 @@ using CameraList = std::variant<
 // - If there are flat ports as well as domes, the list is of AnyCamera. Each camera keeps its own
 //   kind, and the next rules do not apply.
 // - Without any port the cameras are pinholes, and no time is spent on refraction. If some
-//   cameras have a port, a camera without a port gets a port whose indices are all 1. The result
-//   is exactly the pinhole.
+//   cameras have a port, a camera without a port gets a port whose indices are all 1. Its rays and
+//   pixels are exactly those of the pinhole.
 // - Without any distortion the lenses have none, and no time is spent on distortion. If some
 //   lenses are distorted, a lens without distortion gets coefficients that change nothing.
 // - If `method` is the line search and there are flat ports, the list is of LineSearchCamera.
+//
+// A PinholeCamera does not test whether a pixel lies in the image. All other cameras see only
+// points whose images lie in the image widened by an eighth of its longer side. A LineSearchCamera
+// sees only points whose images lie in the image itself.
 //
 // Throws an Error if `method` is the line search and there is a dome or a distorted lens.
 template <class T>

@@ -17,18 +17,20 @@ namespace axial {
 // The lens in air, its distortion and the port. The unit of the lens is the pixel of an image of
 // width x height pixels, with pixel centres at integers.
 struct CameraModel {
-  int width = 0;
-  int height = 0;
-  refractive::PinholeLens<double> lens{0, 0, 0, 0};
-  std::optional<refractive::Port<double>> port;                       // empty: no port
+  int width = 0;                                     // [px]
+  int height = 0;                                    // [px]
+  refractive::PinholeLens<double> lens{0, 0, 0, 0};  // the lens without its distortion
+  std::optional<refractive::Port<double>> port;      // empty: no port
   std::optional<refractive::LensDistortion<double>> distortion = {};  // empty: no distortion
 
-  // The same camera for the image resized to new_width x new_height pixels. Each axis has its own
-  // factor. The corner of the image at (-0.5, -0.5) stays fixed.
+  // The camera for the image resized to new_width x new_height pixels. Each axis of the lens is
+  // scaled by its own factor. The corner of the image at (-0.5, -0.5) stays fixed. Distortion and
+  // port do not change. Precondition: width and height are not 0.
   CameraModel resized(int new_width, int new_height) const;
 };
 
-// The lens of `model`, with or without distortion, as the constructor of LensCamera takes it.
+// The lens of `model`, with or without distortion, as the constructor of refractive::LensCamera
+// takes it. The image is widened by the default margin, an eighth of its longer side.
 template <class T>
 refractive::DistortedLens<T> distorted_lens(const CameraModel& model);
 
@@ -38,8 +40,9 @@ using CameraVariant =
                  refractive::DomePortCamera<T>, refractive::LensPinholeCamera<T>,
                  refractive::LensFlatPortCamera<T>, refractive::LensDomePortCamera<T>>;
 
-// Makes the camera of `model`. T is float (matching) or double (geometry). Visit the variant once
-// per image or image pair, not per pixel, because the dispatch costs time.
+// Makes the camera of `model`, of the kind that `port` and `distortion` of `model` require. T is
+// float (matching) or double (geometry). The values of `model` are not checked. Visit the variant
+// once per image or image pair, not per pixel, because the dispatch costs time.
 template <class T>
 CameraVariant<T> make_camera(const CameraModel& model);
 
@@ -50,9 +53,9 @@ using TangentCamera =
     std::variant<refractive::PinholeCamera<double>, refractive::FlatPortCamera<double>,
                  refractive::DomePortCamera<double>>;
 
-// Makes the camera behind `port`, or in air if `port` is empty. `usual`: points are projected
-// fastest if the tangent of the angle between their direction in air and the optical axis is at
-// most `usual`.
+// Makes the camera behind `port`, or in air if `port` is empty. `usual` (above 0) affects only the
+// speed: points are projected fastest if the tangent of the angle between their direction in air
+// and the optical axis is at most `usual`.
 TangentCamera make_tangent_camera(const std::optional<refractive::Port<double>>& port,
                                   double usual);
 

@@ -5,9 +5,9 @@
 
 namespace axial {
 
-// Error that names the face or the vertex if `mesh` has no faces, if a face refers to a vertex that
-// does not exist, if a coordinate is not finite, or if there are colours but not one for each
-// vertex.
+// Throws an Error if `mesh` has no faces, if a face refers to a vertex that does not exist, if a
+// coordinate is not finite, or if there are colours but not one for each vertex. The message names
+// the face or the vertex.
 void check_mesh(const Mesh& mesh);
 
 }  // namespace axial

@@ -14,7 +14,8 @@ namespace axial {
 
 using SymmetricEigen3 = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
 
-// Eigenvalues in increasing order, and the eigenvectors of unit length in the columns.
+// Eigenvalues in increasing order. Column k of `vectors` is the eigenvector of values(k), of unit
+// length.
 struct EigenPairs {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
@@ -40,6 +41,7 @@ struct Similarity {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
+  // The point to which the point x is mapped.
   Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
     return scale * (rotation * x) + translation;
   }
@@ -50,14 +52,16 @@ struct Similarity {
   }
   // Returns the map that applies `first`, then this map.
   Similarity after(const Similarity& first) const;
-  // The homogeneous 4 x 4 matrix.
+  // The homogeneous 4 x 4 matrix M of this map: M (x, 1) = (mapped x, 1).
   Eigen::Matrix4d matrix() const;
 };
 
 // The similarity that maps `from` to `to` with the smallest sum of squared distances (S. Umeyama,
-// 1991). Points are columns. Precondition: `from` and `to` have the same number of points, at
-// least one. Points on a line do not determine the rotation about the line (see relative_width).
-// Without `with_scale` the scale is 1.
+// 1991). Points are columns; column k of `from` corresponds to column k of `to`. Precondition:
+// `from` and `to` have the same number of points, at least one. With `with_scale`, the points of
+// `from` must not all coincide. Points on a line do not determine the rotation about the line: the
+// result is then one of the best similarities (see relative_width()). Without `with_scale` the
+// scale is 1.
 Similarity best_similarity(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                            bool with_scale = true);
 

@@ -20,8 +20,8 @@ struct DepthMap {
   std::string image_path;
   std::vector<std::uint32_t> ids;  // global ids: the reference view, then its source views
   CameraModel camera;              // at the resolution of the depth map
-  Pose pose;
-  float min_depth = 0;  // range of depths [m]
+  Pose pose;                       // of the camera in the world
+  float min_depth = 0;             // range of depths that was searched [m]
   float max_depth = 0;
   cv::Mat1f depth;       // [m]; 0: invalid
   cv::Mat3f normal;      // unit, camera frame, facing the camera (n . direction < 0); 0: invalid

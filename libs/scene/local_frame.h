@@ -21,10 +21,11 @@ struct LocalFrame {
   Eigen::Vector3d to_world(const Eigen::Vector3d& local) const { return local + origin; }
 };
 
-// Returns the world if `place` [world] lies within 1,000 units of the world's origin. Otherwise the
-// origin of the result is `place`, rounded to 10 units. The origin is rounded so that conversions
-// lose little: if x is the local value of a coordinate, conversion to the local frame and back
-// changes the coordinate by no more than the rounding error of a double of the size of x.
+// Returns the world (a zero origin) if `place` [world] lies within 1,000 units of the world's
+// origin. Otherwise the origin of the result is `place`, with each coordinate rounded to a multiple
+// of 10 units. The origin is rounded so that conversions lose little: if x is the local value of a
+// coordinate, conversion to the local frame and back changes the coordinate by no more than the
+// rounding error of a double of the size of x.
 LocalFrame frame_near(const Eigen::Vector3d& place);
 
 // Chooses a frame for a scene with the camera centres `centres` and the sparse points `points`
@@ -35,15 +36,16 @@ LocalFrame frame_near(const Eigen::Vector3d& place);
 //   origin, the result is the world. Without points, only the centres decide.
 // - Otherwise the origin of the result is the median of the centres, rounded to 10 units.
 //
-// Medians are taken coordinate by coordinate.
+// Medians are taken coordinate by coordinate. Rounding is as in frame_near().
 LocalFrame frame_of(std::span<const Eigen::Vector3d> centres,
                     std::span<const Eigen::Vector3d> points);
 
 // Chooses the frame from the centres of the calibrated cameras and the sparse points of `scene`.
 LocalFrame frame_of(const Scene& scene);
 
-// Transforms the poses, sparse points and region of `scene` from world coordinates to `frame`.
-// Sparse points are float, and do not become more precise in the local frame.
+// Transforms the poses, sparse points and region of `scene` from world coordinates to `frame`, in
+// place. Precondition: `scene` is in world coordinates. Sparse points are float, and do not become
+// more precise in the local frame.
 void enter(const LocalFrame& frame, Scene& scene);
 
 }  // namespace axial

@@ -10,11 +10,12 @@
 
 namespace axial {
 
-// A triangle mesh. Seen from outside, the corners of a face are in counter-clockwise order.
+// A triangle mesh in the frame and unit of the scene. Seen from outside, the corners of a face are
+// in counter-clockwise order. check_mesh() tests the rules below.
 struct Mesh {
-  std::vector<Eigen::Vector3f> vertices;
-  std::vector<Rgb> colors;  // empty or one per vertex
-  std::vector<std::array<std::uint32_t, 3>> faces;
+  std::vector<Eigen::Vector3f> vertices;            // finite
+  std::vector<Rgb> colors;                          // empty or one per vertex
+  std::vector<std::array<std::uint32_t, 3>> faces;  // indices into `vertices`
 };
 
 }  // namespace axial

@@ -30,8 +30,9 @@ struct PointCloud {
   }
 };
 
-// The sparse points of `scene` as a cloud, with their views, normals and colours. The weight of a
-// view is its SparseView::confidence.
+// The sparse points of `scene` as a cloud, in the order of Scene::points, with their views, and
+// with normals and colours if `scene` has them. The weight of a view is its SparseView::confidence.
+// `errors` and `confidences` are empty.
 PointCloud cloud_of(const Scene& scene);
 
 }  // namespace axial

@@ -8,8 +8,9 @@
 
 namespace axial {
 
+// Whether estimate_region() estimates a region.
 enum class RegionMode {
-  off = 0,
+  off = 0,      // there is no region
   on = 1,       // the region is estimated whenever this is possible
   adaptive = 2  // only if the cameras surround an object; otherwise there is no region
 };
@@ -26,9 +27,9 @@ enum class RegionMode {
 // than sqrt(1/2).
 std::optional<OrientedBox> estimate_region(const Scene& scene, RegionMode mode);
 
-// Returns `region` with another size. `border`: the value of the option --roi-border. A positive
-// `border` multiplies the half extents. A negative `border` adds -border [world units] to each half
-// extent. 0 changes nothing.
+// Returns `region` with another size around its centre. `border`: the value of the option
+// --roi-border. A positive `border` multiplies the half extents. A negative `border` adds -border
+// [world units] to each half extent. 0 changes nothing.
 OrientedBox with_border(const OrientedBox& region, double border);
 
 }  // namespace axial

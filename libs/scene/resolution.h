@@ -9,15 +9,15 @@
 namespace axial {
 
 struct ResolutionOptions {
-  unsigned level = 1;  // number of halvings of the image
-  int min = 640;       // lower bound of the longest side after halving [px]
+  unsigned level = 1;  // largest number of halvings of the image; 0: the image is not halved
+  int min = 640;       // least longest side that halving may give [px]
   int max = 2560;      // upper bound of the longest side [px]
 };
 
-// The size [px] at which an image of width x height pixels is processed. The longest side is
-// halved up to `level` times, as long as the result is at least `min`. A result above `max` is
-// then reduced to `max`. The aspect ratio is kept: sides are rounded and at least 1. Throws an
-// Error if a side or `max` is not positive.
+// The size [px] at which an image of width x height pixels is processed. The longest side is halved
+// up to `level` times (rounded down), as long as the result is at least `min`. A smaller image is
+// not enlarged. A result above `max` is then reduced to `max`. The aspect ratio is kept: sides are
+// rounded and at least 1. Throws an Error if a side or `max` is not positive.
 cv::Size working_size(int width, int height, const ResolutionOptions& options);
 
 // True if two sizes have the same aspect ratio, up to the rounding of sides to whole pixels. Let s
@@ -30,8 +30,9 @@ bool same_shape(cv::Size a, cv::Size b);
 // camera of the result. Throws an Error for an empty image or size.
 cv::Mat3b resized_image(const cv::Mat3b& image, cv::Size size);
 
-// As resized_image(), but each pixel of the result has the label of the nearest pixel, because
-// labels must not be averaged.
+// Resizes an image of labels to `size`. Each pixel of the result has the label of the nearest
+// pixel, because labels must not be averaged. If `labels` already has this size, the result shares
+// its pixels. Throws an Error for an empty image or size.
 cv::Mat1w resized_labels(const cv::Mat1w& labels, cv::Size size);
 
 }  // namespace axial

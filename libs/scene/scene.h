@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene as plain data: calibrated images and a sparse cloud.
+// A scene as plain data: calibrated images and a sparse cloud. Lengths are in the unit of the
+// poses: metres if a camera is behind the port of a housing.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +15,7 @@
 
 namespace axial {
 
-inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;  // SceneImage::id of an image without an id
 
 // How suitable another image (the neighbour) is as a source view of this image. The fields are
 // those of ViewScore in the OpenMVS scene format. score_neighbours() (view_selection.h) defines
@@ -29,7 +30,7 @@ struct ViewScore {
 };
 
 struct SceneImage {
-  std::string path;          // absolute or relative to the working folder
+  std::string path;          // of the photograph; absolute or relative to the working folder
   std::string mask_path;     // empty: no mask
   std::uint32_t id = kNoId;  // global id; the name of the depth map file contains it
   bool calibrated = true;    // false: camera and pose are invalid, skip the image
@@ -40,33 +41,35 @@ struct SceneImage {
   std::vector<ViewScore> neighbours;                      // by decreasing score
 };
 
+// An observation of a sparse point by one image.
 struct SparseView {
   std::uint32_t image = 0;  // index into Scene::images
-  float confidence = 0;     // 0: not available
+  float confidence = 0;     // higher is better; 0: not available
 };
 
 struct SparsePoint {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  // world
   std::vector<SparseView> views;  // sorted by image; repeated images are tolerated
 };
 
 // A box: the points X with |rotation * (X - centre)| <= half_extent in each component.
 struct OrientedBox {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rows: the box axes in the world
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Vector3d half_extent = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();        // world
+  Eigen::Vector3d half_extent = Eigen::Vector3d::Zero();   // along the box axes
 
+  // True if the point x [world] lies inside the box or on its surface. False for NaN.
   bool contains(const Eigen::Vector3d& x) const {
     return ((rotation * (x - centre)).cwiseAbs().array() <= half_extent.array()).all();
   }
 };
 
-using Rgb = std::array<std::uint8_t, 3>;
+using Rgb = std::array<std::uint8_t, 3>;  // red, green, blue
 
 struct Scene {
   std::vector<SceneImage> images;
   std::vector<SparsePoint> points;
-  std::vector<Eigen::Vector3f> point_normals;  // empty or one per point
+  std::vector<Eigen::Vector3f> point_normals;  // empty or one per point: unit, world
   std::vector<Rgb> point_colors;               // empty or one per point
   std::optional<OrientedBox> region;           // region of interest
 };

@@ -24,14 +24,16 @@ struct ViewSelectionOptions {
   std::size_t min_views = 2;
   double weight_outside_region = 0.7;  // weight of points outside Scene::region in the score
 
-  // Limits for filter_neighbours(). ViewScore explains the quantities.
+  // Limits for filter_neighbours(). A neighbour is unsuitable if its ViewScore::area, scale or
+  // angle [rad] is outside the limits. `max_views`: largest number of neighbours that are kept.
   double min_area = 0.05;
   double min_scale = 0.2, max_scale = 3.2;
   double min_angle = 3.0 * std::numbers::pi / 180.0;
   double max_angle = 65.0 * std::numbers::pi / 180.0;
   std::size_t max_views = 12;
 
-  // Limits for choose_source_views().
+  // Limits for choose_source_views(). A neighbour with a smaller ViewScore::score than one of the
+  // two limits is not chosen.
   double min_score = 2.0;
   double min_score_ratio = 0.03;  // relative to the best score
 };
@@ -45,16 +47,19 @@ struct ViewPreparation {
   // times the largest depth of init_points. Both are 0 without init_points.
   float min_depth = 0, max_depth = 0;
   std::string problem;  // the reason why the image cannot be a reference view; empty: it can
-  bool usable() const { return problem.empty(); }
+  bool usable() const { return problem.empty(); }  // whether the image can be a reference view
 };
 
 // Scores the neighbours of all images. For every calibrated image, the function computes these
 // values from scene.points and stores them in SceneImage:
 // - neighbours: unfiltered, by decreasing score, images of equal score by index.
-// - min_depth, average_depth and max_depth: z-depth over all points that the image sees.
+// - min_depth, average_depth and max_depth: z-depth over all points that the image sees; 0 if it
+//   sees none.
 //
-// Returns one ViewPreparation per image. Throws an Error if a point has a view of an image that
-// does not exist.
+// Images without enough trusted points (min_init_points) or candidates (min_views) get a problem.
+// Returns one ViewPreparation per image, in the order of Scene::images. Calls progress(done, total)
+// with numbers of images, from any thread but one call at a time. Throws an Error if a point has a
+// view of an image that does not exist.
 //
 // The score of the neighbour B of an image A is the sum of the weights of their shared points,
 // times max(area, 0.01). The weight of a point is the product of three factors:
@@ -82,8 +87,9 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene,
 // The counts on which the memory of score_neighbours() depends.
 struct ScoringSize {
   std::uint64_t images = 0, points = 0, observations = 0;
-  std::uint64_t neighbours = 0;  // entries in the lists of all images
+  std::uint64_t neighbours = 0;  // entries in SceneImage::neighbours of all images together
 };
+// An upper bound of memory.
 struct ScoringMemory {
   std::uint64_t work = 0;  // [bytes], freed at the end
   std::uint64_t kept = 0;  // [bytes], the lists of neighbours and of points
@@ -104,11 +110,12 @@ std::uint64_t most_neighbours(std::uint64_t images, std::uint64_t pairs,
 // score_neighbours(). Throws an Error if a point has a view of an image that does not exist.
 std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& options = {});
 
-// Returns the working list of an image: the neighbours from which choose_source_views() chooses.
-// `neighbours`: sorted by decreasing score. First removes unsuitable neighbours, the worst score
-// first, while more than max(4, 3/4 max_views) neighbours remain. A neighbour is unsuitable if its
-// area is below `min_area`, or if its scale or angle is out of range. Then keeps the `max_views`
-// best of the remaining neighbours.
+// Returns the working list of an image: the neighbours from which choose_source_views() chooses, by
+// decreasing score. `neighbours`: sorted by decreasing score. First removes unsuitable neighbours,
+// the worst score first, while more than max(4, 3/4 max_views) neighbours remain. A neighbour is
+// unsuitable if its area is below `min_area`, its scale is outside [min_scale, max_scale] or its
+// angle is outside [min_angle, max_angle]. Then keeps the `max_views` best of the remaining
+// neighbours.
 std::vector<ViewScore> filter_neighbours(const std::vector<ViewScore>& neighbours,
                                          const ViewSelectionOptions& options = {});
 
@@ -120,8 +127,9 @@ std::vector<ViewScore> choose_source_views(const std::vector<ViewScore>& filtere
                                            std::size_t number_views,
                                            const ViewSelectionOptions& options = {});
 
-// Returns the reasons why choose_source_views() found no view among the neighbours of an image, as
-// words for a message.
+// Returns, as words for a message, the reasons why choose_source_views() found no view among the
+// neighbours of an image, and to how many neighbours each reason applies. `neighbours`: all
+// neighbours of the image, before filter_neighbours().
 std::string why_no_source_view(const std::vector<ViewScore>& neighbours,
                                const ViewSelectionOptions& options = {});
 

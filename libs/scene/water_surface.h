@@ -14,8 +14,8 @@ namespace axial {
 struct WaterSurface {
   Eigen::Vector3d normal{0, 0, -1};  // unit, from the air into the water
   Eigen::Vector3d point{0, 0, 0};    // any point of the plane
-  double n_air = 1;
-  double n_water = 1.333;
+  double n_air = 1;                  // refractive index of the air
+  double n_water = 1.333;            // refractive index of the water
 
   // The height of the point x [world] above the surface, in the unit of the poses; negative in the
   // water.

@@ -17,14 +17,15 @@ float gradient_noise(const Eigen::Vector3d& p, std::uint32_t seed);
 // gain^k, k = 0, 1, ... Each octave is rotated and shifted, so that the lattice is not visible.
 float fractal_noise(const Eigen::Vector3d& p, std::uint32_t seed, int octaves, float gain);
 
-// Rotates and shifts a point, as fractal_noise() does between two octaves, but without the doubling
-// of the frequency.
+// Rotates and shifts a point, by a fixed rotation and a fixed vector. fractal_noise() applies it,
+// and a doubling of the frequency, between two octaves.
 Eigen::Vector3d turn_octave(const Eigen::Vector3d& p);
 
-// 0 for x below a, 1 for x above b, and a cubic in between.
+// 0 for x <= a, 1 for x >= b, and a cubic that rises smoothly in between. Precondition: a < b.
 float smooth_step(float a, float b, float x);
 
-// A uniform number in [0, 1). Numbers of different (seed, index) are independent.
+// A pseudo-random number, uniform in [0, 1), that depends only on `seed` and `index`. Numbers of
+// different (seed, index) are unrelated.
 double uniform(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace axial::simulate

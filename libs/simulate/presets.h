@@ -13,29 +13,30 @@
 namespace axial::simulate {
 
 struct PresetOptions {
-  std::string name = "reef";
-  std::uint32_t seed = 1;
-  int views = 0;  // number of views; 0: the default of the preset
-  int width = 1024, height = 768;
-  double horizontal_fov_degrees = 80;
+  std::string name = "reef";           // see make_preset()
+  std::uint32_t seed = 1;              // of all random numbers
+  int views = 0;                       // number of views; 0: the default of the preset
+  int width = 1024, height = 768;      // of the images [px]
+  double horizontal_fov_degrees = 80;  // of the lens in air
   // Factor of the whole scene and of the views' distances. The port is not scaled.
   double scale = 1;
-  // Factor of the scene's heights. The views are not moved.
+  // Factor of the scene's heights in the world (z). The views are not moved.
   double relief = 1;
   // Factor of the distance between the mesh's vertices.
   double coarseness = 1;
 };
 
+// A scene and the views of it, in the world frame: metres, z up.
 struct Preset {
-  Lens lens;
-  Port port;
+  Lens lens;  // of all views
+  Port port;  // of all views, unless `water_level` is set
   // Height of a water surface in the world [m]. If set, the surface replaces the port. Only n_air
   // and n_water of the port are then used.
   std::optional<double> water_level;
   Terrain terrain;
   TextureOptions texture;
   std::vector<View> views;
-  double haze = 0;  // strength of the haze in the photographs (see add_haze)
+  double haze = 0;  // share of scattered light in the photographs (add_haze() of render.h); 0: none
 };
 
 // Makes a preset:
@@ -57,14 +58,15 @@ struct Preset {
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
 // another name, for a number of views outside [0, 200], for a scale, relief or coarseness outside
-// [0.01, 100], and for values that make_lens refuses.
+// [0.01, 100], and for a width, height or field of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 
-// The port of `view`: the preset's port, or its water surface.
+// The port of `view` in its camera frame: the preset's water surface if Preset::water_level is set,
+// otherwise the preset's port.
 Port port_of_view(const Preset& preset, const View& view);
 
-// Throws an Error if check_port refuses the port of a view. The message names the value. If there
-// is a water surface, the message also names the view.
+// Throws an Error if check_port() (optics.h) refuses the port of a view. The message names the
+// value that is refused, and the view if there is a water surface.
 void check_ports(const Preset& preset);
 
 // Throws an Error unless the whole mesh is below the preset's water surface. Without a water

@@ -11,24 +11,30 @@
 
 namespace axial::simulate {
 
+// The point at which a ray meets a face.
 struct Hit {
-  double distance = 0;  // along the ray, to the plane of the face; computed in double
-  std::uint32_t face = 0;
+  // Along the ray to the plane of the face [m], computed in double. If the ray is within 0.001 rad
+  // of the plane: Embree's distance, computed in float.
+  double distance = 0;
+  std::uint32_t face = 0;  // index into TriangleMesh::faces
   float u = 0, v = 0;      // barycentric weights of the face's second and third corner
   Eigen::Vector3d normal;  // unit normal of the face, by the order of its corners
 };
 
-// Immutable after construction. All queries may run concurrently. One thread builds Embree's tree.
-// So if two faces are equally near, the same face is hit for any number of threads.
+// A mesh at which rays can be cast, in the mesh's frame [m]. Immutable after construction. All
+// queries may run concurrently. One thread builds Embree's tree. So if two faces are equally near,
+// the same face is hit for any number of threads.
 class RayScene {
  public:
-  // Copies the mesh. Error for a mesh without faces or a face index out of range.
+  // Copies the mesh. Throws an Error for a mesh without faces, for a vertex index out of range, and
+  // for a failure of Embree.
   explicit RayScene(const TriangleMesh& mesh);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // Returns the first face on the ray at a distance above 0. `direction` is of unit length.
+  // Returns the first face on the ray at a distance above 0, seen from either side. Empty if the
+  // ray meets no face. `direction` is of unit length.
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction) const;
 

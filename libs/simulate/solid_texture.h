@@ -11,16 +11,19 @@ namespace axial::simulate {
 struct TextureOptions {
   std::uint32_t seed = 1;
   double largest = 1.0;  // size of the largest patches [m]
-  double contrast = 1;   // factor of the differences from the sediment's reflectance
+  // Factor of the differences from the sediment's reflectance. 0: the sediment everywhere.
+  double contrast = 1;
 };
 
-// Returns the reflectance (linear R G B) at the world point `p`. `footprint` is the width of a
-// pixel at the point [m]. Detail finer than about `footprint` is left out to avoid aliasing.
+// Returns the reflectance (linear R G B) at the point `p` [world, m]. `footprint` is the width of a
+// pixel at the point [m], above 0. Detail finer than about `footprint` is left out to avoid
+// aliasing.
 Eigen::Vector3f seabed_albedo(const Eigen::Vector3d& p, double footprint,
                               const TextureOptions& options);
 
-// Returns a shader: Lambertian shading under a fixed sun with cast shadows and ambient light.
-// `scene` must be built from `mesh`. Both must outlive the shader.
+// Returns a shader with the reflectance of seabed_albedo(): Lambertian shading under a fixed sun
+// with cast shadows and ambient light. `scene` must be built from `mesh`. Both must outlive the
+// shader.
 Shader seabed_shader(const TriangleMesh& mesh, const RayScene& scene,
                      const TextureOptions& options);
 

@@ -9,6 +9,7 @@
 
 namespace axial::simulate {
 
+// A tube along a polyline, the spine. Lengths are metres.
 struct Tube {
   std::vector<Eigen::Vector3d> spine;  // at least two points; successive points differ
   std::vector<double> radii;           // one for each point of the spine, above 0

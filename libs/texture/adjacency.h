@@ -15,8 +15,9 @@ struct FacePair {
 };
 
 // Returns the pairs of faces with a common edge, sorted by (from, to). If more than two faces share
-// an edge, the faces are sorted by index, and each face is paired only with the next one. If two
-// corners of a face are the same vertex, the side between them is no edge and gives no pair.
+// an edge, the faces are sorted by index, and each face is paired only with the next one.
+// FacePair::a is always less than FacePair::b. If two corners of a face are the same vertex, the
+// side between them is no edge and gives no pair.
 std::vector<FacePair> face_pairs(std::span<const std::array<std::uint32_t, 3>> faces);
 
 }  // namespace axial::texture

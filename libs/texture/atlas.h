@@ -13,26 +13,28 @@
 
 namespace axial::texture {
 
+// The textures, and the places of the charts in the textures. Positions are pixels (x, y) with
+// centres at integers, as in TexturedMesh.
 struct Atlas {
-  std::vector<cv::Mat3b> textures;
+  std::vector<cv::Mat3b> textures;        // B G R
   std::vector<cv::Rect> rects;            // one per chart: its place in its texture
   std::vector<std::uint32_t> texture_of;  // one per chart: the index of its texture
-  std::vector<Eigen::Vector2f> uv;  // one per node: its place in the texture [px] (TexturedMesh)
-  Eigen::Vector2f empty_uv{0.5f, 0.5f};  // a place of the empty colour in texture 0
-  std::size_t scaled_down = 0;           // charts that were larger than a texture
+  std::vector<Eigen::Vector2f> uv;        // one per node: its position in its chart's texture [px]
+  Eigen::Vector2f empty_uv{0.5f, 0.5f};   // a position in texture 0 that has the empty colour [px]
+  std::size_t scaled_down = 0;            // charts that were larger than a texture
 };
 
-// Finds a place for each chart, and fills all textures with the colour `empty`. The upper left 5 x
-// 5 pixels of texture 0 stay free of charts and keep the colour `empty` (Atlas::empty_uv). Errors
-// as for pack() (packing.h).
+// Finds a place for each chart, and fills all textures with the colour `empty` (R G B). The upper
+// left 5 x 5 pixels of texture 0 stay free of charts and keep the colour `empty` (Atlas::empty_uv).
+// Throws an Error if pack() refuses `options` (packing.h).
 Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty);
 
 // Copies, for each chart, the part Chart::rect of the chart's photograph into the chart's place in
 // the textures. A part that is larger than its place is scaled down. `views`: the number of views,
-// whose photographs `images` returns. `sharpness`: the amount of an unsharp mask, 0 for none. The
-// mask replaces a photograph T by (1 + sharpness) T - sharpness (G * T), where * is convolution and
-// G a Gaussian with a standard deviation of 1.5 px. Where a part extends beyond the photograph, it
-// repeats the photograph's border pixels.
+// whose photographs `images` returns. Only views with charts are asked for. `sharpness` (>= 0): the
+// amount of an unsharp mask, 0 for none. The mask replaces a photograph T by (1 + sharpness) T -
+// sharpness (G * T), where * is convolution and G a Gaussian with a standard deviation of 1.5 px.
+// Where a part extends beyond the photograph, it repeats the photograph's border pixels.
 void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSource& images,
            double sharpness);
 

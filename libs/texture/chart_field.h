@@ -41,7 +41,8 @@ class ChartField {
   // Adds the solution of Laplace's equation to the values in a strip. The strip consists of the
   // covered pixels that fewer than `width` steps reach from the pixel of a sample, which is the
   // pixel nearest to the sample. A step leads from a covered pixel to a covered pixel above, below,
-  // left or right of it. The solution has these boundary conditions:
+  // left or right of it. Samples whose pixel is not covered are ignored. The solution has these
+  // boundary conditions:
   //   - At a pixel with samples, the solution is the mean of the samples.
   //   - At covered pixels beyond the strip, the solution is zero.
   //   - There is no flow through the border of the covered pixels.

@@ -15,35 +15,37 @@
 
 namespace axial::texture {
 
-inline constexpr std::uint32_t kNoChart = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoChart = 0xFFFFFFFFu;  // in Charts::chart_of: the face has none
 
 struct Chart {
-  std::uint32_t view = 0;
+  std::uint32_t view = 0;  // index of the view that gives the chart its colours
   // The part of the view's image that contains the chart's faces and a border of kBorder pixels.
   // This part may extend beyond the image.
   cv::Rect rect;
 };
 
-inline constexpr int kBorder = 3;  // [px]
+inline constexpr int kBorder = 3;  // width of the border around a chart's faces [px]
 
 // A vertex of the mesh in one chart. A vertex at a seam has a node in each of its charts.
 struct Node {
-  std::uint32_t vertex = 0;
-  std::uint32_t chart = 0;
-  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // in the image of the chart's view
+  std::uint32_t vertex = 0;  // index into Mesh::vertices
+  std::uint32_t chart = 0;   // index into Charts::charts
+  // In the image of the chart's view, with pixel centres at integers.
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();
 };
 
 struct Charts {
   std::vector<Chart> charts;
   std::vector<Node> nodes;              // ordered by chart, then by vertex
   std::vector<std::uint32_t> chart_of;  // one per face; kNoChart: no view sees it
-  // One per face: the nodes of its corners. No meaning for a face without chart.
+  // One per face: the indices of the nodes of its corners. No meaning for a face without chart.
   std::vector<std::array<std::uint32_t, 3>> corners;
   // The faces with a chart, ordered by chart. The faces of chart c are at [face_begin[c],
   // face_begin[c + 1]) of `faces`.
   std::vector<std::uint32_t> faces;
   std::vector<std::uint32_t> face_begin;
 
+  // The faces of a chart, in ascending order.
   std::span<const std::uint32_t> faces_of(std::size_t chart) const {
     return std::span(faces).subspan(face_begin[chart], face_begin[chart + 1] - face_begin[chart]);
   }
@@ -58,8 +60,8 @@ Charts make_charts(const Mesh& mesh, std::span<const FacePair> pairs,
 
 // An edge between a face of chart a and a face of another chart b.
 struct Seam {
-  // The two nodes of the edge in chart a, and in chart b. The first node belongs to the vertex
-  // FacePair::from, and the second to FacePair::to.
+  // The indices of the edge's two nodes in chart a, and in chart b. The first node belongs to the
+  // vertex FacePair::from, and the second to FacePair::to.
   std::array<std::uint32_t, 2> a{}, b{};
 };
 

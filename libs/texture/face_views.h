@@ -15,15 +15,15 @@ namespace axial::texture {
 
 // A view that sees a face, or only a part of the face.
 struct Sight {
-  std::uint32_t view = 0;
-  float quality = 0;  // higher is better
+  std::uint32_t view = 0;  // index into the views of find_face_views()
+  float quality = 0;       // higher is better; find_face_views() defines it
   // Mean colour of the face in this view, B G R. It has no meaning if `whole` is false.
   std::array<std::uint8_t, 3> color{};
   bool whole = true;  // the view sees all of the face
 };
 
-// The sights of all faces in one array. The sights of face f are at [begin[f], begin[f + 1]), in
-// the order of the views.
+// The sights of all faces in one array. The sights of face f are at [begin[f], begin[f + 1]) of
+// `sights`, in the order of the views. All sights of one face have the same Sight::whole.
 struct FaceViews {
   std::vector<std::uint64_t> begin;
   std::vector<Sight> sights;
@@ -37,8 +37,8 @@ struct FaceViews {
 struct VisibilityOptions {
   // A face does not hide a point of the mesh if it crosses the path of light less than tolerance *
   // L from the point. L is the length of the path from the point to the place where the light
-  // leaves the water. The default is the ratio of a pixel's width on the surface to the distance,
-  // for a focal length of 1000 px.
+  // leaves the water. Range: 0 to 1. The default is the ratio of a pixel's width on the surface to
+  // the distance, for a focal length of 1000 px.
   double tolerance = 1e-3;
 };
 
@@ -58,8 +58,8 @@ struct VisibilityOptions {
 // area of the face in the image [px^2] times max(0.001, c)^2. Here c is the cosine of the angle
 // between the smoothed normal and the path of light from the middle of the face.
 //
-// Calls progress(done, total) with numbers of views. Errors of Occluders (occluders.h) and of
-// `images` are passed on.
+// Calls progress(done, total) with numbers of views, from any thread but one call at a time. Throws
+// an Error if Occluders refuses the mesh (occluders.h). Exceptions of `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options = {}, const ProgressSink& progress = {});
 

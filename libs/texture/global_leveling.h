@@ -17,8 +17,8 @@ struct GlobalLevelingOptions {
   // An edge at the border of a chart has half of this weight. For comparison, the squared
   // difference at an end of a seam has the weight 1.
   double smoothness = 0.01;
-  // Weight of the squared correction itself. This term keeps the corrections from drifting along
-  // chains of charts.
+  // Weight of the squared correction itself, above 0. This term keeps the corrections from drifting
+  // along chains of charts.
   double smallness = 1e-4;
 };
 

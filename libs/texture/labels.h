@@ -12,6 +12,7 @@
 
 namespace axial::texture {
 
+// Stands for the view of a face that no view sees.
 inline constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
 
 struct LabelOptions {
@@ -19,11 +20,12 @@ struct LabelOptions {
   // the cost in choose_views()). With a ratio near 0 there are as few seams as possible. The larger
   // the ratio, the more faces get their best view.
   double cost_smoothness_ratio = 0.1;
-  int max_cycles = 3;  // at most this number of alpha expansions of each view
+  // At most this number of alpha expansions of each view. 0: each face gets its best view.
+  int max_cycles = 3;
 };
 
-// Returns for each face the index of its view, or kNoView for a face that no view sees. The result
-// minimises, approximately, the cost
+// Returns for each face the index of its view, or kNoView for a face that no view sees. `pairs`:
+// the result of face_pairs() (adjacency.h). The result minimises, approximately, the cost
 //
 //       sum over the faces of 2 * ratio * (1 - q / best)
 //     + the number of pairs of faces with different views,

@@ -10,19 +10,20 @@ namespace axial::texture {
 
 struct LevelingOptions {
   bool global = true;  // smooth corrections of whole charts (global_leveling.h)
-  bool local = true;   // corrections in a strip along the seams
+  bool local = true;   // corrections in a strip along the seams, see level_seams()
   GlobalLevelingOptions global_options;
-  int strip = 20;  // width of the strip [px]
+  int strip = 20;  // width of the strip [px]; the local correction reaches zero at this distance
 };
 
-// Adds the global and the local corrections to the textures of `atlas`. Precondition: `atlas` is
-// painted (paint() in atlas.h) and not yet levelled. The global correction is linear inside each
-// face (global_leveling.h).
+// Adds the global and the local corrections to the textures of `atlas`, as far as `options`
+// switches them on. Without seams nothing changes. Precondition: `atlas` is painted (paint() in
+// atlas.h) and not yet levelled. `seams`: the result of find_seams(). The global correction is
+// linear inside each face (global_leveling.h).
 //
 // The local correction of a chart is the solution of Laplace's equation in a strip along the seams,
 // with these boundary conditions:
-//   - At the seam, the solution is half of the difference that the global correction leaves, so
-//     that both sides get the mean of their colours.
+//   - At the seam, the solution is half of the difference between the two sides that the global
+//     correction leaves, so that both sides get the mean of their colours.
 //   - At the inner side of the strip, the solution is zero.
 //   - There is no flow through the other borders of the chart.
 // The corrected colours are then the solution of Poisson's equation with the gradients of the

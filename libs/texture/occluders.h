@@ -9,10 +9,12 @@
 
 namespace axial::texture {
 
+// The faces of a mesh, prepared for tests whether they hide a point.
 class Occluders {
  public:
-  // `mesh` must outlive the object. Error for a mesh without faces, a vertex index out of range,
-  // coordinates that are not finite, and a failure of Embree.
+  // `mesh` must outlive the object. Throws an Error for a mesh that check_mesh() refuses
+  // (scene/check_mesh.h), for example without faces or with a coordinate that is not finite, and
+  // for a failure of Embree.
   explicit Occluders(const Mesh& mesh);
   ~Occluders();
   Occluders(const Occluders&) = delete;

@@ -9,13 +9,14 @@
 
 namespace axial::texture {
 
-// Removes the sights of a face whose colour is far from the median colour of the face's sights.
+// Removes from each face of `views` the sights whose colour is far from the median colour of the
+// face's sights.
 //
 // For each channel, let s be the robust standard deviation of the sights' colours: 1.4826 times the
 // median absolute deviation. If s is below 6 grey levels, it is raised to 6, because of noise and
 // because views do not show exactly the same points of the surface. Let d^2 be the sum over the
-// channels of ((colour - median) / s)^2. A sight is far from the median if
-// exp(-d^2 / 2) < threshold.
+// channels of ((colour - median) / s)^2. A sight is far from the median if exp(-d^2 / 2) <
+// threshold. Useful thresholds are below 1.
 //
 // All sights stay in these cases: fewer than five views see the face, no view sees all of the face
 // (Sight::whole), all sights are far from the median, or threshold is 0 or less. Returns the number

@@ -11,37 +11,41 @@ namespace axial::texture {
 
 struct PackingOptions {
   int max_size = 8192;  // largest side of a texture [px]; 0: 32768, the packer's limit
-  int multiple = 0;     // sides are multiples of this number; 0: powers of two
+  int multiple = 0;     // sides are multiples of this number [px]; 0: powers of two
 };
 
+// The place of one rectangle.
 struct Place {
-  std::uint32_t texture = 0;
-  cv::Point corner;  // upper left pixel
-  double scale = 1;  // below 1 for a rectangle that would be larger than a texture
+  std::uint32_t texture = 0;  // index into Packing::sizes
+  cv::Point corner;           // of the rectangle: its upper left pixel in the texture
+  // Factor of the rectangle's sides. It is below 1 if a side would be larger than a texture may be.
+  double scale = 1;
 };
 
 struct Packing {
-  std::vector<Place> places;    // one per rectangle
-  std::vector<cv::Size> sizes;  // of the textures
+  std::vector<Place> places;    // one per rectangle, in the order of the rectangles
+  std::vector<cv::Size> sizes;  // of the textures [px]
   std::size_t scaled_down = 0;  // rectangles with a scale below 1
 };
 
-// Returns `size` times `place.scale`, rounded up to whole pixels.
+// The size [px] that a rectangle of the size `size` has at its place: `size` times `place.scale`,
+// rounded up to whole pixels.
 cv::Size size_at(const Place& place, cv::Size size);
 
 // Places rectangles of the given sizes [px], whose sides must be at least 1. The first rectangle
-// lies in the upper left corner of the first texture.
+// lies in the upper left corner of the first texture. Without rectangles there is no texture.
 //
-// A texture is a square at first. Its side is at least as long as the longest side of a rectangle,
-// and so long that the remaining rectangles fill at most 90 % of its area. The side grows step by
-// step until all remaining rectangles fit or until max_size is reached. The rectangles that do not
-// fit are placed in a further texture. At the end, the height is reduced to the smallest allowed
-// side that contains the lowest rectangle. Sides are powers of two or multiples of `multiple`,
-// except that a side longer than max_size is reduced to max_size. A rectangle longer than max_size
-// is scaled down (Place::scale).
+// A texture is a square at first. Its side is at least as long as the longest side of a rectangle.
+// If max_size allows it, the side is so long that the remaining rectangles fill at most 90 % of the
+// area. The side grows step by step until all remaining rectangles fit or until max_size is
+// reached. The rectangles that do not fit are placed in a further texture. At the end, the height
+// is reduced to the smallest allowed side that contains the lowest rectangle. Sides are powers of
+// two or multiples of `multiple`, except that a side longer than max_size is reduced to max_size. A
+// rectangle longer than max_size is scaled down (Place::scale).
 //
-// Error for a max_size that is neither 0 nor from 16 to 32768, and for a `multiple` that is
-// negative or larger than max_size.
+// Throws an Error for a max_size that is neither 0 nor from 16 to 32768, and for a `multiple` that
+// is negative or larger than max_size. The message calls the two values max_texture_size and
+// texture_size_multiple.
 Packing pack(std::span<const cv::Size> sizes, const PackingOptions& options);
 
 }  // namespace axial::texture

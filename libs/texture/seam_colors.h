@@ -13,12 +13,14 @@
 namespace axial::texture {
 
 // Samples along the seams. The samples of seam s are at [begin[s], begin[s + 1]) of `differences`.
-// A seam with n samples has its sample k at (1 - t) * first vertex + t * second vertex, where t =
-// (k + 1/2) / n. The number n is twice the length of the seam [px], rounded up, and at least 2. The
-// length is the larger of the lengths in the two charts.
+// Let p and q be the positions of the seam's first and second node (Seam) in the texture of one of
+// its charts. A seam with n samples has its sample k at (1 - t) p + t q, where t = (k + 1/2) / n.
+// The number n is twice the length of the seam [px of the textures], rounded up, and at least 2.
+// The length is the larger of the lengths in the two charts.
 struct SeamColors {
   std::vector<std::uint32_t> begin;
-  std::vector<Eigen::Vector3f> differences;  // colour in chart b minus colour in chart a, B G R
+  // Colour in chart b minus colour in chart a (Seam) [grey levels, B G R].
+  std::vector<Eigen::Vector3f> differences;
 
   std::span<const Eigen::Vector3f> of(std::size_t seam) const {
     return std::span(differences).subspan(begin[seam], begin[seam + 1] - begin[seam]);

@@ -14,7 +14,7 @@ namespace axial::texture {
 
 struct SplitOptions {
   double tolerance = 0.25;             // largest error of a linear image inside a face [px]
-  std::size_t max_faces = 20'000'000;  // no round of splitting begins that could exceed this
+  std::size_t max_faces = 20'000'000;  // largest number of faces that splitting may give
 };
 
 // Splits edges in the middle, together with the faces at the edges, until the error of each edge is

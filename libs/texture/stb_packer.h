@@ -8,8 +8,9 @@
 
 namespace axial::texture {
 
+// A rectangle to place.
 struct StbRect {
-  cv::Size size;
+  cv::Size size;                    // [px], sides at least 1
   std::optional<cv::Point> corner;  // upper left pixel; empty: not placed
 };
 

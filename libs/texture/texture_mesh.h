@@ -17,20 +17,23 @@ namespace axial::texture {
 struct Options {
   SplitOptions split;
   VisibilityOptions visibility;
-  double outlier_threshold = 0.06;  // see remove_outliers(); 0: keep all views
+  // `threshold` of remove_outliers() (outliers.h): the larger, the more views of faces are removed
+  // because of their colours. 0: keep all views.
+  double outlier_threshold = 0.06;
   LabelOptions labels;
   LevelingOptions leveling;
   PackingOptions packing;
-  double sharpness_weight = 0;    // see paint()
-  Rgb empty_color{255, 127, 39};  // for faces that no view sees, and between the charts
+  double sharpness_weight = 0;    // amount of an unsharp mask (paint() in atlas.h); 0: none
+  Rgb empty_color{255, 127, 39};  // R G B; for faces that no view sees, and between the charts
 };
 
+// The numbers that texture_mesh() reports.
 struct Report {
-  std::size_t new_faces = 0;  // number of faces that splitting has added
-  std::size_t unseen_faces = 0;
-  std::size_t outliers = 0;  // removed sights: a sight is a pair of a face and a view
-  std::size_t charts = 0;
-  std::size_t scaled_down = 0;  // charts that were larger than a texture
+  std::size_t new_faces = 0;     // faces that splitting has added
+  std::size_t unseen_faces = 0;  // faces that no view sees, after splitting
+  std::size_t outliers = 0;      // removed sights: a sight is a pair of a face and a view
+  std::size_t charts = 0;        // charts: connected faces with colours from one view
+  std::size_t scaled_down = 0;   // charts that were larger than a texture
 };
 
 // Returns the ProgressSink for a stage with the given name. texture_mesh() calls the function at
@@ -43,8 +46,9 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 // face. Vertices keep their indices, and the vertices that splitting adds follow. `report`, if
 // given, is filled.
 //
-// Error for a mesh without faces, with a vertex index out of range or with a coordinate that is not
-// finite. Error if no view sees any face. Errors of `images` and of pack() are passed on.
+// Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
+// faces. Throws an Error if no view sees any face, or if pack() refuses the options (packing.h).
+// Exceptions of `images` are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const StageProgress& progress = {});

@@ -14,9 +14,10 @@ namespace axial::texture {
 // The camera of a photograph, at the resolution at which the photograph is used.
 struct View {
   CameraModel camera;
-  Pose pose;
+  Pose pose;  // in the frame of the mesh
 };
 
+// The pixels of a photograph.
 struct ViewImage {
   cv::Mat3b color;   // B G R, of the size of the view's camera
   cv::Mat1b usable;  // size of `color`; 0: the pixel must not be used. Empty: all may be used
