@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle mesh for queries of distance and occlusion.
+// A triangle mesh for queries of distance and occlusion, and for rays.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,11 +19,17 @@ struct ClosestPoint {
   std::uint32_t face;
 };
 
+// The place where a ray meets the surface.
+struct SurfaceHit {
+  std::uint32_t face;
+  float u, v;  // barycentric weights of the face's second and third corner
+};
+
 // Error if a face index is out of range or a coordinate is not finite.
 void require_valid(const Mesh& mesh);
 
 // Holds a copy of the triangles in an Embree hierarchy. All queries may run concurrently. The
-// answers do not depend on the number of threads.
+// answers do not depend on the number of threads: one thread builds the hierarchy.
 class Surface {
  public:
   // Error if the mesh has no faces, a face index is out of range or a coordinate is not finite.
@@ -42,6 +49,11 @@ class Surface {
   // (`skip`, a fraction of its length) is left out, so that a point on the surface does not hide
   // itself.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
+
+  // Returns the first place where the ray from `origin` along `direction` meets the surface, from
+  // either side; nothing if it does not meet the surface.
+  std::optional<SurfaceHit> first_hit(const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& direction) const;
 
  private:
   struct Impl;
