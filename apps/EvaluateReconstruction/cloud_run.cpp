@@ -6,7 +6,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "base/unused_input.h"
 #include "cloud_parts.h"
 #include "evaluate/alignment.h"
 #include "evaluate/cloud_evaluation.h"
@@ -17,118 +16,16 @@
 #include "evaluate/report.h"
 #include "evaluate/sampling.h"
 #include "evaluate/strip.h"
-#include "io/cameras/geo_offset.h"
-#include "io/cameras/other_ports.h"
-#include "io/colmap/colmap_scene.h"
+#include "inputs.h"
 #include "io/images/image.h"
 #include "io/ply/ply.h"
+#include "rendered_views.h"
 #include "runs.h"
 
 namespace axial::apps {
 namespace {
 
-namespace fs = std::filesystem;
 using evaluate::Similarity;
-
-// Adds the file's name to errors of `action`, which does not know the file.
-template <class Action>
-auto naming(const fs::path& file, Action action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    fail("{}: {}", file.string(), error.what());
-  }
-}
-
-// The reconstruction: a mesh if the file has faces, else a cloud.
-struct Input {
-  PointCloud cloud;
-  evaluate::PointUncertainty uncertainty;  // of the cloud's points
-  std::optional<Mesh> mesh;
-
-  std::span<const Eigen::Vector3f> positions() const {
-    return mesh ? mesh->vertices : cloud.positions;
-  }
-  void move(const Similarity& by) {
-    if (mesh)
-      evaluate::apply(by, *mesh);
-    else
-      evaluate::apply(by, cloud);
-  }
-};
-
-// The local frames that float coordinates refer to: of the truth and its cameras, and of the input
-// before alignment.
-struct Frames {
-  LocalFrame truth, input;
-};
-
-// A frame near the file's vertices. Warns of float coordinates far from their origin: they had lost
-// digits when the file was written.
-LocalFrame checked_frame(const fs::path& path) {
-  constexpr double kFar = 1e4;  // [m]: here, float has a resolution of 1 mm
-  const io::PlyPlace place = io::ply_place(path);
-  const double far = place.frame.to_local(place.first_vertex).cwiseAbs().maxCoeff();
-  if (place.is_float && far > kFar)
-    log_warning(
-        "{}: its coordinates are float32 values of about {:.0f} m: their resolution is only {:.2g} "
-        "m (write double, or local coordinates with a comment geo_offset)",
-        path.string(), far, far * 0x1p-24);
-  return frame_near(place.first_vertex);
-}
-
-// The given models, and their frames. The reference model has the truth's frame.
-struct Models {
-  io::ColmapModel reference, estimated;
-  Frames frames;
-};
-
-Models read_models(const Options& options) {
-  Models models;
-  checked_frame(options.input);
-  models.frames.truth = checked_frame(options.truth);
-  if (!options.cameras.empty()) {
-    models.reference = io::read_colmap_model(options.cameras_model);
-    models.frames.truth = io::enter_local_frame(models.reference);
-  }
-  models.frames.input = models.frames.truth;
-  if (options.align == "centres") {
-    models.estimated = io::read_colmap_model(options.estimated_model);
-    models.frames.input = io::enter_local_frame(models.estimated);
-  }
-  return models;
-}
-
-Input read_input(const fs::path& path, const LocalFrame& frame) {
-  Input input;
-  if (io::ply_has_faces(path))
-    input.mesh = io::read_mesh_ply(path, frame);
-  else
-    input.cloud = io::read_cloud_ply(path, frame);
-  if (!input.mesh) input.uncertainty = read_uncertainty(path, input.cloud);
-  if (input.positions().empty()) fail("{}: the cloud has no points", path.string());
-  return input;
-}
-
-std::vector<evaluate::View> read_views(const Options& options, const Models& models) {
-  if (options.cameras.empty()) return {};
-  std::optional<io::Housing> housing;
-  if (!options.housing.empty()) {
-    housing =
-        io::in_frame(models.frames.truth, io::read_housing(options.housing, models.reference));
-    for (const std::string& entry : io::unused_entries(*housing, models.reference))
-      log_warning("{}: no image matches {}", options.housing.string(), entry);
-    io::warn_of_other_ports(*housing, options.housing.string(),
-                            io::housing_of(models.reference.cameras),
-                            "the model in " + options.cameras.string(), models.reference);
-    if (io::gives_no_image_a_port(*housing, models.reference))
-      UnusedInput(options.allow_missing)
-          .report(fmt::format("--housing {}: gives no image a port", options.housing.string()));
-  }
-  return naming(options.cameras_model, [&] {
-    return evaluate::views_of_model(models.reference, housing ? &*housing : nullptr);
-  });
-}
 
 Similarity align_by_centres(const Options& options, const Models& models,
                             nlohmann::ordered_json& report) {
@@ -280,6 +177,20 @@ Measured measure(const Options& options, Input& input, const Mesh& truth,
   });
 }
 
+// The colours of the vertices of the mesh by their distances to the truth. Writes the mesh with
+// these colours. Empty for a cloud, and if nothing needs the colours.
+std::vector<Rgb> vertex_errors(const Options& options, const Input& input,
+                               const evaluate::Surface& surface, const LocalFrame& frame) {
+  const bool is_needed = !options.error_mesh.empty() || !options.rendered_views.empty();
+  if (!input.mesh || !is_needed) return {};
+  std::vector<Rgb> colors = evaluate::error_colors(
+      evaluate::distances_to(surface, input.mesh->vertices), options.color_max);
+  if (!options.error_mesh.empty())
+    io::write_mesh_ply(options.error_mesh, {input.mesh->vertices, colors, input.mesh->faces},
+                       {frame, false});
+  return colors;
+}
+
 // Writes the points coloured by their errors, and the picture of them.
 void write_errors(const Options& options, const PointCloud& colored, const LocalFrame& frame,
                   std::span<const evaluate::View> views) {
@@ -288,16 +199,26 @@ void write_errors(const Options& options, const PointCloud& colored, const Local
   if (!options.picture.empty()) draw(options, colored, views);
 }
 
+void require_kind(const Options& options, const Input& input) {
+  if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
+  const std::pair<const char*, bool> for_meshes[] = {{"--render", !options.rendered_views.empty()},
+                                                     {"--error-mesh", !options.error_mesh.empty()}};
+  for (const auto& [name, given] : for_meshes)
+    if (given && !input.mesh)
+      fail("{} is for meshes, but {} has no faces", name, options.input.string());
+}
+
 }  // namespace
 
 nlohmann::ordered_json run_cloud(const Options& options) {
   const Models models = read_models(options);
-  Input input = read_input(options.input, models.frames.input);
+  Input input = read_input(options, models.frames.input);
   const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
-  if (options.framed_only && input.mesh) fail("--framed-only is for clouds, not for a mesh");
+  require_kind(options, input);
+  const std::vector<RenderTask> tasks = plan_rendering(options, input, views, true);
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   // Only an alignment by known centres brings together input and truth that are far apart.
   if (options.align != "centres") refuse_if_far(options, input, truth);
@@ -310,6 +231,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   if (mesh) fmt::print("{}", evaluate::table(*mesh));
   colored.colors = evaluate::error_colors(result.distances, options.color_max);
   write_errors(options, colored, models.frames.truth, views);
+  const std::vector<Rgb> of_vertices = vertex_errors(options, input, surface, models.frames.truth);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
   if (mesh) report.update(evaluate::to_json(*mesh));
@@ -318,7 +240,17 @@ nlohmann::ordered_json run_cloud(const Options& options) {
     return report_parts(options,
                         {colored.positions, input.uncertainty, truth, surface, views, evaluation});
   }));
+  if (!tasks.empty()) report["render"] = render(options, input, tasks, &surface, of_vertices);
   return report;
+}
+
+nlohmann::ordered_json run_rendering(const Options& options) {
+  const Models models = read_models(options);
+  const Input input = read_input(options, models.frames.input);
+  const std::vector<evaluate::View> views = read_views(options, models);
+  require_kind(options, input);
+  const std::vector<RenderTask> tasks = plan_rendering(options, input, views, false);
+  return {{"kind", "mesh"}, {"render", render(options, input, tasks, nullptr, {})}};
 }
 
 }  // namespace axial::apps

@@ -18,9 +18,14 @@ void check_depth_run(const Options& options) {
     fail("--align {}: a depth map has the coordinates of its own camera and cannot be aligned",
          options.align);
   const std::pair<const char*, bool> meaningless[] = {
-      {"--framed-only", options.framed_only},          {"--strip", options.strip},
-      {"--cameras", !options.cameras.empty()},         {"--estimated", !options.estimated.empty()},
-      {"--error-cloud", !options.error_cloud.empty()}, {"--aligned", !options.aligned.empty()},
+      {"--render", !options.rendered_views.empty()},
+      {"--framed-only", options.framed_only},
+      {"--strip", options.strip},
+      {"--cameras", !options.cameras.empty()},
+      {"--estimated", !options.estimated.empty()},
+      {"--error-cloud", !options.error_cloud.empty()},
+      {"--error-mesh", !options.error_mesh.empty()},
+      {"--aligned", !options.aligned.empty()},
       {"--transform-out", !options.transform.empty()}};
   for (const auto& [name, given] : meaningless)
     if (given) fail("{} is for clouds and meshes, not for a depth map", name);

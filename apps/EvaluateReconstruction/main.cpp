@@ -29,6 +29,7 @@ void check_outputs(const Options& options) {
   const std::pair<const char*, const fs::path&> outputs[] = {
       {"--json", options.json},
       {"--error-cloud", options.error_cloud},
+      {"--error-mesh", options.error_mesh},
       {"--picture", options.picture},
       {"--aligned", options.aligned},
       {"--transform-out", options.transform}};
@@ -53,9 +54,12 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   check_outputs(options);
   const bool is_depth_map = options.input.extension() == ".dmap";
-  nlohmann::ordered_json report{{"input", options.input.string()},
-                                {"truth", options.truth.string()}};
-  report.update(is_depth_map ? run_depth_map(options) : run_cloud(options));
+  nlohmann::ordered_json report{{"input", options.input.string()}};
+  if (!options.truth.empty()) report["truth"] = options.truth.string();
+  if (is_depth_map)
+    report.update(run_depth_map(options));
+  else
+    report.update(options.truth.empty() ? run_rendering(options) : run_cloud(options));
   if (!options.json.empty()) write_atomically(options.json, io::to_text(report, 1) + "\n");
   return 0;
 }

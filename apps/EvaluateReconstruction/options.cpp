@@ -17,7 +17,8 @@ namespace {
 // The options as text, before they are checked.
 struct Texts {
   std::string input, truth, tolerance = "0.005", cameras, housing, estimated;
-  std::string json, error_cloud, picture, aligned, transform;
+  std::string json, error_cloud, error_mesh, picture, aligned, transform;
+  std::string render, photographs, render_folder;
 };
 
 std::vector<double> parse_tolerances(const std::string& text) {
@@ -35,9 +36,11 @@ std::vector<double> parse_tolerances(const std::string& text) {
 void declare_inputs(OptionList& visible, Options& options, Texts& texts) {
   visible
       .add("input-file,i", &texts.input,
-           "file to evaluate: a cloud or a mesh (.ply), or a depth map (.dmap)")
+           "file to evaluate: a cloud or a mesh (.ply), a textured mesh (.ply, .obj, .glb), or a "
+           "depth map (.dmap)")
       .add("truth-file,m", &texts.truth,
-           "ground truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff)")
+           "ground truth: a mesh (.ply), or for a depth map the distances along its rays (.tiff); "
+           "not needed for --render")
       .add_with_default("tolerance", &texts.tolerance,
                         "tolerances: largest distances that count as correct [m], separated by "
                         "commas; histograms end at 4 times the first tolerance, colours at 2 times")
@@ -72,6 +75,8 @@ void declare_measures(OptionList& visible, Options& options) {
 void declare_outputs(OptionList& visible, Options& options, Texts& texts) {
   visible.add("json", &texts.json, "write all results to this file (.json)")
       .add("error-cloud", &texts.error_cloud, "write the points coloured by error (.ply)")
+      .add("error-mesh", &texts.error_mesh,
+           "write the mesh with its vertices coloured by error (.ply)")
       .add("picture", &texts.picture,
            "draw the errors (.png): a cloud in the view of a camera, or depth, truth and error of "
            "a depth map")
@@ -86,16 +91,58 @@ void declare_outputs(OptionList& visible, Options& options, Texts& texts) {
            "write the alignment to this file, as a 4 x 4 matrix, row by row");
 }
 
+void declare_rendering(OptionList& visible, Options& options, Texts& texts) {
+  visible
+      .add("render", &texts.render,
+           "render the mesh into these views of --cameras, through their ports: names of images, "
+           "separated by commas, or all")
+      .add("render-folder", &texts.render_folder,
+           "folder for the rendered pictures: the mesh with its own colours, and with "
+           "--truth-file also coloured by error")
+      .add_with_default("render-type", &options.render_type, "format of the pictures: png, jpg")
+      .add_with_default("render-samples", &options.render_samples,
+                        "rays along each side of a pixel, whose mean is the pixel's colour")
+      .add("photographs", &texts.photographs,
+           "folder with the images of --cameras: reports the PSNR of the rendered views");
+}
+
 // In the order of --help.
 void declare(OptionList& visible, Options& options, Texts& texts) {
   declare_inputs(visible, options, texts);
   declare_measures(visible, options);
   declare_outputs(visible, options, texts);
+  declare_rendering(visible, options, texts);
   UnusedInput::declare(visible, options.allow_missing);
 }
 
+void check_rendering(const Options& options) {
+  const bool renders = !options.rendered_views.empty();
+  const std::pair<const char*, const std::filesystem::path&> of_rendering[] = {
+      {"--render-folder", options.render_folder}, {"--photographs", options.photographs}};
+  for (const auto& [name, path] : of_rendering)
+    if (!path.empty() && !renders) fail("{} needs --render: the views to render", name);
+  if (!renders) return;
+  if (options.cameras.empty()) fail("--render needs --cameras");
+  if (options.render_folder.empty() && options.photographs.empty())
+    fail("--render needs --render-folder or --photographs");
+  if (options.render_type != "png" && options.render_type != "jpg")
+    fail("--render-type is {}: must be png or jpg", options.render_type);
+  if (options.render_samples < 1 || options.render_samples > 16)
+    fail("--render-samples is {}: must be 1 to 16", options.render_samples);
+}
+
+// Without the truth, a mesh can only be rendered.
+void check_truth(const Options& options) {
+  if (!options.truth.empty()) return;
+  if (options.rendered_views.empty()) fail("--truth-file is missing (-m FILE)");
+  for (const char* name : {"error-cloud", "error-mesh", "picture", "aligned", "transform-out",
+                           "align", "strip", "framed-only"})
+    if (given(options.parsed, name)) fail("--{} needs --truth-file", name);
+}
+
 void check(const Options& options) {
-  if (options.truth.empty()) fail("--truth-file is missing (-m FILE)");
+  check_truth(options);
+  check_rendering(options);
   if (options.align != "none" && options.align != "centres" && options.align != "icp")
     fail("--align is {}: must be none, centres or icp", options.align);
   if (options.align == "centres" && (options.estimated.empty() || options.cameras.empty()))
@@ -126,13 +173,28 @@ void warn_of_no_effect(const Options& options) {
       log_warning("--{}: without effect {}", name, cause);
   };
   const bool is_map = options.input.extension() == ".dmap";
-  for (const char* name : {"samples", "seed", "min-views", "gross"})
+  for (const char* name : {"samples", "seed", "min-views", "gross"}) {
     warn(is_map, name, "on a depth map");
+    warn(options.truth.empty(), name, "without --truth-file");
+  }
+  warn(options.truth.empty(), "tolerance", "without --truth-file");
   warn(!is_map && options.cameras.empty(), "min-views", "without --cameras");
   warn(options.picture.empty(), "picture-camera", "without --picture");
   warn(options.picture.empty() || is_map, "picture-width", "without --picture of a cloud");
-  warn(options.picture.empty() && options.error_cloud.empty(), "color-max",
-       "without --picture or --error-cloud");
+  warn(options.picture.empty() && options.error_cloud.empty() && options.error_mesh.empty() &&
+           (options.render_folder.empty() || options.truth.empty()),
+       "color-max", "without pictures, clouds or meshes coloured by error");
+  warn(options.rendered_views.empty(), "render-samples", "without --render");
+  warn(options.render_folder.empty(), "render-type", "without --render-folder");
+}
+
+std::vector<std::string> names_of(const std::string& list) {
+  std::vector<std::string> names;
+  for (const std::string_view name : split(list, ',')) {
+    if (name.empty()) fail("--render {}: must be names of images, separated by commas", list);
+    names.emplace_back(name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -159,6 +221,10 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.estimated = path(texts.estimated);
   options.json = path(texts.json);
   options.error_cloud = path(texts.error_cloud);
+  options.error_mesh = path(texts.error_mesh);
+  options.rendered_views = names_of(texts.render);
+  options.render_folder = path(texts.render_folder);
+  options.photographs = path(texts.photographs);
   options.picture = path(texts.picture);
   options.aligned = path(texts.aligned);
   options.transform = path(texts.transform);

@@ -12,13 +12,13 @@ namespace axial::apps {
 
 struct Options {
   ParsedOptions parsed;
-  std::filesystem::path input, truth;
-  std::vector<double> tolerances;   // [m], at least one
-  std::string align = "none";       // none, centres, icp
-  bool allow_missing = false;       // no error if the housing gives no image a port
-  std::filesystem::path cameras;    // true COLMAP model; empty: none
-  std::filesystem::path housing;    // ports of `cameras`; empty: no ports
-  std::filesystem::path estimated;  // estimated COLMAP model; empty: none
+  std::filesystem::path input, truth;  // no truth: the input is only rendered
+  std::vector<double> tolerances;      // [m], at least one
+  std::string align = "none";          // none, centres, icp
+  bool allow_missing = false;          // no error if the housing gives no image a port
+  std::filesystem::path cameras;       // true COLMAP model; empty: none
+  std::filesystem::path housing;       // ports of `cameras`; empty: no ports
+  std::filesystem::path estimated;     // estimated COLMAP model; empty: none
   // The folders with the models of `cameras` and `estimated`; filled by the program.
   std::filesystem::path cameras_model, estimated_model;
   std::size_t samples = 200000;
@@ -29,9 +29,13 @@ struct Options {
   bool strip = false;        // evaluate the density along the strip of cameras
   double color_max = 0;      // error of the last colour [m]
   int picture_width = 1024;
-  std::string picture_camera;  // image name; empty: the first image
-  // Output files. An empty path: the file is not written.
-  std::filesystem::path json, error_cloud, picture, aligned, transform;
+  std::string picture_camera;               // image name; empty: the first image
+  std::vector<std::string> rendered_views;  // image names, or only "all"; empty: none
+  std::filesystem::path photographs;        // folder with the images; empty: no comparison
+  std::string render_type = "png";          // png, jpg
+  int render_samples = 3;                   // rays along each side of a pixel
+  // Output files, and the folder of rendered images. An empty path: not written.
+  std::filesystem::path json, error_cloud, error_mesh, picture, aligned, transform, render_folder;
 };
 
 // Parses and checks the command line. Error for an unknown option and for a wrong value.

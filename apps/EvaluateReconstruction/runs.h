@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The evaluation of a cloud or mesh (run_cloud), and of a depth map (run_depth_map). Both functions
-// print their tables, write the files that the options name, and return the content of the JSON
-// file.
+// The evaluation of a cloud or mesh, and of a depth map, and the rendering of a mesh without truth.
+// Each function prints its table, writes the files that the options name, and returns the content
+// of the JSON file.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,6 +11,7 @@
 namespace axial::apps {
 
 nlohmann::ordered_json run_cloud(const Options& options);
+nlohmann::ordered_json run_rendering(const Options& options);
 nlohmann::ordered_json run_depth_map(const Options& options);
 
 }  // namespace axial::apps

@@ -73,6 +73,21 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+// A ray without end.
+RTCRay ray_from(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3f from = origin.cast<float>(), along = direction.cast<float>();
+  RTCRay ray{};
+  ray.org_x = from.x();
+  ray.org_y = from.y();
+  ray.org_z = from.z();
+  ray.dir_x = along.x();
+  ray.dir_y = along.y();
+  ray.dir_z = along.z();
+  ray.tfar = std::numeric_limits<float>::infinity();
+  ray.mask = ~0u;
+  return ray;
+}
+
 }  // namespace
 
 void require_valid(const Mesh& mesh) {
@@ -106,6 +121,7 @@ Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
+  const ThreadLimit one_builder(1);
   rtcCommitScene(impl_->scene);
   check(impl_->device);
 }
@@ -136,22 +152,25 @@ Eigen::Vector3d Surface::face_normal(std::uint32_t face) const {
 }
 
 bool Surface::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip) const {
-  const Eigen::Vector3f origin = from.cast<float>();
-  const Eigen::Vector3f direction = (to - from).cast<float>();
-  RTCRay ray{};
-  ray.org_x = origin.x();
-  ray.org_y = origin.y();
-  ray.org_z = origin.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
+  RTCRay ray = ray_from(from, to - from);
   ray.tnear = static_cast<float>(skip);
   ray.tfar = 1;
-  ray.mask = ~0u;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene, &context, &ray);
   return ray.tfar < 0;
+}
+
+std::optional<SurfaceHit> Surface::first_hit(const Eigen::Vector3d& origin,
+                                             const Eigen::Vector3d& direction) const {
+  RTCRayHit query{};
+  query.ray = ray_from(origin, direction);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return SurfaceHit{query.hit.primID, query.hit.u, query.hit.v};
 }
 
 std::vector<float> distances_to(const Surface& surface, std::span<const Eigen::Vector3f> points) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle mesh for queries of distance and occlusion.
+// A triangle mesh for queries of distance and occlusion, and for rays.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,12 @@ struct ClosestPoint {
   Eigen::Vector3d point;  // in the frame of the mesh
   double distance;        // from the query to `point`
   std::uint32_t face;     // index of the face on which `point` lies; of several: the lowest
+};
+
+// The place where a ray meets the surface.
+struct SurfaceHit {
+  std::uint32_t face;  // index of the face
+  float u, v;          // barycentric weights of the face's second and third corner
 };
 
 // Error if a face refers to a vertex that does not exist, or if a coordinate is not finite.
@@ -46,6 +53,11 @@ class Surface {
   // the segment next to `from` does not count, so that a point on the surface does not hide itself.
   // `skip`: the length of this part divided by the length of the segment.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
+
+  // Returns the first place where the ray from `origin` along `direction` meets the surface, from
+  // either side; nothing if it does not meet the surface.
+  std::optional<SurfaceHit> first_hit(const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& direction) const;
 
  private:
   struct Impl;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY clouds and meshes.
+// PLY clouds and meshes, and textured meshes.
 #include "io/ply/ply.h"
 
 #include <algorithm>
@@ -48,6 +48,15 @@ void read_mesh_file(const fs::path& file) {
   require(again.faces == mesh.faces, "the copy has other faces");
 }
 
+TexturedMesh small_textured(std::size_t textures) {
+  TexturedMesh mesh;
+  mesh.mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 1}}};
+  mesh.uv = {{{{1, 1}, {3, 1}, {1, 3}}}, {{{1, 1}, {1, 3}, {3, 1}}}};
+  mesh.texture_of = {0, textures > 1 ? 1u : 0u};
+  mesh.textures.assign(textures, cv::Mat3b(4, 8, cv::Vec3b(1, 2, 3)));
+  return mesh;
+}
+
 // The textures are beside the file. Texture coordinates are rounded when they are written and read.
 void read_textured_file(const fs::path& file) {
   const cv::Mat3b texture(4, 8, cv::Vec3b(1, 2, 3));
@@ -64,6 +73,28 @@ void read_textured_file(const fs::path& file) {
   require(again.mesh.vertices == mesh.mesh.vertices, "the copy has other vertices");
   require(again.mesh.faces == mesh.mesh.faces, "the copy has other faces");
   require(again.texture_of == mesh.texture_of, "the copy has other texture numbers");
+}
+
+// The copy has its own order of vertices and faces.
+void read_glb_file(const fs::path& file) {
+  const auto read = [](const fs::path& path) { return io::read_textured_glb(path); };
+  const TexturedMesh mesh = read(file);
+  const TexturedMesh again =
+      read_copy(mesh, file, read, [](const fs::path& path, const TexturedMesh& value) {
+        io::write_textured_mesh(path, value, io::TexturedFormat::glb);
+      });
+  require(again.mesh.faces.size() == mesh.mesh.faces.size(), "the copy has other faces");
+}
+
+// The materials and textures are beside the file.
+void read_obj_file(const fs::path& file) {
+  const fs::path materials = file.parent_path() / "mesh.mtl";
+  if (!fs::exists(materials)) {
+    io::write_textured_mesh(file.parent_path() / "other.obj", small_textured(2),
+                            io::TexturedFormat::obj);
+    fs::rename(file.parent_path() / "other.mtl", materials);
+  }
+  io::read_textured_obj(file);
 }
 
 // Functions that read only a part of a file.
@@ -127,14 +158,10 @@ bool write_mesh_seed(const fs::path& file, int variant) {
   return variant < 3;
 }
 
+template <io::TexturedFormat kFormat>
 bool write_textured_seed(const fs::path& file, int variant) {
   const auto textures = static_cast<std::size_t>(variant + 1);
-  TexturedMesh mesh;
-  mesh.mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 1}}};
-  mesh.uv = {{{{1, 1}, {3, 1}, {1, 3}}}, {{{1, 1}, {1, 3}, {3, 1}}}};
-  mesh.texture_of = {0, textures > 1 ? 1u : 0u};
-  mesh.textures.assign(textures, cv::Mat3b(4, 8, cv::Vec3b(1, 2, 3)));
-  if (variant < 2) io::write_textured_mesh(file, mesh, io::TexturedFormat::ply);
+  if (variant < 2) io::write_textured_mesh(file, small_textured(textures), kFormat);
   return variant < 2;
 }
 
@@ -146,7 +173,12 @@ std::span<const Reader> ply_readers() {
       Reader{"ply-mesh", "mesh.ply", read_mesh_file, write_mesh_seed},
       Reader{"ply-parts", "cloud.ply", read_parts, write_cloud_seed},
       Reader{"ply-moved", "cloud.ply", move_file, write_cloud_seed},
-      Reader{"ply-textured", "mesh.ply", read_textured_file, write_textured_seed}};
+      Reader{"ply-textured", "mesh.ply", read_textured_file,
+             write_textured_seed<io::TexturedFormat::ply>},
+      Reader{"textured-glb", "mesh.glb", read_glb_file,
+             write_textured_seed<io::TexturedFormat::glb>},
+      Reader{"textured-obj", "mesh.obj", read_obj_file,
+             write_textured_seed<io::TexturedFormat::obj>}};
   return kReaders;
 }
 

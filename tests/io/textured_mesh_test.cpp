@@ -93,6 +93,93 @@ TEST_F(TexturedMeshTest, PlyIsReadAgain) {
   }
 }
 
+// The corners of a face: positions and texture coordinates. A GLB has other vertices than the mesh.
+void expect_same_faces(const TexturedMesh& mesh, const TexturedMesh& again) {
+  ASSERT_EQ(again.mesh.faces.size(), mesh.mesh.faces.size());
+  ASSERT_EQ(again.textures.size(), mesh.textures.size());
+  for (std::size_t f = 0; f < mesh.uv.size(); ++f) {
+    EXPECT_EQ(cv::norm(again.textures[again.texture_of[f]], mesh.textures[mesh.texture_of[f]],
+                       cv::NORM_INF),
+              0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(again.mesh.vertices[again.mesh.faces[f][k]],
+                mesh.mesh.vertices[mesh.mesh.faces[f][k]]);
+      EXPECT_LT((again.uv[f][k] - mesh.uv[f][k]).norm(), 1e-5) << f;
+    }
+  }
+}
+
+TEST_F(TexturedMeshTest, ObjAndGlbAreReadAgain) {
+  for (const std::size_t textures : {1u, 2u}) {
+    const TexturedMesh mesh = two_squares(textures);
+    write_textured_mesh(path_, mesh, TexturedFormat::obj);
+    const TexturedMesh obj = read_textured_mesh(folder_ / "a mesh.obj");
+    expect_same_faces(mesh, obj);
+    EXPECT_EQ(obj.mesh.vertices, mesh.mesh.vertices);
+    write_textured_mesh(path_, mesh, TexturedFormat::glb);
+    expect_same_faces(mesh, read_textured_mesh(folder_ / "a mesh.glb"));
+  }
+}
+
+TEST_F(TexturedMeshTest, TheExtensionOrTheHeaderTellsTexturedMeshes) {
+  write_textured_mesh(path_, two_squares(1), TexturedFormat::ply);
+  EXPECT_TRUE(is_textured_mesh(path_));
+  EXPECT_TRUE(is_textured_mesh("A.OBJ"));
+  EXPECT_TRUE(is_textured_mesh("a.glb"));
+  write_mesh_ply(path_, two_squares(1).mesh);
+  EXPECT_FALSE(is_textured_mesh(path_));
+}
+
+TEST_F(TexturedMeshTest, ObjOfOtherProgramsIsRead) {
+  io::write_png(folder_ / "t.png", cv::Mat3b(16, 32, cv::Vec3b(1, 2, 3)));
+  write_atomically(folder_ / "m.mtl", "# a comment\n\nnewmtl plain\nnewmtl wall\nmap_Kd t.png\n");
+  write_atomically(folder_ / "m.obj",
+                   "mtllib m.mtl\r\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\n"
+                   "vt 1 0\nvt 1 1 0\nvt 0 1\nvn 0 0 1\no quad\nusemtl wall\n"
+                   "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
+  const TexturedMesh mesh = read_textured_obj(folder_ / "m.obj");
+  using Face = std::array<std::uint32_t, 3>;
+  EXPECT_EQ(mesh.mesh.faces, (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.uv[1][2], Eigen::Vector2f(-0.5f, -0.5f));
+  const auto error = [&](const std::string& obj) {
+    write_atomically(folder_ / "m.obj", obj);
+    return test::error_of([&] { read_textured_obj(folder_ / "m.obj"); });
+  };
+  const std::string start = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\n";
+  EXPECT_THAT(error(start), HasSubstr("m.obj: the mesh has no faces"));
+  EXPECT_THAT(error(start + "f 1/1 2/1 3/1\n"), HasSubstr("line 6: the face has no material"));
+  EXPECT_THAT(error(start + "usemtl plain\n"), HasSubstr("line 6: there is no material 'plain'"));
+  EXPECT_THAT(error(start + "usemtl wall\nf 1/1 2/1 4/1\n"), HasSubstr("the vertex '4'"));
+  EXPECT_THAT(error(start + "usemtl wall\nf 1/1 2/1 -1/1\n"), HasSubstr("the vertex '-1'"));
+  EXPECT_THAT(error(start + "usemtl wall\nf 1/1 2/0 3/1\n"), HasSubstr("coordinate '0'"));
+  EXPECT_THAT(error(start + "usemtl wall\nf 1 2 3\n"), HasSubstr("no texture coordinate"));
+  EXPECT_THAT(error(start + "usemtl wall\nf 1/1 2/1\n"), HasSubstr("corner is missing"));
+  EXPECT_THAT(error("v 1 nan 0\n"), HasSubstr("line 1: a coordinate is 'nan'"));
+  EXPECT_THAT(error("mtllib none.mtl\n"), HasSubstr("none.mtl"));
+}
+
+TEST_F(TexturedMeshTest, WrongGlbIsRefused) {
+  write_textured_mesh(path_, two_squares(1), TexturedFormat::glb);
+  const std::string good = bytes("a mesh.glb");
+  const fs::path file = folder_ / "wrong.glb";
+  const auto error = [&](const std::string& glb) {
+    write_atomically(file, glb);
+    return test::error_of([&] { read_textured_glb(file); });
+  };
+  // Replaces text by text of the same length.
+  const auto with = [&](const std::string& from, std::string to) {
+    std::string changed = good;
+    to.resize(from.size(), ' ');
+    EXPECT_NE(changed.find(from), std::string::npos) << from;
+    return changed.replace(changed.find(from), from.size(), to);
+  };
+  for (std::size_t size = 0; size < good.size(); size += 37)
+    EXPECT_THAT(error(good.substr(0, size)), HasSubstr("wrong.glb")) << size;
+  EXPECT_THAT(error(with("\"mode\":4", "\"mode\":1")), HasSubstr("not made of triangles"));
+  EXPECT_THAT(error(with("TEXCOORD_0", "TEXCOORD_1")), HasSubstr("has no TEXCOORD_0"));
+  EXPECT_THAT(error(with("\"count\":12", "\"count\":99")), HasSubstr("end outside their"));
+}
+
 TEST_F(TexturedMeshTest, WrongPlyIsRefused) {
   write_textured_mesh(path_, two_squares(2), TexturedFormat::ply);
   const std::string good = bytes("a mesh.ply");
@@ -233,7 +320,12 @@ TEST_F(TexturedMeshTest, FarFromTheOriginPositionsStayLocal) {
   const TexturedMesh mesh = two_squares(1);
   for (const auto format : {TexturedFormat::ply, TexturedFormat::obj, TexturedFormat::glb})
     write_textured_mesh(path_, mesh, format, frame);
-  EXPECT_EQ(read_textured_ply(path_, frame).mesh.vertices, mesh.mesh.vertices);
+  for (const char* name : {"a mesh.ply", "a mesh.obj", "a mesh.glb"}) {
+    const TexturedMesh again = read_textured_mesh(folder_ / name, frame);
+    expect_same_faces(mesh, again);
+    const TexturedMesh moved = read_textured_mesh(folder_ / name, LocalFrame{{499990, 4e6, -20}});
+    EXPECT_EQ(moved.mesh.vertices[1], again.mesh.vertices[1] + Eigen::Vector3f(10, 0, 0)) << name;
+  }
   EXPECT_THAT(bytes("a mesh.obj"), HasSubstr("# geo_offset 500000 4000000 -20\n"));
   const Gltf gltf = parts_of_glb(bytes("a mesh.glb"));
   EXPECT_EQ(gltf.json["nodes"][0]["extras"]["geo_offset"][1], 4e6);

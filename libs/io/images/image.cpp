@@ -64,11 +64,15 @@ class Silence {
 };
 thread_local bool Silence::silent_ = false;
 
-std::string read_image_bytes(const fs::path& path) {
-  std::string bytes = read_file(path);
+void refuse_truncated(const std::string& bytes, const fs::path& path) {
   if (bytes.empty()) fail("{}: is empty, not an image", path.string());
   if (is_jpeg(bytes)) refuse_truncated_jpeg(bytes, path);
   if (is_png(bytes)) refuse_truncated_png(bytes, path);
+}
+
+std::string read_image_bytes(const fs::path& path) {
+  std::string bytes = read_file(path);
+  refuse_truncated(bytes, path);
   return bytes;
 }
 
@@ -209,6 +213,11 @@ Photograph read_photograph(const fs::path& path) {
 
 cv::Mat3b read_color_image(const fs::path& path) {
   return in_8_bits(read_photograph(path).pixels, 16);
+}
+
+cv::Mat3b decode_color_image(const std::string& bytes, const fs::path& name) {
+  refuse_truncated(bytes, name);
+  return in_8_bits(decode_photograph(bytes, name).pixels, 16);
 }
 
 ImageHeader read_image_header(const fs::path& path) {

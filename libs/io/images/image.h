@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <string>
 
 namespace axial::io {
 
@@ -53,6 +54,10 @@ cv::Mat3b in_8_bits(const cv::Mat& pixels, int bits);
 // Reads a photograph (read_photograph) and converts it to 8 bits. Of values of 16 bits, the upper 8
 // bits are kept. Transparency is ignored.
 cv::Mat3b read_color_image(const std::filesystem::path& path);
+
+// The same for an image file that is part of another file. `bytes` are the bytes of the image file.
+// Errors begin with `name`.
+cv::Mat3b decode_color_image(const std::string& bytes, const std::filesystem::path& name);
 
 // Reads a label image of 8 or 16 bits and returns its labels in 16 bits. The image must have one
 // channel or three equal channels. The alpha of a PNG is ignored. The labels of a PNG with a

@@ -61,4 +61,31 @@ void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& 
 TexturedMesh read_textured_ply(const std::filesystem::path& path,
                                const std::optional<LocalFrame>& frame = {});
 
+// Reads an OBJ, its MTL files and their textures. Faces with more than three corners are split into
+// a fan of triangles. Vertices keep their order. Positions are treated as in read_textured_ply; a
+// comment "# geo_offset X Y Z" states their origin. Error that names the file and the line for a
+// number that is malformed or not finite, an index out of range (indices count from 1 and must not
+// be negative), a corner without texture coordinate, or a face whose material has no texture
+// (map_Kd). Error for a mesh without faces and for a texture that cannot be read.
+TexturedMesh read_textured_obj(const std::filesystem::path& path,
+                               const std::optional<LocalFrame>& frame = {});
+
+// Reads a GLB. The triangles of all primitives of all meshes become one mesh, which has the
+// vertices of the file: where charts meet, a GLB has several vertices at the same position.
+// Positions are treated as in read_textured_ply; the key geo_offset in the extras of a node states
+// their origin. Error that names the file for a malformed file, a mesh without faces, a primitive
+// that is not made of triangles or has no position, texture coordinate or texture, a node with a
+// transformation, data outside the file, or a texture that cannot be read.
+TexturedMesh read_textured_glb(const std::filesystem::path& path,
+                               const std::optional<LocalFrame>& frame = {});
+
+// True if `path` names a textured mesh. Files with the extensions .obj and .glb, in upper or lower
+// case, count as textured meshes and are not opened. Other files are PLY, and textured if they have
+// a comment TextureFile. Error that names the file for a PLY with a malformed header.
+bool is_textured_mesh(const std::filesystem::path& path);
+
+// Reads a textured mesh by one of the three functions above, which the extension of `path` chooses.
+TexturedMesh read_textured_mesh(const std::filesystem::path& path,
+                                const std::optional<LocalFrame>& frame = {});
+
 }  // namespace axial::io

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "io/images/image.h"
 #include "private/bytes/byte_writer.h"
 #include "private/ply/ply_header.h"
+#include "private/textured/textured_readers.h"
 #include "private/textured/textured_writers.h"
 
 namespace axial::io {
@@ -76,8 +78,7 @@ void add_face(const FaceRow& row, std::size_t f, const std::string& file, Textur
   const cv::Size size = result.textures[texture].size();
   TexturedMesh::Corners uv;
   for (std::size_t k = 0; k < 3; ++k) {
-    uv[k] = {static_cast<float>(row.uv[2 * k] * size.width - 0.5),
-             static_cast<float>((1 - row.uv[2 * k + 1]) * size.height - 0.5)};
+    uv[k] = pixel_of({row.uv[2 * k], row.uv[2 * k + 1]}, size);
     if (!uv[k].allFinite()) fail("{}: face {} has a texcoord that is not finite", file, f);
   }
   result.uv.push_back(uv);
@@ -114,6 +115,20 @@ TexturedMesh read_textured_ply(const std::filesystem::path& path,
     result.textures.push_back(read_color_image(path.parent_path() / name));
   read_texture_coordinates(bytes, header, file, result);
   return result;
+}
+
+bool is_textured_mesh(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj" || extension == ".glb") return true;
+  return !parse_ply_header(read_file(path), path.string()).texture_files.empty();
+}
+
+TexturedMesh read_textured_mesh(const std::filesystem::path& path,
+                                const std::optional<LocalFrame>& frame) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj") return read_textured_obj(path, frame);
+  if (extension == ".glb") return read_textured_glb(path, frame);
+  return read_textured_ply(path, frame);
 }
 
 }  // namespace axial::io
