@@ -31,7 +31,8 @@ struct CleanReport {
 // Returns a copy of `mesh` that is edge- and vertex-manifold, oriented and free of
 // self-intersections. The steps, in this order:
 //
-//   1. repair of edges and vertices that are not manifold,
+//   1. repair of edges and vertices that are not manifold; of faces that repeat the corners of
+//      another face, one is kept,
 //   2. removal of spurious components,
 //   3. simplification,
 //   4. removal of spikes, and closing of holes,

@@ -4,6 +4,7 @@
 #include <CGAL/Polygon_mesh_processing/manifoldness.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 
 #include <vector>
 
@@ -30,7 +31,10 @@ HalfedgeMesh to_halfedges(const Mesh& mesh) {
   for (const auto& face : mesh.faces)
     if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0])
       faces.push_back({face[0], face[1], face[2]});
-  if (!pmp::is_polygon_soup_a_polygon_mesh(faces)) pmp::orient_polygon_soup(points, faces);
+  if (!pmp::is_polygon_soup_a_polygon_mesh(faces)) {
+    pmp::merge_duplicate_polygons_in_polygon_soup(points, faces);
+    pmp::orient_polygon_soup(points, faces);
+  }
   HalfedgeMesh result;
   pmp::polygon_soup_to_polygon_mesh(points, faces, result);
   pmp::duplicate_non_manifold_vertices(result);

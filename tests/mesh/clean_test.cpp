@@ -117,6 +117,20 @@ TEST(Clean, EdgesOfThreeFacesAndReversedFacesAreMended) {
   EXPECT_EQ(facts.bad_vertices, 0u);
 }
 
+// Two sheets at the same place would intersect each other, and both would be removed.
+TEST(Clean, RepeatedFacesAreDropped) {
+  const Mesh once = grid(4);
+  for (const bool reversed : {false, true}) {
+    Mesh twice = once;
+    for (const auto& [a, b, c] : once.faces)
+      twice.faces.push_back(reversed ? std::array{c, b, a} : std::array{b, c, a});
+    const Mesh cleaned = clean(twice, nothing());
+    EXPECT_EQ(cleaned.vertices.size(), once.vertices.size());
+    EXPECT_EQ(cleaned.faces.size(), once.faces.size());
+    EXPECT_EQ(test::facts_of(cleaned).bad_edges, 0u);
+  }
+}
+
 TEST(Clean, TwoSheetsThatTouchAtACornerArePulledApart) {
   // Two tetrahedra with a common corner.
   Mesh mesh;

@@ -15,8 +15,9 @@ namespace axial::mesh {
 using HalfedgeKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using HalfedgeMesh = CGAL::Surface_mesh<HalfedgeKernel::Point_3>;
 
-// Converts a mesh. Faces that name a vertex twice are dropped. Vertices are duplicated at an edge
-// where more than two faces or faces of different orientation meet.
+// Converts a mesh. Faces that name a vertex twice are dropped. If more than two faces or faces of
+// different orientation meet at an edge, one of all faces with the same three corners is kept, and
+// vertices are duplicated there.
 HalfedgeMesh to_halfedges(const Mesh& mesh);
 // Converts a mesh back. Removes vertices without faces from `mesh` first. The other vertices are
 // renumbered.
