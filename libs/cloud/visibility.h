@@ -8,14 +8,15 @@
 
 namespace axial::cloud {
 
-// Returns a score for each point of scene.points, in their order. The more other observations
-// support a point, the higher its score. The scores start at 0 and are changed for each point p and
-// each view of p in a calibrated image. The view defines a cone of rays through p with a diameter
-// of one pixel of this image. Let q be another point in the cone; depths are measured along the
-// rays. If the depth of q is more than 1 % larger than the depth of p, the score of q rises by the
-// number of views of q. If the depth of q is more than 1 % smaller, the score of q falls by the
-// number of views of p, because p is seen through q. Throws an Error for views of images that do
-// not exist.
+// Returns a score for each point of scene.points, in their order. Scores start at 0 and may become
+// negative. For each point p, each calibrated image that sees p, and each other point q of the
+// scene whose projection into the image is at most half a pixel from the projection of p, the
+// depths of p and q along their rays are compared. The image need not see q.
+// - If q is more than 1 % farther than p, the score of q rises by the number of views of q.
+// - If q is more than 1 % nearer than p, the score of q falls by the number of views of p, because
+//   the image sees p through q.
+// Points that do not project into an image are skipped there. Throws an Error for views of images
+// that do not exist.
 std::vector<long> visibility_of_points(const Scene& scene);
 
 // The size of a point in the images that see it.

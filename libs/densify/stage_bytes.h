@@ -41,7 +41,6 @@ struct StageBytes {
 
 // Returns the memory of each stage. `lists`: the result of longest_lists(). StageBytes::scene is
 // the memory that the process has allocated at the time of the call.
-
 StageBytes bytes_of_stages(const Project& project, const Settings& settings,
                            const ListLengths& lists);
 

@@ -52,7 +52,8 @@ struct RenderedView {
 // footprint of the pixel, as in a photograph. A ray has the exact path of light of the view's
 // camera: it begins where the light enters the water (behind a port, on the outer face of the
 // glass; in air, at the camera centre), and ends at the first face that it meets, from either side.
-// Light is not attenuated, and faces are not shaded. Error if Options::samples is out of range.
+// Light is not attenuated, and faces are not shaded. Error if RenderOptions::samples is out of
+// range.
 RenderedView render_mesh(const Surface& surface, const Coloring& coloring, const View& view,
                          const RenderOptions& options = {});
 

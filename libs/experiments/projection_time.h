@@ -42,10 +42,10 @@ struct MethodTime {
   int points = 0, missed = 0;
 };
 
-// Times all methods on random points, which do not depend on the method. "analytic" projects only
-// the first of them. Each point lies on the ray in water of a position in an image of width x
-// height pixels, 1 to 5 m from the ray's origin. The position is the true image of the point.
-// Returns the methods in the order "exact", "line_search_plain", "line_search_compact",
+// Times all methods on the same options.points random points. "analytic" projects only the first
+// options.analytic_points of these points. Each point lies on the ray in water of a position in an
+// image of width x height pixels, 1 to 5 m from the ray's origin. The position is the true image of
+// the point. Returns the methods in the order "exact", "line_search_plain", "line_search_compact",
 // "line_search_tight", "analytic".
 std::vector<MethodTime> time_projections(const CameraSetup& setup, int width, int height,
                                          Order order, const TimingOptions& options);

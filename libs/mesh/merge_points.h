@@ -35,15 +35,15 @@ struct MergedPoints {
 // equally many views the first in the cloud. A point p that is taken and not absorbed yet absorbs
 // itself, and each other point q that is not absorbed yet and satisfies three conditions:
 //
-// - In each view of p that sees p, the images of p and q are at most `min_distance` [px] apart.
-//   This is computed with the derivative of the image position at p.
+// - In each view of p in which the projection of p is visible, the images of p and q are at most
+//   `min_distance` [px] apart, to first order: the derivative of the image position at p is used.
 // - The distance from p to q in space is at most twice `min_distance` times the width [m/px] of a
 //   pixel at p in its sharpest view.
 // - If the cloud has normals, the normals of p and q differ by at most 60 degrees.
 //
 // The position of the result is the weighted mean of the absorbed points. The weight of a point is
 // the sum of its PointCloud::view_weights, or its number of views if the cloud has no weights.
-// Points that no view sees (their projection is not visible) are dropped, unless another point
+// Points whose projection is visible in none of their views are dropped, unless another point
 // absorbs them. The result is in the order of a space-filling curve, which depends only on the
 // positions. Preconditions: the cloud has views (view_begin is not empty), and the views are
 // calibrated images of the scene of `rays`.

@@ -21,8 +21,9 @@ struct Bend {
   std::array<double, 4> k{};
 };
 
-// A lens in air. Without distortion, the direction (x, y, z) has the pixel u = focal * x/z + cx, v
-// = focal * y/z + cy. Pixel centres are at integers. Camera axes: x right, y down, z forward.
+// A lens in air. Without distortion, the direction (x, y, z) has the pixel (u, v) with
+// u = focal * x/z + cx and v = focal * y/z + cy. Pixel centres are at integers. Camera axes: x
+// right, y down, z forward.
 struct Lens {
   int width = 0, height = 0;      // of the image [px]
   double focal = 0;               // [px]

@@ -18,8 +18,8 @@ namespace axial::io {
 std::filesystem::path geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Returns the frame whose origin the file beside the scene states; nothing if there is no file.
-// Error that names the file, the key and the value for an unknown or missing key, a version other
-// than 1, or an offset that is not three finite numbers.
+// Error that names the file if it cannot be read or is no JSON, and if it has an unknown, missing
+// or repeated key, a version other than 1, or an offset that is not three finite numbers.
 std::optional<LocalFrame> read_geo_offset_beside(const std::filesystem::path& scene_path);
 
 // Writes the origin of `frame` to the file beside the scene. If `frame` is the world, no file is

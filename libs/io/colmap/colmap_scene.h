@@ -56,8 +56,10 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
 // "none".
 Housing housing_of(std::span<const ColmapCamera> cameras);
 
-// Reads a housing file (read_housing in housing.h) and returns it with entries for the images of
-// `model`, as for_images() makes them. Errors as for these two functions.
+// Reads a housing file (read_housing() in housing.h) and resolves its entries for the images of
+// `model` (for_images() in housing.h): port_of() of the result finds the right port of each image,
+// also if the whole name of one image is the end of another name. Errors as for these two
+// functions.
 Housing read_housing(const std::filesystem::path& path, const ColmapModel& model);
 
 // Returns a housing that gives every image the same port as `housing`, but has only entries by
