@@ -2,8 +2,10 @@
 // Files of textured meshes: PLY as OpenMVS and MeshLab write it, OBJ with MTL, and glTF 2.0.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -46,6 +48,11 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 // a coordinate is not finite, if a GLB would be larger than 4 GiB, or if a file cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
+
+// An upper bound of the memory [bytes] that write_textured_mesh() needs besides the mesh and its
+// textures.
+std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t vertices,
+                                      std::uint64_t faces, std::span<const cv::Size> textures);
 
 // Reads a textured PLY and the textures beside it. With and without `frame`, positions are treated
 // as in the two functions read_mesh_ply. Error that names the file for a file without a comment
