@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace axial {
 
@@ -11,6 +12,18 @@ namespace axial {
 // the limit of the container (cgroup, version 1 or 2). `root`: the folder that contains the folders
 // proc and sys; tests give another one. Throws an Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
+
+inline constexpr std::uint64_t kMegabyte = 1'000'000;  // of options in megabytes
+
+// The bytes that a program may use: `megabytes` megabytes, or 70 % of the available memory if
+// `megabytes` is 0. `setting`: the name of `megabytes` in messages. Error if `megabytes` is 0 and
+// the system does not report how much memory is available.
+std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
+
+// Error if `bytes` is more than `limit`. The message is one line. It begins with `setting`, the
+// name of the limit, and tells how many megabytes `work` needs.
+void require_memory(std::uint64_t bytes, std::uint64_t limit, const std::string& setting,
+                    const std::string& work);
 
 // The bytes of this process that are in memory now, including its code and its libraries. The
 // number differs by some pages from run to run.

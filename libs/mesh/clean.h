@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "scene/mesh.h"
 
@@ -41,5 +42,9 @@ struct CleanReport {
 // faces that name a vertex twice, if no face is left, or if remeshing would make more than 2^28
 // faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
+
+// An estimate of the memory [bytes] of clean() with its result, besides `mesh`, if the mesh is not
+// remeshed to more vertices.
+std::uint64_t bytes_to_clean(std::uint64_t vertices);
 
 }  // namespace axial::mesh
