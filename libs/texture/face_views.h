@@ -9,6 +9,7 @@
 
 #include "base/progress.h"
 #include "scene/mesh.h"
+#include "texture/memory.h"
 #include "texture/views.h"
 
 namespace axial::texture {
@@ -41,6 +42,11 @@ struct VisibilityOptions {
   double tolerance = 1e-3;
 };
 
+struct ViewMemory {
+  Budget budget;                  // of find_face_views() with its result, besides the mesh
+  std::uint64_t image_bytes = 0;  // of ImageSource while it makes an image, with the image
+};
+
 // Finds for each face the views that see all of the face (Sight::whole). The conditions are:
 //   1. The face is turned towards the camera.
 //   2. The corners are inside the image. Corners are projected by the exact camera.
@@ -57,9 +63,11 @@ struct VisibilityOptions {
 // cosine of the angle between the smoothed normal and the path of light from the middle of the
 // face. The quality is the area of the face in the image [px^2] times max(0.001, c)^2.
 //
-// Calls progress(done, total) with numbers of views. Errors of Occluders and of
-// `images` are passed on.
+// Calls progress(done, total) with numbers of views. As many views are in work at the same time as
+// there are threads, or fewer if `memory.budget` demands it. Errors of Occluders and of `images`
+// are passed on. Error if the budget does not suffice for one view, or for the result.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
-                          const VisibilityOptions& options = {}, const ProgressSink& progress = {});
+                          const VisibilityOptions& options = {}, const ProgressSink& progress = {},
+                          const ViewMemory& memory = {});
 
 }  // namespace axial::texture

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
+#include <vector>
 
+#include "base/setting_names.h"
 #include "scene/textured_mesh.h"
 #include "texture/face_views.h"
 #include "texture/labels.h"
@@ -13,6 +16,12 @@
 #include "texture/split_faces.h"
 
 namespace axial::texture {
+
+// The size of a textured mesh.
+struct ResultSize {
+  std::size_t vertices = 0, faces = 0;
+  std::vector<cv::Size> textures;
+};
 
 struct Options {
   SplitOptions split;
@@ -23,6 +32,16 @@ struct Options {
   PackingOptions packing;
   double sharpness_weight = 0;    // see paint()
   Rgb empty_color{255, 127, 39};  // of faces that no view sees, and between the charts
+  // The memory [bytes] that texture_mesh() may use besides `mesh`. The need is estimated by
+  // functions of the stages' headers. This limit affects the time, but not the result. 0: no limit.
+  std::uint64_t max_bytes = 0;
+  // The largest memory [bytes] that `images` needs while it makes an image, with the image.
+  std::uint64_t image_bytes = 0;
+  // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An
+  // empty function: none.
+  std::function<std::uint64_t(const ResultSize&)> bytes_to_write;
+  // Errors name the field max_bytes by name_of("max_memory").
+  SettingNames name_of = own_name;
 };
 
 struct Report {
@@ -43,7 +62,8 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 // indices, and the vertices that splitting adds follow. `report`, if given, is filled.
 //
 // Error for a mesh without faces, with a vertex index out of range or with a coordinate that is not
-// finite. Error if no view sees any face. Errors of `images` and of pack() are passed on.
+// finite. Error if no view sees any face, and if max_bytes does not suffice for a stage. Errors of
+// `images` and of pack() are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const StageProgress& progress = {});
