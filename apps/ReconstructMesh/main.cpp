@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -7,6 +9,7 @@
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/obj/mesh_file.h"
+#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "options.h"
 #include "scene/region.h"
@@ -15,6 +18,9 @@ namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The memory of the program itself: code and libraries, stacks, small blocks.
+constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
 
 // As in OpenMVS: the cloud beside the scene is taken if none is named.
 fs::path cloud_file(const Options& options) {
@@ -37,13 +43,14 @@ void check_outputs(const Options& options) {
   require_writable(options.output);
 }
 
-std::uint64_t memory_limit(const Options& options) {
-  if (options.max_memory > 0) return options.max_memory * 1'000'000;
-  try {
-    return available_memory() / 10 * 7;
-  } catch (const Error& error) {
-    fail("{}; give --max-memory", error.what());
-  }
+// Error if `work`, which takes `bytes` bytes, exceeds the memory that is allowed.
+void check_memory(const std::string& work, std::uint64_t bytes, const Options& options) {
+  require_memory(std::max(resident_memory(), kProgramBytes) + bytes,
+                 memory_limit(options.max_memory, "--max-memory"), "--max-memory", work);
+}
+
+void check_memory_to_read(const fs::path& file, std::uint64_t bytes, const Options& options) {
+  check_memory("reading " + file.string(), bytes, options);
 }
 
 // Calls `work`. Its errors get the name of `file`.
@@ -58,6 +65,7 @@ auto naming(const fs::path& file, Work&& work) {
 
 Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
   const fs::path file = cloud_file(options);
+  if (!file.empty()) check_memory_to_read(file, io::bytes_to_read_cloud(file), options);
   PointCloud cloud =
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
   const fs::path& source = file.empty() ? options.scene.scene : file;
@@ -68,7 +76,10 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
 }
 
 Mesh clean_given(const io::SceneWithCameras& scene, const Options& options) {
+  check_memory_to_read(options.mesh, io::bytes_to_read_mesh(options.mesh), options);
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
+  check_memory("cleaning " + options.mesh.string(), mesh::bytes_to_clean(mesh.vertices.size()),
+               options);
   return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
 }
 
@@ -83,9 +94,11 @@ int run(int argc, char** argv) {
   share_one_heap();
   const ThreadLimit threads(options.parsed.common.max_threads);
   check_outputs(options);
+  if (const auto counts = io::count_mvs(options.scene.scene))
+    check_memory_to_read(options.scene.scene, counts->reading_bytes(), options);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.scene);
   if (scene.scene.region) scene.scene.region = with_border(*scene.scene.region, options.roi_border);
-  options.reconstruct.max_bytes = memory_limit(options);
+  options.reconstruct.max_bytes = memory_limit(options.max_memory, "--max-memory");
   write(options.output,
         options.mesh.empty() ? reconstruct(scene, options) : clean_given(scene, options),
         scene.frame);

@@ -129,7 +129,7 @@ void warn_of_no_effect(const Options& options) {
   if (options.mesh.empty()) return;
   for (const char* name :
        {"pointcloud-file", "min-point-distance", "integrate-only-roi", "constant-weight",
-        "free-space-support", "thickness-factor", "quality-factor", "max-memory"})
+        "free-space-support", "thickness-factor", "quality-factor"})
     if (given(options.parsed, name))
       log_warning("--{}: without effect with --mesh-file, which is only cleaned", name);
 }

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
+#include "densify/fingerprint.h"
 #include "densify/image_store.h"
 #include "densify/memory_limit.h"
 #include "densify/project.h"
@@ -15,11 +16,17 @@
 #include "io/obj/mesh_file.h"
 #include "io/openmvs/point_source.h"
 #include "options.h"
+#include "refine/state_file.h"
 
 namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Where the state of a run is kept until the run is complete.
+fs::path state_file(const Options& options) {
+  return fs::path(options.output) += ".state";
+}
 
 void check_outputs(const Options& options, const densify::Project& project) {
   std::vector<fs::path> inputs{options.scene.input, densify::housing_file(options.scene),
@@ -27,8 +34,10 @@ void check_outputs(const Options& options, const densify::Project& project) {
                                io::geo_offset_beside(options.scene.input), options.mesh};
   for (const SceneImage& image : project.scene.images) inputs.emplace_back(image.path);
   for (const densify::View& view : project.views) inputs.push_back(view.mask);
-  require_not_an_input(options.output, inputs, "--output-file");
-  require_writable(options.output);
+  for (const fs::path& output : {options.output, state_file(options)}) {
+    require_not_an_input(output, inputs, "--output-file");
+    require_writable(output);
+  }
 }
 
 // Calls `work`. Its errors get the name of `file`, unless they name an option.
@@ -43,7 +52,14 @@ auto naming(const fs::path& file, Work&& work) {
   }
 }
 
+// Error if `work`, which takes `bytes` bytes, exceeds the memory that is allowed.
+void check_memory(const std::string& work, std::uint64_t bytes, const Options& options) {
+  require_memory(std::max(resident_memory(), densify::kProgramBytes) + bytes,
+                 densify::memory_limit(options.scene), "--max-memory", work);
+}
+
 Mesh read_mesh(const Options& options, const LocalFrame& frame) {
+  check_memory("reading " + options.mesh.string(), io::bytes_to_read_mesh(options.mesh), options);
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
@@ -51,6 +67,8 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame) {
   if (options.decimate == 1) return mesh;
   mesh::CleanOptions fewer = options.cleaning;
   fewer.decimate = options.decimate;
+  check_memory("decimating " + options.mesh.string(), mesh::bytes_to_clean(mesh.vertices.size()),
+               options);
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
@@ -85,23 +103,46 @@ Shares share_out_memory(const Options& options, const densify::Project& project)
   return shares;
 }
 
-void refine_mesh(Mesh& mesh, const densify::Project& project, const Options& options) {
+// The state after the last resolution that an earlier run with the same input finished, or a state
+// that begins with `mesh`.
+refine::State first_state(Mesh mesh, const Options& options, const std::string& fingerprint) {
+  const fs::path file = state_file(options);
+  if (auto state = refine::read_state(file, fingerprint)) {
+    log_info("{}: {} of {} resolutions are done already", file.string(), state->done,
+             options.refine.scales);
+    return std::move(*state);
+  }
+  refine::State state;
+  state.mesh = std::move(mesh);
+  return state;
+}
+
+Mesh refine_mesh(Mesh mesh, const densify::Project& project, const Options& options) {
+  const fs::path file = state_file(options);
+  const std::string fingerprint = refine::fingerprint(
+      mesh, options.refine, densify::fingerprint_of_views(project, options.scene));
+  refine::State state = first_state(std::move(mesh), options, fingerprint);
+  return_freed_memory();
   const Shares shares = share_out_memory(options, project);
   densify::ImageStore images(project, options.scene, shares.images);
   images.check_all(1);
   refine::Options settings = options.refine;
   settings.max_bytes = shares.for_refinement;
-  const refine::Report report = naming(options.mesh, [&] {
-    return refine::refine(
-        mesh, views_of(project),
+  settings.bytes_afterwards = mesh::bytes_to_clean(1);
+  naming(options.mesh, [&] {
+    refine::refine(
+        state, views_of(project),
         [&](std::size_t view) {
           const auto image = images.get(view);
           return refine::Picture{image->grey, image->mask};
         },
-        settings, console_progress("Refined"));
+        settings, console_progress("Refined"),
+        [&](const refine::State& now) { refine::write_state(file, now, fingerprint); });
   });
+  const refine::Report& report = state.report;
   log_info("{} vertices measured in {} pairs of images; median displacement {:.3g} m",
            report.measured, report.pairs, report.moved);
+  return std::move(state.mesh);
 }
 
 void write(const fs::path& file, const Mesh& mesh, const LocalFrame& frame) {
@@ -119,10 +160,11 @@ int run(int argc, char** argv) {
   const densify::Project project = densify::load_scene_and_headers(options.scene);
   check_outputs(options, project);
   Mesh mesh = read_mesh(options, project.frame);
-  refine_mesh(mesh, project, options);
+  mesh = refine_mesh(std::move(mesh), project, options);
   return_freed_memory();
   mesh = naming(options.mesh, [&] { return mesh::clean(mesh, options.cleaning); });
   write(options.output, mesh, project.frame);
+  fs::remove(state_file(options), ignored);
   return 0;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gives a mesh textures from the photographs of a scene.
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -10,6 +12,7 @@
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
+#include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "photographs.h"
 #include "settings.h"
@@ -19,7 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The memory of the program itself: code and libraries, stacks, small blocks.
+constexpr std::uint64_t kProgramBytes = 64 * kMegabyte;
+
+// Error if reading `file`, which takes `bytes` bytes, exceeds the memory that is allowed.
+void check_memory_to_read(const fs::path& file, std::uint64_t bytes, const Settings& settings) {
+  require_memory(std::max(resident_memory(), kProgramBytes) + bytes,
+                 memory_limit(settings.max_memory, "--max-memory"), "--max-memory",
+                 "reading " + file.string());
+}
+
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
+  check_memory_to_read(settings.mesh, io::bytes_to_read_mesh(settings.mesh), settings);
   Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
@@ -53,11 +67,31 @@ void require_writable_outputs(const Settings& settings) {
       require_writable(file);
 }
 
+// The options of texture_mesh(), with what is left of the memory after the input was read.
+texture::Options with_memory(const Settings& settings, const Photographs& photographs) {
+  texture::Options options = settings.texture;
+  const std::uint64_t limit = memory_limit(settings.max_memory, "--max-memory");
+  const std::uint64_t used = std::max(resident_memory(), kProgramBytes);
+  options.max_bytes = limit > used ? limit - used : 1;
+  options.image_bytes = photographs.bytes_to_load();
+  options.bytes_to_write = [&settings](const texture::ResultSize& size) {
+    std::uint64_t bytes = 0;
+    for (const io::TexturedFormat format : settings.formats)
+      bytes = std::max(
+          bytes, io::bytes_to_write_textured(format, size.vertices, size.faces, size.textures));
+    return bytes;
+  };
+  return options;
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
+  share_one_heap();
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
+  if (const auto counts = io::count_mvs(settings.scene.scene))
+    check_memory_to_read(settings.scene.scene, counts->reading_bytes(), settings);
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
   const Photographs photographs(scene.scene, settings);
@@ -65,11 +99,13 @@ int run(int argc, char** argv) {
   require_writable_outputs(settings);
   const LocalFrame frame = scene.frame;
   scene = {};
+  return_freed_memory();
   texture::Report facts;
   const TexturedMesh textured = texture::texture_mesh(
       std::move(mesh), photographs.views(),
-      [&](std::size_t view) { return photographs.load(view); }, settings.texture, &facts,
-      [](const std::string& stage) { return console_progress(stage); });
+      [&](std::size_t view) { return photographs.load(view); }, with_memory(settings, photographs),
+      &facts, [](const std::string& stage) { return console_progress(stage); });
+  return_freed_memory();
   report(textured, facts);
   keep_inputs(settings, photographs, textured.textures.size());
   for (const io::TexturedFormat format : settings.formats) {

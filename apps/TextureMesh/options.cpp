@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/not_built.h"
+#include "base/setting_names.h"
 #include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
@@ -24,6 +25,12 @@ struct Raw {
   int packing_heuristic = 3;
 };
 
+constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"}};
+
+std::string option_of(std::string_view setting) {
+  return name_in(kOptions, setting);
+}
+
 std::vector<NotBuilt> not_built() {
   return {{"decimate", "1", {"1", "1.0"}},
           {"close-holes", "30", {"30"}},
@@ -42,6 +49,8 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("output-file,o", &raw.output, "textured mesh to write (<input>_texture)")
       .add_with_default("export-type", &raw.export_type,
                         "formats to write, separated by commas: ply, obj, glb, gltf")
+      .add_with_default("max-memory", &settings.max_memory,
+                        "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("resolution-level", &raw.resolution_level,
                         "how many times the images are halved")
       .add_with_default("min-resolution", &settings.resolution.min,
@@ -95,6 +104,7 @@ void check_values(const Raw& raw, const Settings& settings) {
     check_range("max-texture-size", settings.texture.packing.max_size, 16, 32768);
   check_range("texture-size-multiple", settings.texture.packing.multiple, 0,
               settings.texture.packing.max_size == 0 ? 32768 : settings.texture.packing.max_size);
+  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   check_range("empty-color", raw.empty_color, 0u, 0xFFFFFFu);
   io::check_bit_depth(settings.bit_depth, "--bit-depth");
 }
@@ -137,6 +147,7 @@ void convert(const Raw& raw, Options& options) {
   settings.formats = formats_of(raw.export_type);
   take_paths(options.parsed.common, raw, settings);
   settings.resolution.level = raw.resolution_level;
+  settings.texture.name_of = option_of;
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
   const int label = masks_given ? 0 : raw.ignore_mask_label;
   settings.masks = label >= 0    ? MaskChoice::label

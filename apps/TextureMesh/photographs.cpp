@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photographs.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <string>
+#include <unordered_map>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -20,29 +22,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The images that a line of the views file names: an ID, a path or the name of a file.
-std::vector<std::size_t> named_by(std::string_view line, const Scene& scene) {
-  std::vector<std::size_t> found;
-  const auto id = parse_number<std::uint32_t>(line);
-  for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    const SceneImage& image = scene.images[i];
-    const std::uint32_t own = image.id == kNoId ? static_cast<std::uint32_t>(i) : image.id;
-    const fs::path path = image.path;
-    if ((id && *id == own) || path == line || path.filename() == line || path.stem() == line)
-      found.push_back(i);
+// The images by the words that name them in a views file: the ID, the path, and the name of the
+// file with and without extension.
+class ImageWords {
+ public:
+  explicit ImageWords(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.images.size(); ++i) {
+      const SceneImage& image = scene.images[i];
+      const fs::path path = image.path;
+      ids_[image.id == kNoId ? static_cast<std::uint32_t>(i) : image.id].push_back(i);
+      for (const fs::path& name : {path, path.filename(), path.stem()})
+        names_[name.string()].push_back(i);
+    }
   }
-  return found;
-}
+
+  std::set<std::size_t> named_by(const std::string& word) const {
+    std::set<std::size_t> found;
+    if (const auto named = names_.find(word); named != names_.end())
+      found.insert(named->second.begin(), named->second.end());
+    const auto id = parse_number<std::uint32_t>(word);
+    if (const auto with_id = id ? ids_.find(*id) : ids_.end(); with_id != ids_.end())
+      found.insert(with_id->second.begin(), with_id->second.end());
+    return found;
+  }
+
+ private:
+  std::unordered_map<std::string, std::vector<std::size_t>> names_;
+  std::unordered_map<std::uint32_t, std::vector<std::size_t>> ids_;
+};
 
 std::set<std::size_t> images_in(const fs::path& file, const Scene& scene) {
   std::set<std::size_t> images;
+  const ImageWords words(scene);
   const std::string text = read_file(file, 1 << 24);
   std::size_t number = 0;
   for (std::string_view line : split(text, '\n')) {
     ++number;
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
     if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::size_t> named = named_by(line, scene);
+    const std::set<std::size_t> named = words.named_by(std::string(line));
     if (named.empty())
       fail("{}: line {}: no image has the ID or the name {}", file.string(), number, line);
     images.insert(named.begin(), named.end());
@@ -73,11 +91,10 @@ Photographs::Photographs(const Scene& scene, const Settings& settings)
     : choice_(settings.masks), label_(settings.mask_label) {
   std::set<std::size_t> wanted;
   if (!settings.views_file.empty()) wanted = images_in(settings.views_file, scene);
-  std::vector<io::ImageHeader> headers;
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
     if (!image.calibrated || (!settings.views_file.empty() && !wanted.contains(i))) continue;
-    const io::ImageHeader& header = headers.emplace_back(io::read_image_header(image.path));
+    const io::ImageHeader& header = headers_.emplace_back(io::read_image_header(image.path));
     if (!same_shape(header.size, {image.camera.width, image.camera.height}))
       fail("{}: is {}x{}, but its camera is {}x{}", image.path, header.size.width,
            header.size.height, image.camera.width, image.camera.height);
@@ -87,7 +104,7 @@ Photographs::Photographs(const Scene& scene, const Settings& settings)
     views_.push_back({image.camera.resized(size.width, size.height), image.pose});
   }
   if (views_.empty()) fail("{}: has no calibrated image to use", settings.scene.scene.string());
-  bit_depth_ = io::common_bit_depth(files_, headers, settings.bit_depth, "--bit-depth");
+  bit_depth_ = io::common_bit_depth(files_, headers_, settings.bit_depth, "--bit-depth");
   masks_.resize(views_.size());
   if (choice_ == MaskChoice::label) find_masks(scene, settings);
 }
@@ -111,6 +128,23 @@ std::vector<fs::path> Photographs::files() const {
   std::vector<fs::path> all = files_;
   all.insert(all.end(), masks_.begin(), masks_.end());
   return all;
+}
+
+std::uint64_t Photographs::bytes_to_load() const {
+  std::uint64_t largest = 0;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    const io::ImageHeader& header = headers_[v];
+    const auto stored = static_cast<std::uint64_t>(header.size.width) *
+                        static_cast<std::uint64_t>(header.size.height);
+    const auto used = static_cast<std::uint64_t>(views_[v].camera.width) *
+                      static_cast<std::uint64_t>(views_[v].camera.height);
+    // While the photograph is decoded and converted to 8 bits; while its black border is found, or
+    // while its labels are decoded and resized.
+    const std::uint64_t decoded = io::bytes_needed(header) + (header.bits > 8 ? 3 * stored : 0);
+    const std::uint64_t marked = 4 * used + (masks_[v].empty() ? 0 : 6 * stored);
+    largest = std::max(largest, 4 * used + std::max(decoded, marked));
+  }
+  return largest;
 }
 
 texture::ViewImage Photographs::load(std::size_t view) const {

@@ -2,9 +2,11 @@
 // The photographs that give the mesh its colours, with their masks.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
+#include "io/images/image.h"
 #include "settings.h"
 #include "texture/views.h"
 
@@ -23,6 +25,9 @@ class Photographs {
   // The files that are read: photographs and masks.
   std::vector<std::filesystem::path> files() const;
 
+  // The largest memory [bytes] of load() for a view, with the result.
+  std::uint64_t bytes_to_load() const;
+
   // The photograph of a view. May be called concurrently. Error if a file cannot be read.
   texture::ViewImage load(std::size_t view) const;
 
@@ -34,6 +39,7 @@ class Photographs {
   int bit_depth_ = 8;
   std::vector<std::size_t> images_;  // index into Scene::images, one per view
   std::vector<std::filesystem::path> files_, masks_;
+  std::vector<io::ImageHeader> headers_;
   std::vector<texture::View> views_;
 };
 

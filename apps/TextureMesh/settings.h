@@ -3,6 +3,7 @@
 // for refraction. Only --sharpness-weight has another default.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct Settings {
   MaskChoice masks = MaskChoice::black_border;
   int mask_label = 0;
   int bit_depth = 0;
+  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
   ResolutionOptions resolution{0, 640, 1 << 20};
   texture::Options texture;
 };

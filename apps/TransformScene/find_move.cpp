@@ -60,11 +60,10 @@ struct Known {
 Known read_known(const Options& options, const Scene& scene) {
   Known known;
   std::set<std::size_t> seen;
-  const auto is_image = [&](const std::string& name) {
-    return !evaluate::images_named(scene, name).empty();
-  };
+  const evaluate::ImageNames names(scene);
+  const auto is_image = [&](const std::string& name) { return !names.named(name).empty(); };
   for (const io::NamedPosition& one : io::read_positions(options.positions, is_image)) {
-    const std::vector<std::size_t> images = evaluate::images_named(scene, one.name);
+    const std::span<const std::size_t> images = names.named(one.name);
     if (images.empty()) {
       log_warning("{}:{}: the scene has no image '{}'", options.positions.string(), one.line,
                   one.name);

@@ -72,6 +72,22 @@ std::uint64_t available_memory(const fs::path& root) {
   return std::min(*available, container_limit(root));
 }
 
+std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting) {
+  if (megabytes > 0) return megabytes * kMegabyte;
+  try {
+    return available_memory() / 10 * 7;
+  } catch (const Error& error) {
+    fail("{}; give {}", error.what(), setting);
+  }
+}
+
+void require_memory(std::uint64_t bytes, std::uint64_t limit, const std::string& setting,
+                    const std::string& work) {
+  if (bytes > limit)
+    fail("{}: {} MB are too little, {} needs {} MB", setting, limit / kMegabyte, work,
+         bytes / kMegabyte + 1);
+}
+
 std::uint64_t resident_memory() {
   std::ifstream in("/proc/self/statm");
   std::uint64_t total = 0, resident = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace axial {
 
@@ -14,6 +15,18 @@ namespace axial {
 // folder that contains the folders proc and sys. Tests pass another folder than "/". Throws an
 // Error if the system does not report MemAvailable.
 std::uint64_t available_memory(const std::filesystem::path& root = "/");
+
+inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in megabytes [bytes]
+
+// The bytes that a program may use: `megabytes` megabytes, or 70 % of available_memory() if
+// `megabytes` is 0. `setting`: the name of `megabytes` in messages. Throws an Error if `megabytes`
+// is 0 and the system does not report how much memory is available.
+std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
+
+// Throws an Error if `bytes` is more than `limit`. The message is one line. It begins with
+// `setting`, the name of the limit, and tells how many megabytes `work` needs.
+void require_memory(std::uint64_t bytes, std::uint64_t limit, const std::string& setting,
+                    const std::string& work);
 
 // The bytes of this process that are in memory now (resident set), including its code and its
 // libraries. The number differs by some pages from run to run.

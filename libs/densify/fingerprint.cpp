@@ -152,7 +152,28 @@ std::vector<std::string> content_of_files(const Project& project) {
   return prints;
 }
 
+// Camera, pose and pixels of a view. `content`: of content_of_files().
+void add_view(Fingerprint& print, const Project& project, std::size_t i,
+              const std::string& content) {
+  const View& view = project.views[i];
+  print.add(std::uint64_t{view.id});
+  add_camera(print, view.camera);
+  for (const double value : view.pose.rotation.reshaped()) print.add(value);
+  for (const double value : view.pose.centre) print.add(value);
+  print.add(content);
+  if (view.file.bits > 8) print.add(static_cast<std::uint64_t>(project.bit_depth));
+  if (view.file.alpha) print.add("transparent pixels are masked");
+}
+
 }  // namespace
+
+std::string fingerprint_of_views(const Project& project, const Settings& settings) {
+  Fingerprint print;
+  print.add("AxialMVS views 1").add(static_cast<std::uint64_t>(settings.ignore_mask_label));
+  const std::vector<std::string> contents = content_of_files(project);
+  for (std::size_t i = 0; i < contents.size(); ++i) add_view(print, project, i, contents[i]);
+  return print.hex();
+}
 
 std::string fingerprint(const Project& project, const Settings& settings) {
   Fingerprint print;
@@ -162,14 +183,7 @@ std::string fingerprint(const Project& project, const Settings& settings) {
   if (const std::string changed = changed_numbers(settings); !changed.empty()) print.add(changed);
   const std::vector<std::string> contents = content_of_files(project);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
-    const View& view = project.views[i];
-    print.add(std::uint64_t{view.id});
-    add_camera(print, view.camera);
-    for (const double value : view.pose.rotation.reshaped()) print.add(value);
-    for (const double value : view.pose.centre) print.add(value);
-    print.add(contents[i]);
-    if (view.file.bits > 8) print.add(static_cast<std::uint64_t>(project.bit_depth));
-    if (view.file.alpha) print.add("transparent pixels are masked");
+    add_view(print, project, i, contents[i]);
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {
       print.add(static_cast<std::uint64_t>(list->size()));
       for (const ViewScore& neighbour : *list) print.add(std::uint64_t{neighbour.image});

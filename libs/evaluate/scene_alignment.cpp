@@ -126,12 +126,20 @@ SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const Im
   return result;
 }
 
-std::vector<std::size_t> images_named(const Scene& scene, const std::string& name) {
-  const std::size_t length = components_from_the_end(name).size();
-  std::vector<std::size_t> images;
-  for (const std::size_t i : calibrated(scene))
-    if (common_end(name, scene.images[i].path) == length) images.push_back(i);
-  return images;
+ImageNames::ImageNames(const Scene& scene) {
+  for (const std::size_t i : calibrated(scene)) {
+    fs::path end;
+    for (const std::string& component : components_from_the_end(scene.images[i].path)) {
+      end = end.empty() ? fs::path(component) : fs::path(component) / end;
+      images_[end.string()].push_back(i);
+    }
+  }
+}
+
+std::span<const std::size_t> ImageNames::named(const std::string& name) const {
+  const auto found = images_.find(fs::path(name).lexically_normal().string());
+  if (found == images_.end()) return {};
+  return found->second;
 }
 
 }  // namespace axial::evaluate

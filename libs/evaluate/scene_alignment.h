@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -56,8 +57,21 @@ SceneAlignment align_scenes(const Scene& scene, const Scene& reference, const Im
 SceneAlignment align_to_positions(const Scene& scene, std::span<const std::size_t> images,
                                   std::span<const Eigen::Vector3d> positions, bool with_scale);
 
-// Returns the indices of the calibrated images whose path ends in the path `name`, in ascending
-// order. Whole folder and file names are compared. An empty `name` gives all calibrated images.
-std::vector<std::size_t> images_named(const Scene& scene, const std::string& name);
+// Finds the calibrated images of a scene by the ends of their paths. The time of a search does not
+// depend on the number of images.
+class ImageNames {
+ public:
+  // The scene may change or end after the constructor.
+  explicit ImageNames(const Scene& scene);
+
+  // Returns the indices of the calibrated images whose path ends in the path `name`, in ascending
+  // order. Whole folder and file names are compared. An empty name is the end of no path. The
+  // result is valid as long as the object.
+  std::span<const std::size_t> named(const std::string& name) const;
+
+ private:
+  // The images by each end of their path: the file, the file with its folder, and so on.
+  std::unordered_map<std::string, std::vector<std::size_t>> images_;
+};
 
 }  // namespace axial::evaluate

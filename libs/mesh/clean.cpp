@@ -101,6 +101,11 @@ std::size_t faces_to_keep(const HalfedgeMesh& mesh, const CleanOptions& options)
 
 }  // namespace
 
+std::uint64_t bytes_to_clean(std::uint64_t vertices) {
+  // Measured: CGAL's mesh with its properties, and the boxes of the search for intersections.
+  return vertices * 1100;
+}
+
 Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   if (mesh.faces.empty()) fail("the mesh has no faces");
   CleanReport own;

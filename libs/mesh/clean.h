@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "scene/mesh.h"
 
@@ -47,5 +48,9 @@ struct CleanReport {
 // not depend on the number of threads. Throws an Error if no face of `mesh` has three different
 // vertices, if the steps leave no face, or if remeshing would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
+
+// An estimate of the memory [bytes] of clean() with its result, besides `mesh`, if the mesh is not
+// remeshed to more vertices.
+std::uint64_t bytes_to_clean(std::uint64_t vertices);
 
 }  // namespace axial::mesh

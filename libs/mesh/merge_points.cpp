@@ -2,6 +2,7 @@
 #include "mesh/merge_points.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nanoflann.hpp>
 #include <numeric>
@@ -45,8 +46,9 @@ class Merger {
         tree_(3, set_, {16}),
         used_(cloud.size(), false) {}
 
-  // Appends the point that stands for point i and its neighbours, unless i is merged already.
-  void take_point(std::uint32_t i, MergedPoints& result) {
+  // Merges point i with its neighbours, unless i is merged already. Appends the result if there is
+  // room for it.
+  void take_point(std::uint32_t i, std::size_t most, MergedPoints& result) {
     if (used_[i]) return;
     const float sharpest = find_motions(i);
     if (!(sharpest > 0)) return;
@@ -56,6 +58,12 @@ class Merger {
     for (const std::uint32_t k : neighbours(i, 2 * limit_ / sharpest))
       if (is_near(i, k)) absorb(i, k);
     absorb(i, i);
+    if (++result.count > most) {
+      const std::size_t count = result.count;
+      result = {};
+      result.count = count;
+      return;
+    }
     result.positions.emplace_back(cloud_.positions[i] + sum_ / weights_);
     result.pixel_widths.push_back(1 / sharpest);
     for (const auto& [view, weight] : views_) {
@@ -130,6 +138,7 @@ class Merger {
 
 MergedPoints in_order(const MergedPoints& points, std::span<const std::uint32_t> order) {
   MergedPoints result;
+  result.count = points.count;
   result.positions.reserve(points.size());
   result.view_images.reserve(points.view_images.size());
   result.view_weights.reserve(points.view_images.size());
@@ -151,7 +160,10 @@ MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
                           const MergeOptions& options) {
   MergedPoints merged;
   Merger merger(cloud, rays, options.min_distance);
-  for (const std::uint32_t i : by_views(cloud)) merger.take_point(i, merged);
+  const std::size_t most =
+      options.most_points > 0 ? options.most_points : std::numeric_limits<std::size_t>::max();
+  for (const std::uint32_t i : by_views(cloud)) merger.take_point(i, most, merged);
+  if (merged.count > most) return merged;
   return in_order(merged, spatial_order(merged.positions));
 }
 

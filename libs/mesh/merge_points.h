@@ -17,6 +17,8 @@ struct MergeOptions {
   // A point p absorbs another point q only if their images are at most this far apart [px] in every
   // view of p (see merge_points()). 0: no points are merged.
   double min_distance = 2.5;
+  // If there are more merged points than this, they are counted but not kept. 0: no limit.
+  std::size_t most_points = 0;
 };
 
 // The result of merge_points(). Each point stands for one or several points of a cloud. The views
@@ -27,6 +29,8 @@ struct MergedPoints {
   std::vector<std::size_t> view_begin{0};
   std::vector<std::uint32_t> view_images;  // indices into Scene::images, ascending for each point
   std::vector<float> view_weights;         // per view: number of absorbed points that it sees
+
+  std::size_t count = 0;  // of merged points; more than size() if there were too many to keep
 
   std::size_t size() const { return positions.size(); }
 };
@@ -45,8 +49,9 @@ struct MergedPoints {
 // the sum of its PointCloud::view_weights, or its number of views if the cloud has no weights.
 // Points whose projection is visible in none of their views are dropped, unless another point
 // absorbs them. The result is in the order of a space-filling curve, which depends only on the
-// positions. Preconditions: the cloud has views (view_begin is not empty), and the views are
-// calibrated images of the scene of `rays`.
+// positions. With more than MergeOptions::most_points merged points, the result has no points but
+// their number (MergedPoints::count). Preconditions: the cloud has views (view_begin is not empty),
+// and the views are calibrated images of the scene of `rays`.
 MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
                           const MergeOptions& options = {});
 

@@ -37,18 +37,25 @@ void check(const PointCloud& cloud, const Scene& scene) {
            kLargestWeight);
 }
 
+// The largest number of merged points, at least 1, whose mesh needs at most `max_bytes`.
+std::size_t most_points(std::uint64_t max_bytes) {
+  const std::uint64_t fixed = bytes_needed(0), each = bytes_needed(1) - fixed;
+  return std::max<std::size_t>(max_bytes > fixed ? (max_bytes - fixed) / each : 0, 1);
+}
+
 MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
                     const ReconstructOptions& options) {
   const std::size_t all = cloud.size();
   if (options.only_region && scene.region) cloud::crop(cloud, *scene.region);
-  MergedPoints points = merge_points(cloud, rays, options.merge);
-  log_info("{} points merged to {}", all, points.size());
-  if (points.size() < 4) fail("{} points remain of {}: at least 4 are needed", points.size(), all);
+  MergeOptions settings = options.merge;
+  if (options.max_bytes > 0) settings.most_points = most_points(options.max_bytes);
+  MergedPoints points = merge_points(cloud, rays, settings);
+  log_info("{} points merged to {}", all, points.count);
+  if (points.count < 4) fail("{} points remain of {}: at least 4 are needed", points.count, all);
   return points;
 }
 
 void check_memory(std::size_t points, const ReconstructOptions& options) {
-  constexpr std::uint64_t kMegabyte = 1'000'000;
   const std::uint64_t needed = bytes_needed(points);
   if (options.max_bytes > 0 && needed > options.max_bytes)
     fail("{} merged points need about {} MB, but {} is {}; a larger {} merges more points", points,
@@ -97,7 +104,7 @@ Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions&
   {
     const MergedPoints points = merged(std::move(cloud), scene, rays, options);
     return_freed_memory();
-    check_memory(points.size(), options);
+    check_memory(points.count, options);
     surface = cut_surface(points, rays, options);
   }
   return_freed_memory();

@@ -26,13 +26,34 @@ std::uint64_t bytes_needed(const Sizes& sizes, std::uint64_t kept) {
          sizes.faces * kOfFace + sizes.pixels * kOfPixel;
 }
 
+std::uint64_t bytes_to_split(const Sizes& sizes, std::uint64_t marked) {
+  // The topology; a hash table of the split edges, at most three of each marked face, with a node
+  // of the heap and a place each; the new vertices, and all faces, which are in memory twice.
+  constexpr std::uint64_t kOfEdge = 32 + 16 + 2 * (12 + 3);
+  return sizes.vertices * 60 + 3 * marked * kOfEdge + (sizes.faces + 3 * marked) * 2 * 12;
+}
+
+namespace {
+
+void require(std::uint64_t bytes, const Options& options, const std::string& work) {
+  if (options.max_bytes > 0 && bytes > options.max_bytes)
+    fail("{}: {} needs {} MB more", options.name_of("max_memory"), work,
+         (bytes - options.max_bytes) / 1'000'000 + 1);
+}
+
+}  // namespace
+
+void require_memory_to_split(const Sizes& sizes, std::uint64_t marked, const Options& options) {
+  require(bytes_to_split(sizes, marked), options,
+          fmt::format("splitting {} of {} faces", marked, sizes.faces));
+}
+
 std::size_t views_to_keep(const Sizes& sizes, const Options& options) {
   const std::uint64_t most = std::max<std::uint64_t>(sizes.views, 2);
   if (options.max_bytes == 0) return most;
   const std::uint64_t least = bytes_needed(sizes, 2);
-  if (least > options.max_bytes)
-    fail("{}: refining a mesh of {} vertices needs {} MB more", options.name_of("max_memory"),
-         sizes.vertices, (least - options.max_bytes) / 1'000'000 + 1);
+  require(std::max(least, sizes.vertices * options.bytes_afterwards), options,
+          fmt::format("refining a mesh of {} vertices", sizes.vertices));
   const std::uint64_t each = sizes.vertices * sizeof(VertexImage);
   return std::min(most, 2 + (options.max_bytes - least) / std::max<std::uint64_t>(each, 1));
 }

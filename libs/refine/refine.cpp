@@ -33,56 +33,120 @@ double median_of(std::vector<float> values) {
   return *middle;
 }
 
+// Turns the work that is done into numbers that never fall. A resolution has kMostSteps steps or
+// fewer, and the work of a step is in proportion to the pixels of its resolution.
+class Work {
+ public:
+  // `done`: the number of resolutions that were done before.
+  Work(const Options& options, unsigned done, const ProgressSink& progress) : progress_(progress) {
+    double work = 0;
+    for (unsigned k = 0; k < options.scales; ++k) {
+      before_.push_back(work);
+      if (k >= done) work += std::pow(options.scale_step, 2 * (options.scales - 1 - k));
+    }
+    before_.push_back(work);
+  }
+
+  // `part` (0 to 1) of a step is done. `step`: its number at the resolution with number `k`.
+  void tell_step(unsigned k, unsigned step, double part) const {
+    const double of_step = (before_[k + 1] - before_[k]) / kMostSteps;
+    tell(std::min(before_[k] + of_step * (step + part), kNearEnd * before_.back()));
+  }
+  // `done` resolutions are done.
+  void tell_end(unsigned done) const { tell(before_[done]); }
+
+ private:
+  static constexpr std::size_t kTotal = 1000;
+  static constexpr double kNearEnd = 0.999;  // the end itself is told once
+
+  void tell(double work) const {
+    if (progress_)
+      progress_(static_cast<std::size_t>(std::floor(work / before_.back() * kTotal + 1e-6)),
+                kTotal);
+  }
+
+  const ProgressSink& progress_;
+  std::vector<double> before_;  // the work before each resolution, and all work
+};
+
 class Refinement {
  public:
-  Refinement(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
+  Refinement(State& state, std::span<const View> views, const Pictures& pictures,
              const Options& options, const ProgressSink& progress)
-      : mesh_(mesh), views_(views), pictures_(pictures), options_(options), progress_(progress) {}
+      : state_(state),
+        mesh_(state.mesh),
+        report_(state.report),
+        views_(views),
+        pictures_(pictures),
+        options_(options),
+        work_(options, state.done, progress) {}
 
-  Report run() {
-    prepare(ScaledViews(views_, pictures_, 1));
-    flatten_folds(mesh_, topology_);
-    first_ = mesh_.vertices;
-    for (unsigned scale = options_.scales; scale-- > 0;)
-      refine_at(std::pow(options_.scale_step, scale), options_.scales - 1 - scale);
-    report_.moved = median_of(distances_of_measured());
-    return report_;
+  void run(const Checkpoint& checkpoint) {
+    if (state_.done == 0)
+      begin();
+    else
+      go_on();
+    while (state_.done < options_.scales) {
+      refine_at(std::pow(options_.scale_step, options_.scales - 1 - state_.done));
+      report_.moved = median_of(distances_of_measured());
+      work_.tell_end(++state_.done);
+      if (checkpoint) checkpoint(state_);
+    }
   }
 
  private:
-  void plan_memory() {
+  void begin() {
+    prepare(ScaledViews(views_, pictures_, 1));
+    flatten_folds(mesh_, topology_);
+    state_.first = mesh_.vertices;
+  }
+
+  void go_on() {
+    plan_memory();
+    topology_ = topology_of(mesh_);
+  }
+
+  Sizes sizes() const {
     Sizes sizes{mesh_.vertices.size(), mesh_.faces.size(), views_.size()};
     for (const View& view : views_)
       sizes.pixels = std::max(sizes.pixels, static_cast<std::uint64_t>(view.camera.width) *
                                                 static_cast<std::uint64_t>(view.camera.height));
-    kept_ = views_to_keep(sizes, options_);
+    return sizes;
   }
+
+  void plan_memory() { kept_ = views_to_keep(sizes(), options_); }
 
   // Splits large faces, and chooses the pairs of views.
   void prepare(const ScaledViews& views) {
     for (unsigned k = 0;; ++k) {
       plan_memory();
       topology_ = topology_of(mesh_);
-      MeshImages images(mesh_, views, kept_);
-      const Visibility visibility =
-          find_visibility(mesh_, shape_of(mesh_, topology_), views, images);
-      if (k < kMostSplits && options_.max_face_area > 0) {
-        const std::size_t added = split_faces(
-            mesh_, larger_than(options_.max_face_area, mesh_, views, visibility, images));
-        report_.split_faces += added;
-        if (added > 0) continue;
-      }
-      pairs_ = choose_pairs(mesh_, views, visibility, options_.max_views);
-      break;
+      const std::vector<bool> large = large_faces(views, k < kMostSplits);
+      const auto marked = static_cast<std::uint64_t>(std::ranges::count(large, true));
+      if (marked == 0) break;
+      require_memory_to_split(sizes(), marked, options_);
+      report_.split_faces += split_faces(mesh_, large);
     }
-    if (pairs_.empty()) fail("no two views see the same part of the mesh");
-    report_.pairs = pairs_.size();
+    if (state_.pairs.empty()) fail("no two views see the same part of the mesh");
+    report_.pairs = state_.pairs.size();
     log_info("{} vertices, {} faces ({} added by splitting), {} pairs of views",
-             mesh_.vertices.size(), mesh_.faces.size(), report_.split_faces, pairs_.size());
+             mesh_.vertices.size(), mesh_.faces.size(), report_.split_faces, state_.pairs.size());
   }
 
-  // `done`: the number of resolutions before this one.
-  void refine_at(double factor, unsigned done) {
+  // Marks the faces to split, if any may be split. If there is none, chooses the pairs of views.
+  std::vector<bool> large_faces(const ScaledViews& views, bool may_split) {
+    MeshImages images(mesh_, views, kept_);
+    const Visibility visibility = find_visibility(mesh_, shape_of(mesh_, topology_), views, images);
+    if (may_split && options_.max_face_area > 0) {
+      std::vector<bool> large =
+          larger_than(options_.max_face_area, mesh_, views, visibility, images);
+      if (std::ranges::count(large, true) > 0) return large;
+    }
+    state_.pairs = choose_pairs(mesh_, views, visibility, options_.max_views);
+    return {};
+  }
+
+  void refine_at(double factor) {
     const ScaledViews views(views_, pictures_, factor);
     std::optional<Visibility> visibility;
     double first_step = 0;
@@ -90,8 +154,7 @@ class Refinement {
       const Shape shape = shape_of(mesh_, topology_);
       MeshImages images(mesh_, views, kept_);
       if (!visibility) visibility = find_visibility(mesh_, shape, views, images);
-      const std::vector<FaceEquations> equations =
-          measure(views, shape, *visibility, images, kLeastSteps * done + std::min(k, kLeastSteps));
+      const std::vector<FaceEquations> equations = measure(views, shape, *visibility, images, k);
       const double moved = step(equations, shape, factor);
       log_details("Step {} at {} of the size: median displacement {}", k, factor, moved);
       ++report_.steps;
@@ -103,7 +166,7 @@ class Refinement {
   // The partners of view i for which it is the reference view.
   std::vector<std::size_t> partners_of(std::size_t i) const {
     std::vector<std::size_t> partners;
-    for (const auto& [a, b] : pairs_) {
+    for (const auto& [a, b] : state_.pairs) {
       if (i != a && i != b) continue;
       const bool is_first = i == a;
       const bool wanted =
@@ -116,10 +179,10 @@ class Refinement {
     return partners;
   }
 
-  // `steps_done`: before this step, of kLeastSteps at each resolution.
+  // `number`: the number of the step at this resolution.
   std::vector<FaceEquations> measure(const ScaledViews& views, const Shape& shape,
                                      const Visibility& visibility, MeshImages& images,
-                                     unsigned steps_done) const {
+                                     unsigned number) const {
     std::vector<FaceEquations> equations(mesh_.faces.size());
     for (std::size_t i = 0; i < views.count(); ++i) {
       const std::vector<std::size_t> partners = partners_of(i);
@@ -134,16 +197,10 @@ class Refinement {
         reference.add({*other, source.grey, source.mask, s}, i, visibility);
       }
       reference.finish(equations);
-      tell(steps_done, i + 1);
+      work_.tell_step(state_.done, number,
+                      static_cast<double>(i + 1) / static_cast<double>(views.count()));
     }
     return equations;
-  }
-
-  // `views_done`: in the step after `steps_done`.
-  void tell(unsigned steps_done, std::size_t views_done) const {
-    const std::size_t total = options_.scales * kLeastSteps * views_.size();
-    // Whether a resolution takes more steps than the least number is not known before.
-    if (progress_) progress_(std::min(steps_done * views_.size() + views_done, total), total);
   }
 
   // Moves the vertices. Returns the median displacement of measured vertices.
@@ -151,7 +208,7 @@ class Refinement {
     System system(mesh_, topology_, shape, equations, options_.smoothness);
     information_ = system.information();
     if (options_.anchor > 0) {
-      const std::vector<float> offset = offsets(mesh_.vertices, first_, shape);
+      const std::vector<float> offset = offsets(mesh_.vertices, state_.first, shape);
       system.add_anchor(
           anchor_weights(information_, offset, system.solve(), {options_.anchor, factor}), offset);
     }
@@ -165,31 +222,44 @@ class Refinement {
 
   std::vector<float> distances_of_measured() {
     std::vector<float> moved;
-    for (std::size_t v = 0; v < first_.size(); ++v)
-      if (information_[v] > 0) moved.push_back((mesh_.vertices[v] - first_[v]).norm());
+    for (std::size_t v = 0; v < state_.first.size(); ++v)
+      if (information_[v] > 0) moved.push_back((mesh_.vertices[v] - state_.first[v]).norm());
     report_.measured = moved.size();
     return moved;
   }
 
-  Mesh& mesh_;
+  State& state_;
+  Mesh& mesh_;      // of the state
+  Report& report_;  // of the state
   const std::span<const View> views_;
   const Pictures& pictures_;
   const Options& options_;
-  const ProgressSink& progress_;
+  const Work work_;
   Topology topology_;
-  std::vector<Eigen::Vector3f> first_;  // positions before the first step
-  std::vector<std::pair<std::size_t, std::size_t>> pairs_;
   std::vector<double> information_;  // of every vertex in the last step
   std::size_t kept_ = 2;             // views whose vertex images are kept
-  Report report_;
 };
 
 }  // namespace
 
+void refine(State& state, std::span<const View> views, const Pictures& pictures,
+            const Options& options, const ProgressSink& progress, const Checkpoint& checkpoint) {
+  check_mesh(state.mesh);
+  Refinement(state, views, pictures, options, progress).run(checkpoint);
+}
+
 Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
               const Options& options, const ProgressSink& progress) {
-  check_mesh(mesh);
-  return Refinement(mesh, views, pictures, options, progress).run();
+  State state;
+  std::swap(state.mesh, mesh);
+  try {
+    refine(state, views, pictures, options, progress);
+  } catch (...) {
+    std::swap(state.mesh, mesh);
+    throw;
+  }
+  std::swap(state.mesh, mesh);
+  return state.report;
 }
 
 }  // namespace axial::refine

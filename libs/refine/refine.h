@@ -33,6 +33,7 @@
 #include <functional>
 #include <opencv2/core.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/progress.h"
@@ -83,6 +84,9 @@ struct Options {
   // estimate of bytes_needed() (memory.h) is compared with the limit. The limit affects the time,
   // but not the result. 0: no limit.
   std::uint64_t max_bytes = 0;
+  // The memory [bytes] for each vertex that the caller needs afterwards for the refined mesh, when
+  // the memory of refine() is free again. The need is checked before the first step.
+  std::uint64_t bytes_afterwards = 0;
   // Errors name the field max_bytes by name_of("max_memory").
   SettingNames name_of = own_name;
 };
@@ -99,19 +103,40 @@ struct Report {
   double moved = 0;
 };
 
-// Refines `mesh` in place. First, large faces are split (Options::max_face_area). A vertex that
+// The state of a refinement between two resolutions.
+struct State {
+  Mesh mesh;
+  unsigned done = 0;  // number of resolutions that are done
+  // The rest is empty if `done` is 0.
+  std::vector<Eigen::Vector3f> first;  // positions of the vertices before the first step
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // views that are compared
+  Report report;
+};
+
+// Called after each resolution. The state is valid during the call.
+using Checkpoint = std::function<void(const State& state)>;
+
+// Refines `state.mesh`. First, large faces are split (Options::max_face_area). A vertex that
 // splitting adds has the mean colour of the two ends of its edge. Second, folds are flattened
 // (flatten_folds() of displace.h). Third, Gauss-Newton steps move the vertices. The steps do not
 // move vertices that no pair measures, unless measured vertices are near: there, the smoothness
 // term moves them with the surface. Faces of the result may intersect each other. The result does
 // not depend on the number of threads.
 //
-// `views`: all views. `pictures` is called with indices into `views`. `progress` is called after
-// each reference view of a step.
+// `state`: a mesh alone, or a state that `checkpoint` received in a call with the same views,
+// pictures and options. From such a state, the refinement goes on to the same result.
+// `views`: all views. `pictures` is called with indices into `views`. `progress` gets numbers that
+// never fall: parts of the expected work of this call, in which a resolution counts in proportion
+// to its pixels.
 //
 // Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
 // faces. Throws an Error if no two views see the same surface, or if max_bytes is not enough. After
-// the last two errors, faces of `mesh` may have been split.
+// the last two errors, faces of `state.mesh` may have been split.
+void refine(State& state, std::span<const View> views, const Pictures& pictures,
+            const Options& options = {}, const ProgressSink& progress = {},
+            const Checkpoint& checkpoint = {});
+
+// The same for a mesh alone, which is refined in place.
 Report refine(Mesh& mesh, std::span<const View> views, const Pictures& pictures,
               const Options& options = {}, const ProgressSink& progress = {});
 

@@ -6,6 +6,11 @@
 
 namespace axial::texture {
 
+std::uint64_t bytes_to_pair(std::uint64_t faces) {
+  // An edge of each corner with its face; a pair for every two of these edges.
+  return 3 * faces * (3 * sizeof(std::uint32_t) + sizeof(FacePair) / 2);
+}
+
 std::vector<FacePair> face_pairs(std::span<const std::array<std::uint32_t, 3>> faces) {
   struct EdgeOfFace {
     std::uint32_t from, to, face;

@@ -20,4 +20,7 @@ struct FacePair {
 // side between them is no edge and gives no pair.
 std::vector<FacePair> face_pairs(std::span<const std::array<std::uint32_t, 3>> faces);
 
+// The memory [bytes] of face_pairs() with its result.
+std::uint64_t bytes_to_pair(std::uint64_t faces);
+
 }  // namespace axial::texture

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "texture/atlas.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace axial::texture {
@@ -29,6 +31,17 @@ cv::Mat3b part_of(const cv::Mat3b& image, const cv::Rect& rect) {
   return result;
 }
 
+// The part of the photograph for a chart. Where the part is larger than a texture, its border
+// grows, so that the border still has kBorder pixels after the part has been scaled down.
+cv::Rect part_with_border(const cv::Rect& rect, int largest) {
+  const int longest = std::max(rect.width, rect.height);
+  if (longest <= largest) return rect;
+  // A border of b pixels keeps b * largest / (inner + 2 b) pixels of the texture.
+  const int inner = longest - 2 * kBorder, room = largest - 2 * kBorder;
+  const int more = (kBorder * inner + room - 1) / room - kBorder;
+  return {rect.x - more, rect.y - more, rect.width + 2 * more, rect.height + 2 * more};
+}
+
 void copy_part(const cv::Mat3b& image, const cv::Rect& rect, cv::Mat3b target) {
   const cv::Mat3b part = part_of(image, rect);
   if (part.size() == target.size())
@@ -41,7 +54,7 @@ void place_nodes(const Charts& charts, Atlas& atlas) {
   atlas.uv.resize(charts.nodes.size());
   for (std::size_t n = 0; n < charts.nodes.size(); ++n) {
     const Node& node = charts.nodes[n];
-    const cv::Rect &from = charts.charts[node.chart].rect, &to = atlas.rects[node.chart];
+    const cv::Rect &from = atlas.parts[node.chart], &to = atlas.rects[node.chart];
     const auto moved = [](float x, int begin, int length, int new_begin, int new_length) {
       const double scale = static_cast<double>(new_length) / length;
       return static_cast<float>((x + 0.5 - begin) * scale - 0.5 + new_begin);
@@ -53,15 +66,27 @@ void place_nodes(const Charts& charts, Atlas& atlas) {
 
 }  // namespace
 
-Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty) {
-  std::vector<cv::Size> sizes{{kEmptySide, kEmptySide}};
-  for (const Chart& chart : charts.charts) sizes.push_back(chart.rect.size());
-  const Packing packing = pack(sizes, options);
+std::uint64_t bytes_of_textures(std::span<const cv::Size> sizes) {
+  std::uint64_t pixels = 0;
+  for (const cv::Size& size : sizes)
+    pixels += static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
+  return pixels * sizeof(cv::Vec3b);
+}
+
+Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty,
+              const Budget& budget) {
   Atlas atlas;
+  std::vector<cv::Size> sizes{{kEmptySide, kEmptySide}};
+  for (const Chart& chart : charts.charts)
+    sizes.push_back(
+        atlas.parts.emplace_back(part_with_border(chart.rect, largest_side(options))).size());
+  const Packing packing = pack(sizes, options);
+  budget.require(bytes_of_textures(packing.sizes),
+                 fmt::format("painting {} textures", packing.sizes.size()));
   atlas.scaled_down = packing.scaled_down;
   for (std::size_t c = 0; c < charts.charts.size(); ++c) {
     const Place& place = packing.places[c + 1];
-    atlas.rects.emplace_back(place.corner, size_at(place, charts.charts[c].rect.size()));
+    atlas.rects.emplace_back(place.corner, size_at(place, sizes[c + 1]));
     atlas.texture_of.push_back(place.texture);
   }
   for (const cv::Size& size : packing.sizes)
@@ -70,16 +95,23 @@ Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& em
   return atlas;
 }
 
+std::uint64_t bytes_to_paint(std::uint64_t pixels) {
+  // The photograph, smoothed and sharpened, and a part that extends beyond it.
+  return 4 * sizeof(cv::Vec3b) * pixels;
+}
+
 void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSource& images,
-           double sharpness) {
+           double sharpness, std::size_t in_flight) {
   std::vector<std::vector<std::uint32_t>> charts_of(views);
   for (std::uint32_t c = 0; c < charts.charts.size(); ++c)
     charts_of[charts.charts[c].view].push_back(c);
-  for_each_in_flight(views, thread_count(), [&](std::size_t v) {
+  const std::size_t threads = thread_count();
+  const std::size_t at_once = in_flight == 0 ? threads : std::min(in_flight, threads);
+  for_each_in_flight(views, at_once, [&](std::size_t v) {
     if (charts_of[v].empty()) return;
     const cv::Mat3b image = sharpened(images(v).color, sharpness);
     for (const std::uint32_t c : charts_of[v])
-      copy_part(image, charts.charts[c].rect, atlas.textures[atlas.texture_of[c]](atlas.rects[c]));
+      copy_part(image, atlas.parts[c], atlas.textures[atlas.texture_of[c]](atlas.rects[c]));
   });
 }
 

@@ -94,6 +94,12 @@ class Strip {
 
 }  // namespace
 
+std::uint64_t bytes_of_field(std::uint64_t pixels) {
+  // The field, and of a strip the index of each pixel and the lists, which grow.
+  return pixels *
+         (1 + sizeof(cv::Vec3f) + sizeof(int) + 2 * (sizeof(cv::Point) + sizeof(cv::Vec3f)));
+}
+
 void ChartField::add_triangle(const std::array<Eigen::Vector2f, 3>& corners,
                               const std::array<Eigen::Vector3f, 3>& values) {
   const float area = cross(corners[1] - corners[0], corners[2] - corners[0]);

@@ -58,4 +58,8 @@ class ChartField {
   cv::Mat3f value_;
 };
 
+// The memory [bytes] of a field of `pixels` pixels, all of which are in a strip while the strip is
+// added.
+std::uint64_t bytes_of_field(std::uint64_t pixels);
+
 }  // namespace axial::texture

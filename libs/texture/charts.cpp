@@ -139,6 +139,21 @@ Charts make_charts(const Mesh& mesh, std::span<const FacePair> pairs,
   return result;
 }
 
+std::uint64_t bytes_of_charts(std::uint64_t faces, std::uint64_t nodes) {
+  // Of a face: sets, chart, corners and list. A chart has at least one node; arrays that grow are
+  // in memory twice.
+  return faces * (4 + 4 + 12 + 4) +
+         nodes * (2 * sizeof(Node) + 2 * sizeof(Chart) + 2 * sizeof(Eigen::Vector2f) + 3 * 4);
+}
+
+std::uint64_t most_nodes(const Mesh& mesh, std::span<const FacePair> pairs,
+                         std::span<const std::uint32_t> labels) {
+  // Each end of a seam adds a node at most.
+  const auto seams = std::ranges::count_if(
+      pairs, [&](const FacePair& pair) { return labels[pair.a] != labels[pair.b]; });
+  return mesh.vertices.size() + 2 * static_cast<std::uint64_t>(seams);
+}
+
 std::vector<Seam> find_seams(const Charts& charts, const Mesh& mesh,
                              std::span<const FacePair> pairs) {
   std::vector<Seam> seams;

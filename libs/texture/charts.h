@@ -58,6 +58,14 @@ struct Charts {
 Charts make_charts(const Mesh& mesh, std::span<const FacePair> pairs,
                    std::span<const std::uint32_t> labels, std::span<const View> views);
 
+// The memory [bytes] of make_charts() with its result. `nodes`: the number of nodes.
+std::uint64_t bytes_of_charts(std::uint64_t faces, std::uint64_t nodes);
+
+// An upper bound of the number of nodes that make_charts() makes. Only of a mesh with vertices that
+// are not manifold, there can be more.
+std::uint64_t most_nodes(const Mesh& mesh, std::span<const FacePair> pairs,
+                         std::span<const std::uint32_t> labels);
+
 // An edge between a face of chart a and a face of another chart b.
 struct Seam {
   // The indices of the edge's two nodes in chart a, and in chart b. The first node belongs to the

@@ -2,10 +2,12 @@
 #include "texture/face_views.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "texture/bilinear.h"
 #include "texture/occluders.h"
@@ -241,27 +243,101 @@ FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_view
   return result;
 }
 
-}  // namespace
+// The memory [bytes] for the whole mesh while views are in work.
+std::uint64_t bytes_of_mesh(const Mesh& mesh) {
+  // Normals, the occluders' copy of the vertices, and Embree's tree while it is built.
+  constexpr std::uint64_t kTreePerFace = 160;
+  return mesh.vertices.size() * 2 * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
+}
 
-FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
-                          const VisibilityOptions& options, const ProgressSink& progress) {
+// The memory [bytes] for each view in work.
+std::uint64_t bytes_of_view(const Mesh& mesh, std::span<const View> views,
+                            std::uint64_t image_bytes) {
+  std::uint64_t pixels = 0;
+  for (const View& view : views)
+    pixels = std::max(pixels, static_cast<std::uint64_t>(view.camera.width) *
+                                  static_cast<std::uint64_t>(view.camera.height));
+  // Pixels and state of the vertices; the list of what the view sees, which grows; the complement
+  // of the usable pixels, and its sums.
+  return image_bytes + mesh.vertices.size() * 12 + mesh.faces.size() * 2 * sizeof(SeenFace) +
+         pixels * (1 + sizeof(int));
+}
+
+// Collects what the views see, as long as there is memory for it, and counts it in any case.
+class SeenFaces {
+ public:
+  SeenFaces(const Mesh& mesh, std::span<const View> views, const ViewMemory& memory,
+            const ProgressSink& progress)
+      : faces_(mesh.faces.size()),
+        budget_(memory.budget),
+        progress_(progress),
+        of_view_(views.size()) {
+    const std::uint64_t fixed = bytes_of_mesh(mesh);
+    const std::uint64_t each = bytes_of_view(mesh, views, memory.image_bytes);
+    budget_.require(fixed + each, fmt::format("finding the views of {} faces", faces_));
+    // Half of the memory is for what the views see.
+    in_flight_ = std::clamp<std::uint64_t>(budget_.room(fixed) / 2 / each, 1, thread_count());
+    in_work_ = fixed + in_flight_ * each;
+  }
+
+  std::size_t in_flight() const { return in_flight_; }
+
+  void add(std::size_t view, std::vector<SeenFace> seen) {
+    seen.shrink_to_fit();
+    const std::lock_guard lock(mutex_);
+    count_ += seen.size();
+    if (bytes() <= budget_.room(0))
+      of_view_[view] = std::move(seen);
+    else
+      std::vector<std::vector<SeenFace>>(of_view_.size()).swap(of_view_);
+    if (progress_) progress_(++done_, of_view_.size());
+  }
+
+  std::vector<std::vector<SeenFace>>& of_view() {
+    budget_.require(bytes(), fmt::format("a list of {} views of {} faces", count_, faces_));
+    return of_view_;
+  }
+
+ private:
+  // While views are in work, or while their lists are sorted by faces.
+  std::uint64_t bytes() const {
+    const std::uint64_t seen = count_ * sizeof(SeenFace);
+    return std::max(in_work_ + seen,
+                    seen + count_ * sizeof(Sight) + faces_ * 2 * sizeof(std::uint64_t));
+  }
+
+  std::size_t faces_;
+  const Budget& budget_;
+  const ProgressSink& progress_;
+  std::size_t in_flight_ = 1;
+  std::uint64_t in_work_ = 0;  // [bytes]
+  std::mutex mutex_;
+  std::vector<std::vector<SeenFace>> of_view_;
+  std::size_t count_ = 0, done_ = 0;
+};
+
+void look(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
+          const VisibilityOptions& options, SeenFaces& seen) {
   const Occluders occluders(mesh);
   const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
-  std::vector<std::vector<SeenFace>> seen(views.size());
-  std::mutex reporting;
-  std::size_t done = 0;
-  for_each_in_flight(views.size(), thread_count(), [&](std::size_t v) {
+  for_each_in_flight(views.size(), seen.in_flight(), [&](std::size_t v) {
     const ViewImage image = images(v);
     std::visit(
         [&](const auto& camera) {
-          seen[v] = Observer(mesh, normals, occluders, options, camera, views[v], image).seen();
+          seen.add(v, Observer(mesh, normals, occluders, options, camera, views[v], image).seen());
         },
         make_camera<double>(views[v].camera));
-    seen[v].shrink_to_fit();
-    const std::lock_guard lock(reporting);
-    if (progress) progress(++done, views.size());
   });
-  return by_face(mesh.faces.size(), seen);
+}
+
+}  // namespace
+
+FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
+                          const VisibilityOptions& options, const ProgressSink& progress,
+                          const ViewMemory& memory) {
+  SeenFaces seen(mesh, views, memory, progress);
+  look(mesh, views, images, options, seen);
+  return by_face(mesh.faces.size(), seen.of_view());
 }
 
 }  // namespace axial::texture

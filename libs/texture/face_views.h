@@ -9,6 +9,7 @@
 
 #include "base/progress.h"
 #include "scene/mesh.h"
+#include "texture/memory.h"
 #include "texture/views.h"
 
 namespace axial::texture {
@@ -42,6 +43,11 @@ struct VisibilityOptions {
   double tolerance = 1e-3;
 };
 
+struct ViewMemory {
+  Budget budget;                  // of find_face_views() with its result, besides the mesh
+  std::uint64_t image_bytes = 0;  // of ImageSource while it makes an image, with the image
+};
+
 // Finds for each face the views that see all of the face (Sight::whole). The conditions are:
 //   1. The face is turned towards the camera.
 //   2. The corners are inside the image. Corners are projected by the exact camera.
@@ -58,9 +64,12 @@ struct VisibilityOptions {
 // area of the face in the image [px^2] times max(0.001, c)^2. Here c is the cosine of the angle
 // between the smoothed normal and the path of light from the middle of the face.
 //
-// Calls progress(done, total) with numbers of views, from any thread but one call at a time. Throws
-// an Error if Occluders refuses the mesh (occluders.h). Exceptions of `images` are passed on.
+// Calls progress(done, total) with numbers of views, from any thread but one call at a time. As
+// many views are in work at the same time as there are threads, or fewer if `memory.budget` demands
+// it. Throws an Error if Occluders refuses the mesh (occluders.h), or if the budget does not
+// suffice for one view or for the result. Exceptions of `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
-                          const VisibilityOptions& options = {}, const ProgressSink& progress = {});
+                          const VisibilityOptions& options = {}, const ProgressSink& progress = {},
+                          const ViewMemory& memory = {});
 
 }  // namespace axial::texture

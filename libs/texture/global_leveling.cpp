@@ -67,6 +67,16 @@ std::array<Eigen::Vector3f, 2> at_ends(std::span<const Eigen::Vector3f> differen
 
 }  // namespace
 
+std::uint64_t bytes_to_level_globally(std::uint64_t faces, std::uint64_t seams,
+                                      std::uint64_t nodes) {
+  const std::uint64_t entries = 3 * faces + 2 * seams + nodes;
+  // The list of entries, and twice the matrix, which is made by way of its transpose. Of each node
+  // the right sides, the diagonal, the beginnings of rows and columns, and three solutions, each
+  // with five vectors of the solver.
+  return entries * (sizeof(Eigen::Triplet<float>) + 2 * (sizeof(float) + sizeof(int))) +
+         nodes * (12 + 4 + 4 * 4 + 3 * 5 * 4 + 2 * 12);
+}
+
 std::vector<Eigen::Vector3f> level_globally(const Mesh& mesh, const Charts& charts,
                                             std::span<const Seam> seams, const SeamColors& colors,
                                             const GlobalLevelingOptions& options) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,5 +37,9 @@ struct GlobalLevelingOptions {
 std::vector<Eigen::Vector3f> level_globally(const Mesh& mesh, const Charts& charts,
                                             std::span<const Seam> seams, const SeamColors& colors,
                                             const GlobalLevelingOptions& options = {});
+
+// The memory [bytes] of level_globally() with its result, besides its arguments.
+std::uint64_t bytes_to_level_globally(std::uint64_t faces, std::uint64_t seams,
+                                      std::uint64_t nodes);
 
 }  // namespace axial::texture

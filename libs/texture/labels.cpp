@@ -40,6 +40,16 @@ struct Neighbours {
   }
 };
 
+// The number of sights of each view, up to the last view that has any.
+std::vector<std::uint64_t> sights_of_views(const FaceViews& views) {
+  std::vector<std::uint64_t> counts;
+  for (const Sight& sight : views.sights) {
+    if (sight.view >= counts.size()) counts.resize(sight.view + 1, 0);
+    ++counts[sight.view];
+  }
+  return counts;
+}
+
 class Expansion {
  public:
   Expansion(const FaceViews& views, std::span<const FacePair> pairs, double ratio)
@@ -47,13 +57,13 @@ class Expansion {
         label_(views.faces(), kNoView),
         cost_(views.faces(), 0),
         node_(views.faces(), -1) {
+    make_room(views);
     for (std::uint32_t f = 0; f < views.faces(); ++f) {
       float best = 0;
       for (const Sight& sight : views.of(f)) best = std::max(best, sight.quality);
       for (const Sight& sight : views.of(f)) {
         const double loss = best > 0 ? 1 - sight.quality / best : 0;
         const int cost = static_cast<int>(std::lround(2 * ratio * kSeam * loss));
-        if (sight.view >= choices_.size()) choices_.resize(sight.view + 1);
         choices_[sight.view].push_back({f, cost});
         if (label_[f] == kNoView || cost < cost_[f]) label_[f] = sight.view, cost_[f] = cost;
       }
@@ -78,10 +88,17 @@ class Expansion {
   std::vector<std::uint32_t> take_labels() { return std::move(label_); }
 
  private:
+  void make_room(const FaceViews& views) {
+    const std::vector<std::uint64_t> counts = sights_of_views(views);
+    choices_.resize(counts.size());
+    for (std::size_t view = 0; view < counts.size(); ++view) choices_[view].reserve(counts[view]);
+  }
+
   // Gives `view` to the set of faces that lowers the sum of costs most. Returns whether there is
   // such a set.
   bool expand(std::uint32_t view) {
     std::vector<Choice> free;
+    free.reserve(choices_[view].size());
     for (const Choice& choice : choices_[view])
       if (label_[choice.face] != view) free.push_back(choice);
     if (free.empty()) return false;
@@ -142,6 +159,17 @@ class Expansion {
 };
 
 }  // namespace
+
+std::uint64_t bytes_to_choose_views(const FaceViews& views) {
+  std::uint64_t largest = 0;
+  for (const std::uint64_t count : sights_of_views(views)) largest = std::max(largest, count);
+  // Neighbours while they are listed, label, cost and node.
+  const std::uint64_t of_faces = views.faces() * (2 * 4 + 3 * 4 + 3 * 4);
+  // The graph has a node for each choice, and room for two edges, which are two arcs each.
+  constexpr std::uint64_t kNode = 48, kArc = 32;
+  return of_faces + views.sights.size() * sizeof(Choice) +
+         largest * (sizeof(Choice) + kNode + 4 * kArc);
+}
 
 std::vector<std::uint32_t> choose_views(const FaceViews& views, std::span<const FacePair> pairs,
                                         const LabelOptions& options) {

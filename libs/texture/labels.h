@@ -37,4 +37,7 @@ struct LabelOptions {
 std::vector<std::uint32_t> choose_views(const FaceViews& views, std::span<const FacePair> pairs,
                                         const LabelOptions& options);
 
+// The memory [bytes] of choose_views() besides its arguments.
+std::uint64_t bytes_to_choose_views(const FaceViews& views);
+
 }  // namespace axial::texture

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "texture/leveling.h"
 
+#include <algorithm>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "texture/chart_field.h"
 
@@ -84,17 +87,35 @@ struct Leveling {
   }
 };
 
+std::uint64_t bytes_of_largest_field(const Atlas& atlas) {
+  std::uint64_t pixels = 0;
+  for (const cv::Rect& rect : atlas.rects)
+    pixels = std::max(pixels, static_cast<std::uint64_t>(rect.area()));
+  return bytes_of_field(pixels);
+}
+
+std::string work_of(std::span<const Seam> seams) {
+  return fmt::format("levelling {} seams", seams.size());
+}
+
 }  // namespace
 
 void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
-                 const LevelingOptions& options) {
+                 const LevelingOptions& options, const Budget& budget) {
   if (seams.empty() || !(options.global || options.local)) return;
+  const std::uint64_t kept =
+      bytes_of_seams(atlas, seams) + charts.nodes.size() * sizeof(Eigen::Vector3f);
+  budget.require(
+      kept + bytes_to_level_globally(mesh.faces.size(), seams.size(), charts.nodes.size()),
+      work_of(seams));
   const SeamColors colors = compare_seams(atlas, charts, seams);
   std::vector<Eigen::Vector3f> global(charts.nodes.size(), Eigen::Vector3f::Zero());
   if (options.global) global = level_globally(mesh, charts, seams, colors, options.global_options);
   const Sides sides(charts, seams);
   const Leveling leveling{atlas, charts, seams, colors, global};
-  parallel_for(charts.charts.size(), [&](std::size_t chart) {
+  const std::size_t in_flight =
+      budget.items(kept, bytes_of_largest_field(atlas), thread_count(), work_of(seams));
+  for_each_in_flight(charts.charts.size(), in_flight, [&](std::size_t chart) {
     ChartField field = leveling.global_field(chart);
     std::vector<ChartField::Sample> samples;
     if (options.local)

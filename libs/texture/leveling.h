@@ -5,6 +5,7 @@
 #include <span>
 
 #include "texture/global_leveling.h"
+#include "texture/memory.h"
 
 namespace axial::texture {
 
@@ -31,7 +32,10 @@ struct LevelingOptions {
 //
 // Pixels outside a chart's faces, up to two pixels from them, get the correction of their
 // neighbours, because bilinear interpolation uses these pixels.
+//
+// As many charts are in work at the same time as there are threads and as `budget` allows, at least
+// one. Error if `budget` does not suffice for one.
 void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
-                 const LevelingOptions& options);
+                 const LevelingOptions& options, const Budget& budget = {});
 
 }  // namespace axial::texture

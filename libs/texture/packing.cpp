@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 
 #include "base/error.h"
@@ -17,9 +16,7 @@ constexpr int kLargest = 32768;
 class TextureSides {
  public:
   explicit TextureSides(const PackingOptions& options)
-      : multiple_(options.multiple), max_(options.max_size == 0 ? kLargest : options.max_size) {
-    if (max_ < 16 || max_ > kLargest)
-      fail("max_texture_size {}: must be 0 or from 16 to {}", options.max_size, kLargest);
+      : multiple_(options.multiple), max_(largest_side(options)) {
     if (multiple_ < 0 || multiple_ > max_)
       fail("texture_size_multiple {}: must be from 0 to {}", multiple_, max_);
   }
@@ -56,6 +53,23 @@ double scale_to_fit(cv::Size size, int max) {
   return longest <= max ? 1 : static_cast<double>(max) / longest;
 }
 
+// The indices of rectangles in the order in which stb's packer takes them, after the first one.
+std::vector<std::size_t> in_packing_order(std::span<const cv::Size> sizes) {
+  std::vector<std::size_t> order(sizes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.empty()) return order;
+  std::stable_sort(order.begin() + 1, order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(sizes[a].height, sizes[a].width) > std::pair(sizes[b].height, sizes[b].width);
+  });
+  return order;
+}
+
+// Rectangles that were not tried yet: the places [first, end) of `order`.
+struct Waiting {
+  std::vector<std::size_t> order;
+  std::size_t first, end;
+};
+
 // Places rectangles in one texture after the other.
 class Packer {
  public:
@@ -73,56 +87,84 @@ class Packer {
   }
 
   Packing pack() {
-    std::vector<std::size_t> left(sizes_.size());
-    std::iota(left.begin(), left.end(), std::size_t{0});
-    while (!left.empty()) left = fill_next(left);
+    std::vector<cv::Size> sizes;
+    for (std::size_t i = 0; i < sizes_.size(); ++i) sizes.push_back(size_of(i));
+    Waiting waiting{in_packing_order(sizes), 0, sizes.size()};
+    std::vector<std::size_t> tried;
+    for (take_more(waiting, tried); !tried.empty(); take_more(waiting, tried))
+      tried = fill_next(tried);
     return std::move(packing_);
   }
 
  private:
   cv::Size size_of(std::size_t i) const { return size_at(packing_.places[i], sizes_[i]); }
 
-  // Makes a texture for rectangles of `left`. Returns those that remain.
-  std::vector<std::size_t> fill_next(const std::vector<std::size_t>& left) {
+  double area_of(std::size_t i) const {
+    const cv::Size size = size_of(i);
+    return static_cast<double>(size.width) * size.height;
+  }
+
+  // Adds waiting rectangles, until `tried` could fill several textures: high ones, and low ones for
+  // the gaps between them. If all rectangles were tried for each texture, the time would grow with
+  // the square of their number.
+  void take_more(Waiting& waiting, std::vector<std::size_t>& tried) const {
+    constexpr double kHigh = 2, kAll = 16;  // [textures]
+    const double texture = static_cast<double>(sides_.max()) * sides_.max();
+    double area = 0;
+    for (const std::size_t i : tried) area += area_of(i);
+    const auto take = [&](std::size_t place) {
+      tried.push_back(waiting.order[place]);
+      area += area_of(tried.back());
+    };
+    while (waiting.first < waiting.end && area < kHigh * texture) take(waiting.first++);
+    const auto middle = static_cast<std::ptrdiff_t>(tried.size());
+    while (waiting.first < waiting.end && area < kAll * texture) take(--waiting.end);
+    std::reverse(tried.begin() + middle, tried.end());
+  }
+
+  // Makes a texture for rectangles of `tried`. Returns those that remain.
+  std::vector<std::size_t> fill_next(const std::vector<std::size_t>& tried) {
     constexpr double kFilled = 0.9;
     const double length = std::min<double>(sides_.max(), std::sqrt(area_ / kFilled));
     int side = sides_.at_least(std::max(longest_, static_cast<int>(length) + 1));
-    std::vector<std::size_t> rest = fill(side, left);
+    std::vector<std::size_t> rest = fill(side, tried);
     while (!rest.empty() && side < sides_.max()) {
       side = sides_.after(side);
-      rest = fill(side, left);
+      rest = fill(side, tried);
     }
-    cut(side, left, rest);
+    cut(side, tried, rest);
     return rest;
   }
 
-  // Places what fits of `left` in a square texture. Returns what does not.
-  std::vector<std::size_t> fill(int side, const std::vector<std::size_t>& left) {
-    std::vector<StbRect> rects(left.size());
-    for (std::size_t i = 0; i < left.size(); ++i) rects[i].size = size_of(left[i]);
+  // Places what fits of `tried` in a square texture. Returns what does not.
+  std::vector<std::size_t> fill(int side, const std::vector<std::size_t>& tried) {
+    std::vector<StbRect> rects(tried.size());
+    for (std::size_t i = 0; i < tried.size(); ++i) rects[i].size = size_of(tried[i]);
     pack_with_stb({side, side}, rects);
     std::vector<std::size_t> rest;
-    for (std::size_t i = 0; i < left.size(); ++i) {
+    for (std::size_t i = 0; i < tried.size(); ++i) {
       if (!rects[i].corner) {
-        rest.push_back(left[i]);
+        rest.push_back(tried[i]);
         continue;
       }
-      Place& place = packing_.places[left[i]];
+      Place& place = packing_.places[tried[i]];
       place.texture = static_cast<std::uint32_t>(packing_.sizes.size());
       place.corner = *rects[i].corner;
     }
     return rest;
   }
 
-  // Ends a texture with the rectangles of `left` that are not in `rest`, both in rising order.
-  void cut(int side, const std::vector<std::size_t>& left, const std::vector<std::size_t>& rest) {
-    std::vector<std::size_t> placed;
-    std::ranges::set_difference(left, rest, std::back_inserter(placed));
+  // Ends a texture with the rectangles of `tried` that are not in `rest`, both in the same order.
+  void cut(int side, std::span<const std::size_t> tried, std::span<const std::size_t> rest) {
     int bottom = 1;
-    for (const std::size_t i : placed) {
-      const cv::Size size = size_of(i);
-      bottom = std::max(bottom, packing_.places[i].corner.y + size.height);
-      area_ -= static_cast<double>(size.width) * size.height;
+    auto left = rest.begin();
+    for (const std::size_t i : tried) {
+      if (left != rest.end() && *left == i) {
+        ++left;
+        continue;
+      }
+      bottom = std::max(bottom, packing_.places[i].corner.y + size_of(i).height);
+      area_ -= area_of(i);
     }
     packing_.sizes.emplace_back(side, sides_.at_least(bottom));
   }
@@ -135,6 +177,13 @@ class Packer {
 };
 
 }  // namespace
+
+int largest_side(const PackingOptions& options) {
+  if (options.max_size == 0) return kLargest;
+  if (options.max_size < 16 || options.max_size > kLargest)
+    fail("max_texture_size {}: must be 0 or from 16 to {}", options.max_size, kLargest);
+  return options.max_size;
+}
 
 cv::Size size_at(const Place& place, cv::Size size) {
   return scaled(size, place.scale);

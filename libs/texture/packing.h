@@ -14,6 +14,9 @@ struct PackingOptions {
   int multiple = 0;     // sides are multiples of this number [px]; 0: powers of two
 };
 
+// The largest side of a texture [px] that the options allow. Errors as for pack().
+int largest_side(const PackingOptions& options);
+
 // The place of one rectangle.
 struct Place {
   std::uint32_t texture = 0;  // index into Packing::sizes
@@ -38,10 +41,12 @@ cv::Size size_at(const Place& place, cv::Size size);
 // A texture is a square at first. Its side is at least as long as the longest side of a rectangle.
 // If max_size allows it, the side is so long that the remaining rectangles fill at most 90 % of the
 // area. The side grows step by step until all remaining rectangles fit or until max_size is
-// reached. The rectangles that do not fit are placed in a further texture. At the end, the height
-// is reduced to the smallest allowed side that contains the lowest rectangle. Sides are powers of
-// two or multiples of `multiple`, except that a side longer than max_size is reduced to max_size. A
-// rectangle longer than max_size is scaled down (Place::scale).
+// reached. The rectangles that do not fit are placed in a further texture. Where the remaining
+// rectangles could fill more than 16 textures, only the highest and the lowest of them are tried
+// for the next texture, so that the time grows only a little faster than the number of rectangles.
+// At the end, the height is reduced to the smallest allowed side that contains the lowest
+// rectangle. Sides are powers of two or multiples of `multiple`, except that a side longer than
+// max_size is reduced to max_size. A rectangle longer than max_size is scaled down (Place::scale).
 //
 // Throws an Error for a max_size that is neither 0 nor from 16 to 32768, and for a `multiple` that
 // is negative or larger than max_size. The message calls the two values max_texture_size and

@@ -18,6 +18,12 @@ std::uint32_t samples_of(const Atlas& atlas, const Seam& seam) {
 
 }  // namespace
 
+std::uint64_t bytes_of_seams(const Atlas& atlas, std::span<const Seam> seams) {
+  std::uint64_t samples = 0;
+  for (const Seam& seam : seams) samples += samples_of(atlas, seam);
+  return seams.size() * sizeof(std::uint32_t) + samples * sizeof(Eigen::Vector3f);
+}
+
 SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams) {
   SeamColors result;
   result.begin.reserve(seams.size() + 1);

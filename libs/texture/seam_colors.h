@@ -31,4 +31,7 @@ struct SeamColors {
 // levelled.
 SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams);
 
+// The memory [bytes] of the result of compare_seams().
+std::uint64_t bytes_of_seams(const Atlas& atlas, std::span<const Seam> seams);
+
 }  // namespace axial::texture

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 
@@ -31,6 +32,7 @@ struct Edges {
     };
     std::vector<Use> uses;
     uses.reserve(3 * mesh.faces.size());
+    list.reserve(uses.capacity());
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
       for (std::uint32_t k = 0; k < 3; ++k) {
         const auto [from, to] = std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]);
@@ -173,10 +175,28 @@ void split_marked(const Edges& edges, std::span<const char> marked, Mesh& mesh) 
 
 }  // namespace
 
-std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options) {
+std::uint64_t bytes_to_split(std::uint64_t faces, std::uint64_t split) {
+  // Every edge of a face, once alone, and once with both of its faces. A mesh has at most as many
+  // edges as corners, usually half as many. Then the edge at each corner, the normals, and a mark
+  // and a vertex of each edge.
+  const std::uint64_t edges = 3 * faces;
+  const std::uint64_t listing = edges * (16 + sizeof(Edge) / 2) + faces * sizeof(Corners);
+  const std::uint64_t testing =
+      edges * sizeof(Edge) / 2 + faces * (sizeof(Corners) + sizeof(Eigen::Vector3f)) + edges;
+  // Arrays that grow are in memory twice.
+  const std::uint64_t parts = (faces + 2 * split) * 2 * sizeof(Corners);
+  const std::uint64_t splitting = edges * (sizeof(Edge) / 2 + 1 + 4) + faces * sizeof(Corners) +
+                                  parts + split * 2 * sizeof(Eigen::Vector3f);
+  return std::max({listing, testing, splitting});
+}
+
+std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options,
+                        const Budget& budget) {
   const std::size_t before = mesh.faces.size();
   constexpr int kMostRounds = 16;
   for (int round = 0; round < kMostRounds; ++round) {
+    const std::string work = fmt::format("splitting the {} faces of the mesh", mesh.faces.size());
+    budget.require(bytes_to_split(mesh.faces.size(), 0), work);
     const Edges edges(mesh);
     const std::vector<char> marked = long_edges(mesh, edges, views, 0.75 * options.tolerance);
     const auto count = static_cast<std::size_t>(std::ranges::count(marked, 1));
@@ -186,6 +206,7 @@ std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOpti
                   count);
       break;
     }
+    budget.require(bytes_to_split(mesh.faces.size(), count), work);
     split_marked(edges, marked, mesh);
   }
   return mesh.faces.size() - before;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "scene/mesh.h"
+#include "texture/memory.h"
 #include "texture/views.h"
 
 namespace axial::texture {
@@ -29,7 +30,13 @@ struct SplitOptions {
 // Splitting ends early in two cases: after 16 rounds, or before a round that could give more than
 // max_faces faces (with a warning in the log). Faces stay joined along their edges. The parts of a
 // face take the place of the face in the order of the faces. Vertices keep their indices, and new
-// vertices follow. Returns by how many the number of faces has grown.
-std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {});
+// vertices follow. Returns by how many the number of faces has grown. Error if a round needs more
+// memory than `budget` allows; earlier rounds have then changed the mesh.
+std::size_t split_faces(Mesh& mesh, std::span<const View> views, const SplitOptions& options = {},
+                        const Budget& budget = {});
+
+// The memory [bytes] of a round of split_faces() for a mesh of this size, besides the mesh.
+// `split`: the number of edges that the round splits.
+std::uint64_t bytes_to_split(std::uint64_t faces, std::uint64_t split);
 
 }  // namespace axial::texture

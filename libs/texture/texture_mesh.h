@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
+#include <vector>
 
+#include "base/setting_names.h"
 #include "scene/textured_mesh.h"
 #include "texture/face_views.h"
 #include "texture/labels.h"
@@ -13,6 +16,12 @@
 #include "texture/split_faces.h"
 
 namespace axial::texture {
+
+// The size of a textured mesh.
+struct ResultSize {
+  std::size_t vertices = 0, faces = 0;
+  std::vector<cv::Size> textures;
+};
 
 struct Options {
   SplitOptions split;
@@ -25,6 +34,16 @@ struct Options {
   PackingOptions packing;
   double sharpness_weight = 0;    // amount of an unsharp mask (paint() in atlas.h); 0: none
   Rgb empty_color{255, 127, 39};  // R G B; for faces that no view sees, and between the charts
+  // The memory [bytes] that texture_mesh() may use besides `mesh`. The need is estimated by
+  // functions of the stages' headers. This limit affects the time, but not the result. 0: no limit.
+  std::uint64_t max_bytes = 0;
+  // The largest memory [bytes] that `images` needs while it makes an image, with the image.
+  std::uint64_t image_bytes = 0;
+  // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An
+  // empty function: none.
+  std::function<std::uint64_t(const ResultSize&)> bytes_to_write;
+  // Errors name the field max_bytes by name_of("max_memory").
+  SettingNames name_of = own_name;
 };
 
 // The numbers that texture_mesh() reports.
@@ -47,8 +66,8 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 // given, is filled.
 //
 // Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
-// faces. Throws an Error if no view sees any face, or if pack() refuses the options (packing.h).
-// Exceptions of `images` are passed on.
+// faces. Throws an Error if no view sees any face, if pack() refuses the options (packing.h), or if
+// max_bytes does not suffice for a stage. Exceptions of `images` are passed on.
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const StageProgress& progress = {});

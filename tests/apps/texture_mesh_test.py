@@ -86,6 +86,14 @@ class Files(TextureTest):
             found.append(contents(self.work))
         self.assertEqual(found[0], found[1])
 
+    def test_a_limit_on_memory_does_not_change_the_bytes(self):
+        self.succeeds(*self.texture("--export-type", "ply,glb"))
+        free = contents(self.work)
+        self.succeeds(*self.texture("--export-type", "ply,glb", "--max-memory", "90"))
+        self.assertEqual(contents(self.work), free)
+        for limit in ("20", "64"):
+            self.refuses_and_keeps("--max-memory", *self.texture("--max-memory", limit))
+
     def test_the_views_file_names_images(self):
         write(self.path("work", "views.txt"), "# two of three\n0001.png\n2\n")
         self.succeeds(*self.texture("--views-file", "views.txt"))

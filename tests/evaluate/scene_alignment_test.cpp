@@ -63,11 +63,20 @@ TEST(SceneAlignment, FindsTheSimilarity) {
 }
 
 TEST(SceneAlignment, NamesAreEndsOfPaths) {
-  const Scene scene = scene_of({"/a/left/1.jpg", "/a/right/1.jpg", "/a/21.jpg"});
-  EXPECT_EQ(images_named(scene, "left/1.jpg"), std::vector<std::size_t>{0});
-  EXPECT_EQ(images_named(scene, "1.jpg"), (std::vector<std::size_t>{0, 1}));
-  EXPECT_EQ(images_named(scene, "21.jpg"), std::vector<std::size_t>{2});
-  EXPECT_TRUE(images_named(scene, "ft/1.jpg").empty());
+  Scene scene = scene_of({"/a/left/1.jpg", "/a/right/1.jpg", "/a/21.jpg", "/b/left/1.jpg"});
+  scene.images[3].calibrated = false;
+  const ImageNames names(scene);
+  const auto named = [&](const std::string& name) {
+    const auto found = names.named(name);
+    return std::vector<std::size_t>(found.begin(), found.end());
+  };
+  EXPECT_EQ(named("left/1.jpg"), std::vector<std::size_t>{0});
+  EXPECT_EQ(named("1.jpg"), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(named("./left/../right/1.jpg"), std::vector<std::size_t>{1});
+  EXPECT_EQ(named("/a/right/1.jpg"), std::vector<std::size_t>{1});
+  EXPECT_EQ(named("21.jpg"), std::vector<std::size_t>{2});
+  for (const char* other : {"ft/1.jpg", "/left/1.jpg", "/b/left/1.jpg", "left", "1.jpg/", ""})
+    EXPECT_TRUE(named(other).empty()) << other;
 }
 
 }  // namespace

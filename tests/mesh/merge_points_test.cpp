@@ -34,6 +34,17 @@ TEST_P(MergePoints, ResultsAreTheDistanceApartInAView) {
     }
 }
 
+TEST_P(MergePoints, TooManyPointsAreCountedButNotKept) {
+  const PointCloud cloud = test::points_on_sphere(scene, 5000);
+  const MergedPoints all = merge_points(cloud, rays, {8});
+  EXPECT_EQ(all.count, all.size());
+  const MergedPoints same = merge_points(cloud, rays, {8, all.size()});
+  EXPECT_EQ(same.positions, all.positions);
+  const MergedPoints none = merge_points(cloud, rays, {8, all.size() - 1});
+  EXPECT_EQ(none.count, all.size());
+  EXPECT_EQ(none.size(), 0u);
+}
+
 TEST_P(MergePoints, CountsThePointsOfEachView) {
   const PointCloud cloud = test::points_on_sphere(scene, 20000);
   const MergedPoints merged = merge_points(cloud, rays, {4});

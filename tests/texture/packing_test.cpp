@@ -53,6 +53,19 @@ TEST(Packing, ManyTexturesAreUsedWhereOneIsTooSmall) {
   expect_valid(sizes, {128, 0});
 }
 
+// The packer is not asked for a place of each rectangle in each texture, and still fills textures.
+TEST(Packing, ThousandsOfTexturesAreWellFilled) {
+  const std::vector<cv::Size> sizes = some_sizes(2, 40'000, 24);
+  double area = 0;
+  for (const cv::Size& size : sizes) area += size.area();
+  const Packing packing = pack(sizes, {64, 0});
+  EXPECT_GT(packing.sizes.size(), 1000u);
+  double used = 0;
+  for (const cv::Size& size : packing.sizes) used += size.area();
+  EXPECT_GT(area, 0.8 * used);
+  expect_valid(sizes, {64, 0});
+}
+
 // After a texture that is too small the next larger size is tried, and not the largest.
 TEST(Packing, TexturesAreNotLargerThanNeeded) {
   const std::vector<cv::Size> sizes(90, cv::Size(30, 34));  // 91,800 px: 87 % of 324 x 324

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <set>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "support/error_of.h"
 #include "texture/painted_room.h"
@@ -153,6 +157,33 @@ TEST(TextureMesh, LargeChartsAreScaledDown) {
   for (const cv::Mat3b& texture : mesh.textures)
     EXPECT_LE(std::max(texture.cols, texture.rows), 64);
   EXPECT_LT(summary(test::color_errors(mesh)).median, 12);  // coarser pixels, but the same places
+}
+
+// Each stage checks its memory: a rising limit is refused until it suffices for all stages, and the
+// result does not depend on it.
+TEST(TextureMesh, ALimitOnMemoryIsKeptOrRefusedInOneLine) {
+  const test::Room room = test::photograph_room(4);
+  const TexturedMesh free = texture_mesh(test::room_mesh(), room.views, room.source());
+  Options options;
+  options.name_of = [](std::string_view) { return std::string("the limit"); };
+  std::set<std::string> works;
+  std::optional<TexturedMesh> limited;
+  for (options.max_bytes = 10'000; !limited; options.max_bytes += options.max_bytes / 3) {
+    try {
+      limited = texture_mesh(test::room_mesh(), room.views, room.source(), options);
+      break;
+    } catch (const Error& error) {
+      const std::string said = error.what();
+      EXPECT_THAT(said, testing::MatchesRegex("the limit: [^\n]+ needs [0-9]+ MB more"));
+      works.insert(said.substr(0, 22));
+    }
+  }
+  EXPECT_GT(works.size(), 2u);  // stages
+  EXPECT_LT(options.max_bytes, 200'000'000u);
+  EXPECT_TRUE(limited->uv == free.uv);
+  ASSERT_EQ(limited->textures.size(), free.textures.size());
+  for (std::size_t i = 0; i < free.textures.size(); ++i)
+    EXPECT_EQ(cv::norm(limited->textures[i], free.textures[i], cv::NORM_INF), 0);
 }
 
 // Meshes of other programs: an edge of three faces, a face without area, a face twice.

@@ -104,7 +104,27 @@ std::optional<PlyCounts> count_ply(const std::filesystem::path& ply) {
   return counts;
 }
 
+// The memory of a PointCloud.
+std::uint64_t cloud_bytes(const PlyCounts& cloud) {
+  const std::uint64_t vectors = cloud.points * (cloud.normals ? 2 : 1);
+  return vectors * sizeof(Eigen::Vector3f) + (cloud.colors ? cloud.points * sizeof(Rgb) : 0) +
+         cloud.points * sizeof(std::size_t) +
+         cloud.observations * (sizeof(std::uint32_t) + sizeof(float));
+}
+
 }  // namespace
+
+std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply) {
+  const std::optional<PlyCounts> cloud = count_ply(ply);
+  return cloud ? cloud->file_bytes + cloud_bytes(*cloud) : 0;
+}
+
+std::uint64_t bytes_to_read_mesh(const std::filesystem::path& ply) {
+  std::error_code error;
+  const std::uintmax_t file = std::filesystem::file_size(ply, error);
+  // A mesh is at most as large as its binary file, and at most twice as large as its text.
+  return error ? 0 : 3 * file;
+}
 
 std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& ply,
                                                    const MvsCounts& scene) {
@@ -121,12 +141,8 @@ std::optional<PointSourceCounts> count_point_cloud(const std::filesystem::path& 
   counts.scene.file_bytes += in_file(counts.scene) - in_file(scene);
   const std::uint64_t views = cloud->observations / std::max<std::uint64_t>(cloud->points, 1);
   counts.scene.view_list_bytes = cloud->points * heap_bytes(views * sizeof(SparseView));
-  const std::uint64_t vectors = (cloud->points + counts.scene.normals) * sizeof(Eigen::Vector3f) +
-                                counts.scene.colors * sizeof(Rgb) +
-                                cloud->points * sizeof(std::size_t) +
-                                cloud->observations * (sizeof(std::uint32_t) + sizeof(float));
   const std::uint64_t points = cloud->points * sizeof(SparsePoint) + counts.scene.view_list_bytes;
-  counts.reading_bytes = vectors + std::max(cloud->file_bytes, points);
+  counts.reading_bytes = cloud_bytes(*cloud) + std::max(cloud->file_bytes, points);
   return counts;
 }
 

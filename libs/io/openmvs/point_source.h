@@ -28,6 +28,11 @@ namespace axial::io {
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 
+// Estimates of the memory [bytes] that the two functions need, with their result. The estimates are
+// made from the size and the header of the file. 0 for a file that cannot be read.
+std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply);
+std::uint64_t bytes_to_read_mesh(const std::filesystem::path& ply);
+
 // Replaces the sparse points of `scene`, with their normals and colours, by the cloud of
 // read_cloud_of_scene(). `scene` is in `frame`. The cloud must have the property view_indices,
 // which holds indices of the scene's images. The property view_weights is optional: without it all

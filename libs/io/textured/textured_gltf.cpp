@@ -53,17 +53,61 @@ class GltfModel {
   // A texture in a file of its own.
   void add_texture_file(const std::string& name) { add_texture().uri = as_uri(name); }
 
+  // Prepares the buffer for textures of `bytes` bytes and for `faces` faces.
+  void make_room(std::size_t bytes, std::size_t faces) {
+    // Three corners at most, each with position and uv, and their indices.
+    constexpr std::size_t kOfFace = 3 * (12 + 8 + 4);
+    bytes_.reserve(bytes + kOfFace * faces);
+  }
+
   // A texture in the buffer.
-  void add_texture_bytes(const std::string& png) {
+  void add_texture_bytes(const Bytes& png) {
     const int view = add_view(png.data(), png.size(), 0);
     tinygltf::Image& image = add_texture();
     image.bufferView = view;
     image.mimeType = "image/png";
   }
 
-  // The faces of a texture, if there are any.
-  void add_primitive(const TexturedMesh& mesh, std::uint32_t texture) {
-    const UnifiedCorners corners = unify_corners(mesh, texture);
+  // For each texture, its faces, if there are any.
+  void add_primitives(const TexturedMesh& mesh) {
+    CornerUnifier unifier(mesh);
+    for (std::uint32_t k = 0; k < mesh.textures.size(); ++k)
+      add_primitive(mesh, k, unifier.corners_of(k));
+  }
+
+  // Writes a file that contains the buffer.
+  void write_binary(std::ostream& out) {
+    constexpr std::uint64_t kMostBytes = (1ull << 32) - (1ull << 26);  // with room for the text
+    if (bytes_.size() > kMostBytes)
+      fail("a GLB holds at most 4 GiB, but mesh and textures have {} MB; glTF has no such limit",
+           bytes_.size() / 1'000'000);
+    model_.buffers.emplace_back().data = std::move(bytes_);
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, out, false, true)) fail("the glTF writer failed");
+  }
+
+  // Returns a file that refers to the buffer by the name `uri`, and moves the buffer out.
+  GltfFiles files(const std::string& uri) {
+    std::ostringstream out;
+    // The writer puts a buffer into the text as base64. With a byte in its place, the text is that
+    // of a short buffer, whose length and address are then replaced.
+    model_.buffers.emplace_back().data.assign(1, 0);
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, out, false, false)) fail("the glTF writer failed");
+    GltfFiles files{std::move(out).str(), std::move(bytes_)};
+    const std::string begin = "\"buffers\":[{\"byteLength\":1,\"uri\":\"";
+    const std::size_t at = files.json.find(begin);
+    if (at == std::string::npos) fail("the glTF writer has an unknown layout");
+    const std::size_t end = files.json.find('"', at + begin.size());
+    files.json.replace(at, end - at,
+                       fmt::format("\"buffers\":[{{\"byteLength\":{},\"uri\":\"{}",
+                                   files.buffer.size(), as_uri(uri)));
+    return files;
+  }
+
+ private:
+  void add_primitive(const TexturedMesh& mesh, std::uint32_t texture,
+                     const UnifiedCorners& corners) {
     if (corners.faces.empty()) return;
     std::vector<Eigen::Vector3f> positions;
     std::vector<Eigen::Vector2f> uv;
@@ -84,39 +128,6 @@ class GltfModel {
     model_.meshes[0].primitives.push_back(std::move(primitive));
   }
 
-  // Returns the file. The buffer is part of it if `binary`; otherwise it is moved to `buffer`, and
-  // the file refers to it by the name `uri`.
-  std::string text(bool binary, const std::string& uri, std::string* buffer) {
-    std::ostringstream out;
-    tinygltf::TinyGLTF writer;
-    tinygltf::Buffer& held = model_.buffers.emplace_back();
-    if (binary) {
-      constexpr std::uint64_t kMostBytes = (1ull << 32) - (1ull << 26);  // with room for the text
-      if (bytes_.size() > kMostBytes)
-        fail("a GLB holds at most 4 GiB, but mesh and textures have {} MB; glTF has no such limit",
-             bytes_.size() / 1'000'000);
-      held.data.assign(bytes_.begin(), bytes_.end());
-      std::string().swap(bytes_);
-      if (!writer.WriteGltfSceneToStream(&model_, out, false, true)) fail("the glTF writer failed");
-      return std::move(out).str();
-    }
-    // The writer puts a buffer into the text as base64. With a byte in its place, the text is that
-    // of a short buffer, whose length and address are then replaced.
-    held.data.assign(1, 0);
-    if (!writer.WriteGltfSceneToStream(&model_, out, false, false)) fail("the glTF writer failed");
-    std::string json = std::move(out).str();
-    const std::string begin = "\"buffers\":[{\"byteLength\":1,\"uri\":\"";
-    const std::size_t at = json.find(begin);
-    if (at == std::string::npos) fail("the glTF writer has an unknown layout");
-    const std::size_t end = json.find('"', at + begin.size());
-    json.replace(
-        at, end - at,
-        fmt::format("\"buffers\":[{{\"byteLength\":{},\"uri\":\"{}", bytes_.size(), as_uri(uri)));
-    *buffer = std::move(bytes_);
-    return json;
-  }
-
- private:
   tinygltf::Image& add_texture() {
     const auto index = static_cast<int>(model_.images.size());
     tinygltf::Texture& texture = model_.textures.emplace_back();
@@ -132,13 +143,14 @@ class GltfModel {
   }
 
   int add_view(const void* data, std::size_t size, int target) {
-    bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');  // accessors begin at multiples of 4
+    bytes_.resize((bytes_.size() + 3) / 4 * 4, 0);  // accessors begin at multiples of 4
     tinygltf::BufferView& view = model_.bufferViews.emplace_back();
     view.buffer = 0;
     view.byteOffset = bytes_.size();
     view.byteLength = size;
     view.target = target;
-    bytes_.append(static_cast<const char*>(data), size);
+    const auto* begin = static_cast<const unsigned char*>(data);
+    bytes_.insert(bytes_.end(), begin, begin + size);
     return static_cast<int>(model_.bufferViews.size() - 1);
   }
 
@@ -168,7 +180,7 @@ class GltfModel {
   }
 
   tinygltf::Model model_;
-  std::string bytes_;
+  Bytes bytes_;
 };
 
 }  // namespace
@@ -177,20 +189,24 @@ GltfFiles textured_gltf(const TexturedMesh& mesh, const std::vector<std::string>
                         const std::string& binary, const LocalFrame& frame) {
   GltfModel model;
   for (const std::string& name : textures) model.add_texture_file(name);
-  for (std::uint32_t k = 0; k < textures.size(); ++k) model.add_primitive(mesh, k);
+  model.add_primitives(mesh);
   model.add_node(frame);
-  GltfFiles files;
-  files.json = model.text(false, binary, &files.buffer);
-  return files;
+  return model.files(binary);
 }
 
-std::string textured_glb(const TexturedMesh& mesh, const std::vector<std::string>& pngs,
-                         const LocalFrame& frame) {
+void write_textured_glb(std::ostream& out, const TexturedMesh& mesh, std::vector<Bytes> pngs,
+                        const LocalFrame& frame) {
   GltfModel model;
-  for (const std::string& png : pngs) model.add_texture_bytes(png);
-  for (std::uint32_t k = 0; k < pngs.size(); ++k) model.add_primitive(mesh, k);
+  std::size_t bytes = 0;
+  for (const Bytes& png : pngs) bytes += png.size() + 4;
+  model.make_room(bytes, mesh.mesh.faces.size());
+  for (Bytes& png : pngs) {
+    model.add_texture_bytes(png);
+    Bytes().swap(png);
+  }
+  model.add_primitives(mesh);
   model.add_node(frame);
-  return model.text(true, "", nullptr);
+  model.write_binary(out);
 }
 
 }  // namespace axial::io

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
@@ -50,17 +52,25 @@ void check(const TexturedMesh& mesh, const std::string& file) {
     if (!mesh.mesh.vertices[v].allFinite()) fail("{}: vertex {} is not finite", file, v);
 }
 
-std::string png_bytes(const cv::Mat3b& image, const std::string& file) {
-  std::vector<unsigned char> bytes;
+Bytes png_bytes(const cv::Mat3b& image, const std::string& file) {
+  Bytes bytes;
   if (!cv::imencode(".png", image, bytes)) fail("{}: a texture cannot be encoded", file);
-  return {bytes.begin(), bytes.end()};
+  return bytes;
 }
 
-void write_bytes(const fs::path& path, const std::string& bytes) {
+void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   std::ofstream stream(path, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  write(stream);
   stream.close();
   if (!stream) fail("{}: cannot be written", path.string());
+}
+
+template <class Container>
+void write_bytes(const fs::path& path, const Container& bytes) {
+  write_file(path, [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(bytes.data()),
+              static_cast<std::streamsize>(bytes.size()));
+  });
 }
 
 std::vector<std::string> names_of(std::span<const fs::path> files) {
@@ -95,6 +105,29 @@ std::vector<fs::path> textured_files(const fs::path& path, TexturedFormat format
   return files;
 }
 
+std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t vertices,
+                                      std::uint64_t faces, std::span<const cv::Size> textures) {
+  std::uint64_t all = 0, largest = 0;
+  for (const cv::Size& size : textures) {
+    const auto bytes = 3 * static_cast<std::uint64_t>(size.area());
+    all += bytes;
+    largest = std::max(largest, bytes);
+  }
+  // A PNG is hardly larger than its pixels. It grows while it is made, and is then in memory twice.
+  const std::uint64_t png = 2 * largest;
+  switch (format) {
+    case TexturedFormat::ply:
+      return std::max(png, 12 * vertices + 42 * faces);
+    case TexturedFormat::obj:  // a text that grows, with a copy; numbers of usual lengths
+      return std::max(png, 3 * (35 * vertices + 80 * faces));
+    case TexturedFormat::gltf:
+      return std::max(png, 2 * 72 * faces);
+    case TexturedFormat::glb:
+      break;
+  }
+  return 2 * (all + 72 * faces);  // the buffer and the writer's copy
+}
+
 void write_textured_mesh(const fs::path& path, const TexturedMesh& mesh, TexturedFormat format,
                          const LocalFrame& frame) {
   const std::vector<fs::path> files = textured_files(path, format, mesh.textures.size());
@@ -116,33 +149,44 @@ void write_textured_mesh(const fs::path& path, const TexturedMesh& mesh, Texture
       write_bytes(temporaries[1], gltf.buffer);
       return write_bytes(temporaries[0], gltf.json);
     }
-    std::vector<std::string> pngs;
+    std::vector<Bytes> pngs;
     for (const cv::Mat3b& texture : mesh.textures) pngs.push_back(png_bytes(texture, file));
-    write_bytes(temporaries[0], textured_glb(mesh, pngs, frame));
+    write_file(temporaries[0],
+               [&](std::ostream& out) { write_textured_glb(out, mesh, std::move(pngs), frame); });
   });
 }
 
-UnifiedCorners unify_corners(const TexturedMesh& mesh, std::uint32_t texture) {
-  constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+namespace {
+
+constexpr std::uint32_t kNoCorner = 0xFFFFFFFFu;
+
+}  // namespace
+
+CornerUnifier::CornerUnifier(const TexturedMesh& mesh)
+    : mesh_(mesh), faces_(mesh.textures.size()), first_(mesh.mesh.vertices.size(), kNoCorner) {
+  for (std::uint32_t f = 0; f < mesh.mesh.faces.size(); ++f)
+    faces_[mesh.texture_of[f]].push_back(f);
+}
+
+UnifiedCorners CornerUnifier::corners_of(std::uint32_t texture) {
   UnifiedCorners result;
-  std::vector<std::uint32_t> first(mesh.mesh.vertices.size(), kNone);  // of a vertex's corners
-  std::vector<std::uint32_t> next;                                     // after each corner
-  for (std::size_t f = 0; f < mesh.mesh.faces.size(); ++f) {
-    if (mesh.texture_of[f] != texture) continue;
+  std::vector<std::uint32_t> next;  // corner of the same vertex, of each corner
+  for (const std::uint32_t f : faces_[texture]) {
     std::array<std::uint32_t, 3>& corners = result.faces.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = mesh.mesh.faces[f][k];
-      std::uint32_t i = first[vertex];
-      while (i != kNone && result.uv[i] != mesh.uv[f][k]) i = next[i];
-      if (i == kNone) {
+      const std::uint32_t vertex = mesh_.mesh.faces[f][k];
+      std::uint32_t i = first_[vertex];
+      while (i != kNoCorner && result.uv[i] != mesh_.uv[f][k]) i = next[i];
+      if (i == kNoCorner) {
         i = static_cast<std::uint32_t>(result.vertex.size());
         result.vertex.push_back(vertex);
-        result.uv.push_back(mesh.uv[f][k]);
-        next.push_back(std::exchange(first[vertex], i));
+        result.uv.push_back(mesh_.uv[f][k]);
+        next.push_back(std::exchange(first_[vertex], i));
       }
       corners[k] = i;
     }
   }
+  for (const std::uint32_t vertex : result.vertex) first_[vertex] = kNoCorner;
   return result;
 }
 

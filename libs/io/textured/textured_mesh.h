@@ -2,8 +2,10 @@
 // Files of textured meshes: PLY as OpenMVS and MeshLab write it, OBJ with MTL, and glTF 2.0.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -52,6 +54,11 @@ std::vector<std::filesystem::path> textured_files(const std::filesystem::path& p
 // cannot be written.
 void write_textured_mesh(const std::filesystem::path& path, const TexturedMesh& mesh,
                          TexturedFormat format, const LocalFrame& frame = {});
+
+// An upper bound of the memory [bytes] that write_textured_mesh() needs besides the mesh and its
+// textures.
+std::uint64_t bytes_to_write_textured(TexturedFormat format, std::uint64_t vertices,
+                                      std::uint64_t faces, std::span<const cv::Size> textures);
 
 // Reads a textured PLY and the textures beside it. Positions are returned as stored if `frame` is
 // empty, and otherwise in `frame`, as by read_mesh_ply() (ply.h). Texture coordinates are returned

@@ -18,8 +18,9 @@ std::string textured_obj(const TexturedMesh& mesh, const std::string& materials,
   for (const Eigen::Vector3f& v : mesh.mesh.vertices)
     fmt::format_to(out, "v {} {} {}\n", v.x(), v.y(), v.z());
   std::size_t before = 1;  // indices begin at 1
+  CornerUnifier unifier(mesh);
   for (std::uint32_t k = 0; k < mesh.textures.size(); ++k) {
-    const UnifiedCorners corners = unify_corners(mesh, k);
+    const UnifiedCorners corners = unifier.corners_of(k);
     if (corners.faces.empty()) continue;
     for (const Eigen::Vector2f& corner : corners.uv) {
       const Eigen::Vector2f uv = relative(corner, mesh.textures[k].size());

@@ -39,7 +39,7 @@ std::string textured_ply(const TexturedMesh& textured, const std::vector<std::st
     }
     if (numbered) out.write(static_cast<std::int32_t>(texture));
   }
-  return out.bytes();
+  return out.take();
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "private/only_for_io.h"
 
@@ -18,6 +19,9 @@ static_assert(std::endian::native == std::endian::little, "the file writers assu
 class ByteWriter {
  public:
   const std::string& bytes() const { return bytes_; }
+
+  // Moves the bytes out, so that large contents are not copied.
+  std::string take() { return std::move(bytes_); }
 
   // Allocates room for `bytes` bytes. More bytes can be written, at the cost of a copy.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }

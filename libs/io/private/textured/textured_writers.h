@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "private/only_for_io.h"
 
 namespace axial::io {
+
+using Bytes = std::vector<unsigned char>;
 
 // The corners of the faces that have one texture, without repetitions. Two corners are the same if
 // they have the same vertex and the same texture coordinates. Corner i has the vertex `vertex[i]`
@@ -21,8 +24,21 @@ struct UnifiedCorners {
   std::vector<std::array<std::uint32_t, 3>> faces;  // indices into `vertex` and `uv`
 };
 
-// Returns the corners of all faces with the texture `texture`, in the order of the mesh.
-UnifiedCorners unify_corners(const TexturedMesh& mesh, std::uint32_t texture);
+// Unifies the corners of the faces of one texture after the other. The time for a texture depends
+// on the number of its faces alone, so that many textures do not take longer than one.
+class CornerUnifier {
+ public:
+  // `mesh` must outlive the object.
+  explicit CornerUnifier(const TexturedMesh& mesh);
+
+  // Returns the corners of all faces with the texture `texture`, in the order of the mesh.
+  UnifiedCorners corners_of(std::uint32_t texture);
+
+ private:
+  const TexturedMesh& mesh_;
+  std::vector<std::vector<std::uint32_t>> faces_;  // of each texture
+  std::vector<std::uint32_t> first_;  // work space: the first unified corner of each vertex
+};
 
 // Converts texture coordinates from pixels to ((x + 0.5) / width, (y + 0.5) / height), so that v
 // counts from the upper edge. `texture` is the size of the texture.
@@ -39,13 +55,15 @@ std::string textured_mtl(const std::vector<std::string>& textures);
 // The two files of a glTF. textured_gltf takes the file names of the textures, and in `binary` the
 // name of the file that will hold `buffer`.
 struct GltfFiles {
-  std::string json, buffer;
+  std::string json;
+  Bytes buffer;
 };
 GltfFiles textured_gltf(const TexturedMesh& mesh, const std::vector<std::string>& textures,
                         const std::string& binary, const LocalFrame& frame);
 
-// Returns the bytes of a GLB file. `pngs` holds the textures, encoded as PNG.
-std::string textured_glb(const TexturedMesh& mesh, const std::vector<std::string>& pngs,
-                         const LocalFrame& frame);
+// Writes the bytes of a GLB file. `pngs` holds the textures, encoded as PNG. A texture is freed as
+// soon as it is in the buffer of the file.
+void write_textured_glb(std::ostream& out, const TexturedMesh& mesh, std::vector<Bytes> pngs,
+                        const LocalFrame& frame);
 
 }  // namespace axial::io

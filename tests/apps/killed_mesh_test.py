@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ReconstructMesh, RefineMesh and TextureMesh that are killed at several moments: each output is
+complete or absent, and the next run writes the bytes of a run that was not killed."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+from openmvs_scene import Scene
+from programs import BIN, contents, files_below, main, read, write
+
+REFINE = ("--resolution-level", "1", "--min-resolution", "100", "-o", "refined.ply")
+
+
+def dead_process():
+    process = subprocess.Popen(["true"])
+    process.wait()
+    return process.pid
+
+
+class Killed(Scene):
+    MEDIA = ("water",)
+    SAMPLES = 1
+
+    def start(self, folder, program, *arguments):
+        return subprocess.Popen([os.path.join(BIN, program), "-i", "scene_dense.mvs", "-w", folder,
+                                 *arguments], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+
+    def finish(self, folder, program, *arguments):
+        """Runs the program to its end. Returns its output and the seconds that it took."""
+        begin = time.monotonic()
+        said = self.succeeds(program, "-i", "scene_dense.mvs", "-w", folder, *arguments).stdout
+        return said, time.monotonic() - begin
+
+    def with_mesh(self):
+        """A folder with the mesh scene_dense_mesh.ply, and another one with the same content."""
+        folder, other = self.copy("water"), self.path("other")
+        self.finish(folder, "ReconstructMesh", "-d", "4")
+        shutil.rmtree(other, ignore_errors=True)
+        shutil.copytree(folder, other)
+        return folder, other
+
+    def killed_at_moments(self, folder, seconds, *command):
+        """Kills a run after parts of `seconds`, again and again in the same folder. Yields after each
+        kill."""
+        for part in (0.15, 0.5, 0.8, 0.95):
+            process = self.start(folder, *command)
+            try:
+                process.wait(timeout=part * seconds)  # a run may be faster than the first one
+            except subprocess.TimeoutExpired:
+                process.kill()
+                self.assertEqual(process.wait(), -signal.SIGKILL)
+            yield
+
+    def check(self, folder, other, *command):
+        """Compares runs in `folder` that are killed with a run in `other` that is not."""
+        before = files_below(other)
+        _, seconds = self.finish(other, *command)
+        expected = contents(other)
+        outputs = files_below(other) - before
+        self.assertGreater(len(outputs), 0)
+        for _ in self.killed_at_moments(folder, seconds, *command):
+            for name in outputs & files_below(folder):
+                self.assertEqual(read(os.path.join(folder, name)), expected[name], name)
+                os.remove(os.path.join(folder, name))
+        for name in outputs:  # as a process leaves them that is killed while it writes
+            stem, extension = os.path.splitext(name)
+            write(os.path.join(folder, f"{stem}.{dead_process()}.tmp{extension}"), b"half")
+        self.finish(folder, *command)
+        self.assertEqual(contents(folder), expected)
+
+    def test_reconstruct(self):
+        folder, other = self.with_mesh()
+        for one in (folder, other):
+            os.remove(os.path.join(one, "scene_dense_mesh.ply"))
+        self.check(folder, other, "ReconstructMesh")
+
+    def test_texture(self):
+        folder, other = self.with_mesh()
+        self.check(folder, other, "TextureMesh", "-m", "scene_dense_mesh.ply", "--export-type",
+                   "ply,glb", "--max-texture-size", "256")
+
+    def test_refine(self):
+        folder, other = self.with_mesh()
+        self.check(folder, other, "RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
+
+    def test_refine_goes_on_after_the_last_resolution_that_is_done(self):
+        folder, other = self.with_mesh()
+        command = ("RefineMesh", "-m", "scene_dense_mesh.ply", *REFINE)
+        self.finish(other, *command)
+        process = self.start(folder, *command)
+        state = os.path.join(folder, "refined.ply.state")
+        for _ in range(30000):  # polls for the state; without it the assertion below fails
+            if os.path.exists(state) or process.poll() is not None:
+                break
+            time.sleep(0.002)
+        process.kill()
+        self.assertEqual(process.wait(), -signal.SIGKILL, "the run ended before it could be killed")
+        kept = read(state)
+        said, _ = self.finish(folder, *command, "--max-threads", "1")
+        self.assertRegex(said, r"refined.ply.state: [12] of 2 resolutions are done already")
+        self.assertEqual(contents(folder), contents(other))
+        # The state of a run with other options, and a damaged state, are not used.
+        for options, bytes_of_state in ((("--regularity-weight", "0.3"), kept), ((), kept[:-1])):
+            write(state, bytes_of_state)
+            said, _ = self.finish(folder, *command, *options)
+            self.assertNotIn("done already", said)
+        self.assertEqual(contents(folder), contents(other))
+
+
+if __name__ == "__main__":
+    main()
