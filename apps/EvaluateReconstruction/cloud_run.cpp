@@ -59,7 +59,8 @@ Similarity align_by_icp(const Options& options, const Input& input,
 }
 
 // Distant clouds cannot be compared, and the search would be slow: no part of a search tree is
-// nearer than the others.
+// nearer than the others. One distant vertex of a mesh is enough, because the samples of a mesh are
+// spread by area.
 void refuse_if_far(const Options& options, const Input& input, const Mesh& truth) {
   constexpr float kFar = 1e5;
   const auto is_far = [&](const Eigen::Vector3f& x) {
@@ -71,6 +72,10 @@ void refuse_if_far(const Options& options, const Input& input, const Mesh& truth
         "{}: most of its points are more than {:.0f} km away from {}: the two files do not have "
         "the same coordinates",
         options.input.string(), kFar / 1000, options.truth.string());
+  const auto far = std::ranges::find_if(all, is_far);
+  if (input.mesh && far != all.end())
+    fail("{}: vertex {} is more than {:.0f} km away from {}", options.input.string(),
+         far - all.begin(), kFar / 1000, options.truth.string());
 }
 
 // Moves the input from its own frame to the truth's frame.

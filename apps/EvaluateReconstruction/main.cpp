@@ -26,13 +26,13 @@ std::vector<fs::path> inputs_of(const Options& options) {
 // Called before the work.
 void check_outputs(const Options& options) {
   const std::vector<fs::path> inputs = inputs_of(options);
-  const std::pair<const char*, const fs::path&> outputs[] = {
-      {"--json", options.json},
-      {"--error-cloud", options.error_cloud},
-      {"--error-mesh", options.error_mesh},
-      {"--picture", options.picture},
-      {"--aligned", options.aligned},
-      {"--transform-out", options.transform}};
+  const NamedOutput outputs[] = {{"--json", options.json},
+                                 {"--error-cloud", options.error_cloud},
+                                 {"--error-mesh", options.error_mesh},
+                                 {"--picture", options.picture},
+                                 {"--aligned", options.aligned},
+                                 {"--transform-out", options.transform}};
+  require_different(outputs);
   for (const auto& [option, path] : outputs) {
     if (path.empty()) continue;
     require_not_an_input(path, inputs, option);

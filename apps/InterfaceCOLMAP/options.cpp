@@ -80,6 +80,9 @@ void set_export(const Values& values, Options& options) {
   refuse_file_name(values.output);
   options.export_folder = values.output.empty() ? options.scene_file.parent_path()
                                                 : in_working_folder(common, values.output);
+  std::error_code error;
+  if (fs::exists(options.export_folder, error) && !fs::is_directory(options.export_folder, error))
+    fail("--output-file {}: is a file, but a scene (.mvs) is exported to a folder", values.output);
   if (!values.housing.empty())
     fail("--housing {}: is not used in an export, which takes the housing file beside the scene",
          values.housing);

@@ -117,7 +117,7 @@ void take_paths(const Raw& raw, Options& options) {
   const fs::path& scene = options.scene.scene;
   options.cloud = in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
-  options.output = in_working_folder(common, raw.output);
+  options.output = output_in_working_folder(common, raw.output, "--output-file");
   if (options.output.empty())
     options.output = scene.parent_path() / (scene.stem().string() + "_mesh");
   options.output =

@@ -144,7 +144,7 @@ void take_paths(const Raw& raw, Options& options) {
   options.mesh = in_working_folder(common, raw.mesh);
   if (options.mesh.empty())
     options.mesh = std::filesystem::path(scene.input).replace_extension(".ply");
-  options.output = in_working_folder(common, raw.output);
+  options.output = output_in_working_folder(common, raw.output, "--output-file");
   if (options.output.empty())
     options.output = scene.input.parent_path() / (scene.input.stem().string() + "_refine");
   options.output =

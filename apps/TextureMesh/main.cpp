@@ -62,6 +62,8 @@ void keep_inputs(const Settings& settings, const Photographs& photographs, std::
 }
 
 void require_writable_outputs(const Settings& settings) {
+  std::error_code ignored;
+  fs::create_directories(settings.output.parent_path(), ignored);
   for (const io::TexturedFormat format : settings.formats)
     for (const fs::path& file : io::textured_files(settings.output, format, 1))
       require_writable(file);
@@ -84,6 +86,22 @@ texture::Options with_memory(const Settings& settings, const Photographs& photog
   return options;
 }
 
+// Textures the mesh. Errors get the name of the mesh, unless they name an option or a photograph.
+TexturedMesh textured_mesh(const Settings& settings, Mesh mesh, const Photographs& photographs,
+                           texture::Report& facts) {
+  try {
+    return texture::texture_mesh(
+        std::move(mesh), photographs.views(),
+        [&](std::size_t view) { return photographs.load(view); },
+        with_memory(settings, photographs), &facts,
+        [](const std::string& stage) { return console_progress(stage); });
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with("--") || message.starts_with("/")) throw;
+    fail("{}: {}", settings.mesh.string(), message);
+  }
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -101,10 +119,7 @@ int run(int argc, char** argv) {
   scene = {};
   return_freed_memory();
   texture::Report facts;
-  const TexturedMesh textured = texture::texture_mesh(
-      std::move(mesh), photographs.views(),
-      [&](std::size_t view) { return photographs.load(view); }, with_memory(settings, photographs),
-      &facts, [](const std::string& stage) { return console_progress(stage); });
+  const TexturedMesh textured = textured_mesh(settings, std::move(mesh), photographs, facts);
   return_freed_memory();
   report(textured, facts);
   keep_inputs(settings, photographs, textured.textures.size());

@@ -137,7 +137,7 @@ void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings)
   const fs::path& scene = settings.scene.scene;
   settings.output = raw.output.empty()
                         ? scene.parent_path() / (scene.stem().string() + "_texture.mvs")
-                        : as_scene(path(raw.output));
+                        : as_scene(output_in_working_folder(common, raw.output, "--output-file"));
   settings.views_file = path(raw.views_file);
   settings.mask_folder = path(raw.mask_path);
 }

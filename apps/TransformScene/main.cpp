@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moves a scene, its cloud and its mesh by a similarity, shrinks its images, and measures volumes.
 
+#include <algorithm>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
@@ -51,9 +53,15 @@ void check_outputs(const Options& options) {
   if (options.moves() && !options.cloud.empty()) outputs.push_back(cloud_output(options));
   if (options.moves() && !options.mesh.empty()) outputs.push_back(mesh_output(options));
   require_no_inputs(outputs, inputs, "--output-file");
+  std::error_code ignored;
+  if (!outputs.empty()) fs::create_directories(options.output.parent_path(), ignored);
   for (const fs::path& output : outputs) require_writable(output);
   if (!options.moves() || options.transform_out.empty()) return;
   require_not_an_input(options.transform_out, inputs, "--transform-out");
+  std::vector<NamedOutput> all;
+  for (const fs::path& output : outputs) all.push_back({"--output-file", output});
+  all.push_back({"--transform-out", options.transform_out});
+  require_different(all);
   require_writable(options.transform_out);
 }
 
@@ -63,6 +71,16 @@ void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& 
   if (scene.housing)
     scene.housing =
         io::moved(move.between_worlds(), std::move(*scene.housing), options.scale_ports);
+}
+
+// Called before the first file is written, because the scene is written last.
+void require_writable_scene(const Options& options, const Scene& scene) {
+  const std::string file = options.files.scene.string();
+  if (std::ranges::none_of(scene.images, &SceneImage::calibrated))
+    fail("{}: no image is calibrated", file);
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    if (!scene.points[i].position.allFinite())
+      fail("{}: point {} has no finite position after the transformation", file, i);
 }
 
 void write_clouds(const Options& options, const FrameMove& move) {
@@ -98,6 +116,7 @@ int run(int argc, char** argv) {
   const FrameMove move = find_move(options, scene);
   check_scale(options, scene, move.similarity);
   apply(options, move, scene);
+  if (options.writes_scene()) require_writable_scene(options, scene.scene);
   write_clouds(options, move);
   if (options.max_resolution > 0)
     shrink_images(options.max_resolution,

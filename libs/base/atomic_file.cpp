@@ -118,10 +118,20 @@ void flush_to_disk(const std::filesystem::path& temporary) {
   if (result != 0 && error != EINVAL && error != EROFS) fail("{}", std::strerror(error));
 }
 
+// A file that is renamed to the name of a device or a pipe, such as /dev/null, replaces it.
+void require_regular(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  fail("{}: cannot be written: is {}", path.string(),
+       std::filesystem::is_directory(status) ? "a folder" : "not a regular file");
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path)
     : path_(std::move(path)), temporary_(temporary_beside(path_)) {
+  require_regular(path_);
   abandoned_once().remove_of(path_);
 }
 
@@ -299,6 +309,7 @@ void try_temporary(const std::filesystem::path& temporary, const std::filesystem
 }  // namespace
 
 void require_writable(const std::filesystem::path& path) {
+  require_regular(path);
   remove_abandoned_of(path);
   try_temporary(temporary_beside(path), path);
 }

@@ -16,7 +16,9 @@ namespace axial {
 // name of the temporary file has the extension of `path`, because some libraries choose the format
 // by the extension.
 // If an earlier process was killed while it wrote `path`, its temporary file is still in the
-// folder. The constructor removes such files (see remove_abandoned()).
+// folder. The constructor removes such files (see remove_abandoned()). The constructor throws an
+// Error that names `path` if `path` exists and is not a regular file, because a renamed file would
+// replace a device such as /dev/null.
 class AtomicFile {
  public:
   // Creates no file yet, and does not check that `path` can be written.

@@ -286,6 +286,14 @@ fs::path in_working_folder(const CommonOptions& common, const std::string& path)
   return (common.working_folder / path).lexically_normal();
 }
 
+fs::path output_in_working_folder(const CommonOptions& common, const std::string& path,
+                                  const std::string& option) {
+  const fs::path file = in_working_folder(common, path);
+  if (!file.empty() && !file.has_filename())
+    fail("{} {}: must be the name of a file, not of a folder", option, path);
+  return file;
+}
+
 ParsedOptions parse_options(int argc, const char* const* argv, const ProgramOptions& program) {
   ParsedOptions parsed;
   KnownOptions known(parsed.common, program);

@@ -74,6 +74,11 @@ bool given(const ParsedOptions& parsed, const std::string& name);
 // stays empty.
 std::filesystem::path in_working_folder(const CommonOptions& common, const std::string& path);
 
+// Returns in_working_folder() for a file to write, the value of `option` ("--output-file"). Throws
+// an Error that names both if `path` ends in a slash, "." or "..", and so has no name for the file.
+std::filesystem::path output_in_working_folder(const CommonOptions& common, const std::string& path,
+                                               const std::string& option);
+
 // Starts the log ("HH:MM:SS [name] text" on standard output), runs `body` and returns its result,
 // the exit code. If `body` throws a std::exception, run_program() writes one line to standard error
 // and to the log file, and returns 1. The line is "NAME: out of memory" if memory ran out,

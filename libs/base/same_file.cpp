@@ -36,6 +36,17 @@ void require_no_inputs(std::span<const std::filesystem::path> outputs,
   }
 }
 
+void require_different(std::span<const NamedOutput> outputs) {
+  std::map<std::filesystem::path, const NamedOutput*> known;
+  for (const NamedOutput& output : outputs) {
+    if (output.path.empty()) continue;
+    const auto [first, is_new] = known.emplace(output.path, &output);
+    if (!is_new)
+      fail("{} {}: is also a file of {}", output.setting, output.path.string(),
+           first->second->setting);
+  }
+}
+
 void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting) {

@@ -17,8 +17,18 @@ void require_not_an_input(const std::filesystem::path& output,
                           std::span<const std::filesystem::path> inputs,
                           const std::string& setting);
 
-// Does the same for each of `outputs`, in their order: throws the Error for the first one that is
-// an input.
+// A file to write, and the name of the setting that asks for it.
+struct NamedOutput {
+  std::string setting;
+  std::filesystem::path path;
+};
+
+// Throws an Error that names the path and both settings if two of `outputs` have the same path.
+// Paths are compared as they are written. Empty paths are ignored.
+void require_different(std::span<const NamedOutput> outputs);
+
+// Calls require_not_an_input() for each of `outputs`, in their order: throws the Error for the
+// first one that is an input.
 void require_no_inputs(std::span<const std::filesystem::path> outputs,
                        std::span<const std::filesystem::path> inputs, const std::string& setting);
 

@@ -125,6 +125,9 @@ class Export(Scene):
             self.refuses(f"--output-file {name}: must be a folder", "InterfaceCOLMAP", "-i",
                          "scene.mvs", "-w", folder, "-o", name)
             self.assertFalse(os.path.exists(os.path.join(folder, name)))
+        write(os.path.join(folder, "photo.jpg"), "mine")
+        self.refuses("--output-file photo.jpg: is a file", "InterfaceCOLMAP", "-i", "scene.mvs", "-w",
+                     folder, "-o", "photo.jpg")
         self.succeeds("InterfaceCOLMAP", "-i", "scene.mvs", "-w", folder, "-o", "dive.2")
         self.assertIn("cameras.txt", os.listdir(os.path.join(folder, "dive.2", "sparse")))
 

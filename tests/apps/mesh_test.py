@@ -117,6 +117,7 @@ class Mesh(Scene):
         self.refused(folder, "--max-memory", "--max-memory", "1")
         self.refused(folder, "housing", "--refractive")
         self.refused(folder, "is an input", "-o", "scene_dense.ply")
+        self.refused(folder, "--output-file new/: must be the name of a file", "-o", "new/")
 
     def test_views_out_of_range_are_refused(self):
         folder = self.copy("air")

@@ -132,6 +132,7 @@ class Refined(Scene):
         self.refuses("--refractive", *command, "--refractive", "--camera-model", "pinhole")
         self.refuses("housing file not found", *command, "--refractive")
         self.refuses("--output-file", *command, "-o", "wrong.ply")
+        self.refuses("--output-file ./: must be the name of a file", *command, "-o", "./")
 
 
 if __name__ == "__main__":

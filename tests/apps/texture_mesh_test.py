@@ -61,6 +61,13 @@ class Files(TextureTest):
         self.succeeds(*self.texture("-o", "a.v2"))
         self.assertLess({"a.v2.ply", "a.v20.png"}, files_below(self.work))
 
+    def test_missing_folders_are_made(self):
+        self.succeeds(*self.texture("-o", "new/deep/out.ply"))
+        self.assertLess({"new/deep/out.ply", "new/deep/out0.png"}, files_below(self.work))
+        for folder in (".", "new/", "../"):
+            self.refuses_and_keeps(f"--output-file {folder}: must be the name of a file",
+                                   *self.texture("-o", folder))
+
     def test_every_format_has_its_files(self):
         before = files_below(self.work)
         self.succeeds(*self.texture("-o", "out.mvs", "--export-type", "ply,obj,glb,gltf"))
@@ -144,7 +151,7 @@ class WrongInput(TextureTest):
         self.check("scene.ply: a face refers to vertex 9, but there are 9", vertices,
                    [*faces, (0, 1, 9)])
         self.check("scene.ply", [*vertices[:-1], (0, NAN, 1)], faces)
-        self.check("no view sees a face of the mesh", *wall(z=-1))
+        self.check("scene.ply: no view sees a face of the mesh", *wall(z=-1))
         self.check("no view sees a face of the mesh", vertices, [f[::-1] for f in faces])
 
     def test_files_that_are_no_meshes(self):

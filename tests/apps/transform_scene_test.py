@@ -377,10 +377,16 @@ class WrongInput(Transform):
         self.refused("--sample-mesh 5: not built yet", *t, "--sample-mesh", 5)
         self.refused("x.glb: not built yet", *t, "-m", "x.glb")
         self.refused("missing.ply", *t, "-p", "missing.ply")
+        write(self.path("work", "bad.mvs"), tiny_scene.mvs(self.images, pose=0xFFFFFFFF))
+        self.refuses("bad.mvs: no image is calibrated", "TransformScene", "-i", "bad.mvs", "-w",
+                     self.work, "-o", "moved.mvs", *t, "-m", "mesh.ply")
         self.refused("missing.txt", "-t", "missing.txt")
         self.refused("--up-axis is 3", *t, "--up-axis", 3)
         self.refuses("--output-file", "TransformScene", "-i", "scene.mvs", "-w", self.work, "-o",
                      "scene.mvs", *t)
+        for output in ("moved.mvs", "moved_mesh.ply", "moved.housing.json"):
+            self.refused(f"{output}: is also a file of --output-file", *t, "-m", "mesh.ply",
+                         "--transform-out", output)
         write(self.path("work", "moved.ply"), read(self.cloud))
         self.refused("--output-file", *t, "-p", "moved.ply")
 

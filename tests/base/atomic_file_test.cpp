@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -31,6 +32,18 @@ TEST(AtomicFile, TellsBeforeTheWorkThatAFileCannotBeWritten) {
   EXPECT_NO_THROW(require_writable(folder / "a.txt"));
   EXPECT_TRUE(fs::is_empty(folder));
   EXPECT_THROW(require_writable(folder / "no_such_folder" / "a.txt"), Error);
+  fs::remove_all(folder);
+}
+
+// A renamed file would replace a device, too: /dev/null, if root writes to it.
+TEST(AtomicFile, ReplacesNoPipe) {
+  const fs::path folder = test::empty_folder();
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(require_writable(pipe), Error);
+  EXPECT_THROW(write_atomically(pipe, "text"), Error);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(files_in(folder), 1u);
   fs::remove_all(folder);
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "support/empty_folder.h"
@@ -44,6 +45,14 @@ TEST_F(TwoFiles, OtherFilesPass) {
   EXPECT_NO_THROW(require_not_an_input(folder / "new", inputs, "-o"));
   EXPECT_NO_THROW(require_not_an_input(folder / "missing", std::array{folder / "missing"}, "-o"));
   EXPECT_NO_THROW(require_not_an_input({}, std::array{fs::path()}, "-o"));
+}
+
+TEST(Outputs, TwoOfTheSamePathAreRefused) {
+  std::vector<NamedOutput> outputs{{"--json", "a"}, {"--cloud", "b"}, {"--off", ""}, {"-x", ""}};
+  EXPECT_NO_THROW(require_different(outputs));
+  outputs.push_back({"--picture", "a"});
+  EXPECT_EQ(test::error_of([&] { require_different(outputs); }),
+            "--picture a: is also a file of --json");
 }
 
 }  // namespace

@@ -384,7 +384,11 @@ TEST_F(Programs, RefuseWrongInput) {
                    "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float "
                    "y\nproperty float z\nend_header\n");
   write_atomically(folder_ / "garbage.ply", "no cloud");
+  Mesh spike = height_field(4, 2, ripples);
+  spike.vertices[3] = {1e30f, 0, 0};
+  io::write_mesh_ply(folder_ / "spike.ply", spike);
   const std::string truth = " -m truth.ply --samples 1000 ";
+  refuses("spike.ply: vertex 3 is more than 100 km away", "-i spike.ply" + truth);
   refuses("missing.ply", "-i missing.ply" + truth);
   refuses("missing.ply", "-i cloud.ply -m missing.ply");
   refuses("empty.ply: the cloud has no points", "-i empty.ply" + truth);
@@ -400,6 +404,7 @@ TEST_F(Programs, RefuseWrongInput) {
   refuses("--samples", "-i cloud.ply -m truth.ply --samples 0");
   refuses("nowhere", "-i cloud.ply --cameras nowhere" + truth);
   refuses("no sample of the truth", "-i cloud.ply --cameras true --min-views 5" + truth);
+  refuses("a.png: is also a file of --json", "-i cloud.ply --json a.png --picture a.png" + truth);
   refuses("missing.dmap", "-i missing.dmap -m a.tiff");
   refuses("--align", "-i missing.dmap -m a.tiff --align icp");
   EXPECT_EQ(
