@@ -69,7 +69,7 @@ void check_pictures(const Options& options, std::span<const RenderTask> tasks) {
 }
 
 void write_picture(const fs::path& path, const cv::Mat3b& picture) {
-  constexpr int kJpegQuality = 92;
+  constexpr int kJpegQuality = 80;
   make_folder(path.parent_path());
   if (path.extension() == ".jpg")
     io::write_jpeg(path, picture, kJpegQuality);
