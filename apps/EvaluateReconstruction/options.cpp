@@ -102,6 +102,8 @@ void declare_rendering(OptionList& visible, Options& options, Texts& texts) {
       .add_with_default("render-type", &options.render_type, "format of the pictures: png, jpg")
       .add_with_default("render-samples", &options.render_samples,
                         "rays along each side of a pixel, whose mean is the pixel's colour")
+      .add_with_default("render-width", &options.render_width,
+                        "width of the pictures [pixels] (0: width of the camera's images)")
       .add("photographs", &texts.photographs,
            "folder with the images of --cameras: reports the PSNR of the rendered views");
 }
@@ -129,6 +131,11 @@ void check_rendering(const Options& options) {
     fail("--render-type is {}: must be png or jpg", options.render_type);
   if (options.render_samples < 1 || options.render_samples > 16)
     fail("--render-samples is {}: must be 1 to 16", options.render_samples);
+  if (options.render_width < 0 || options.render_width > 16384)
+    fail("--render-width is {}: must be 1 to 16384, or 0", options.render_width);
+  if (options.render_width > 0 && !options.photographs.empty())
+    fail("--render-width {}: photographs are compared at their own width only",
+         options.render_width);
 }
 
 // Without the truth, a mesh can only be rendered.
@@ -186,6 +193,7 @@ void warn_of_no_effect(const Options& options) {
        "color-max", "without pictures, clouds or meshes coloured by error");
   warn(options.rendered_views.empty(), "render-samples", "without --render");
   warn(options.render_folder.empty(), "render-type", "without --render-folder");
+  warn(options.rendered_views.empty(), "render-width", "without --render");
 }
 
 std::vector<std::string> names_of(const std::string& list) {

@@ -34,6 +34,7 @@ struct Options {
   std::filesystem::path photographs;        // folder with the images; empty: no comparison
   std::string render_type = "png";          // png, jpg
   int render_samples = 3;                   // rays along each side of a pixel
+  int render_width = 0;                     // width of the pictures [px]; 0: that of each camera
   // Output files, and the folder of rendered images. An empty path: not written.
   std::filesystem::path json, error_cloud, error_mesh, picture, aligned, transform, render_folder;
 };

@@ -2,6 +2,7 @@
 #include "rendered_views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <set>
@@ -30,6 +31,11 @@ std::vector<View> chosen_views(const Options& options, std::span<const View> vie
     chosen.push_back(*view);
   }
   return chosen;
+}
+
+CameraModel with_width(const CameraModel& camera, int width) {
+  const double height = static_cast<double>(camera.height) * width / camera.width;
+  return camera.resized(width, std::max(1, static_cast<int>(std::lround(height))));
 }
 
 bool has_colors(const Input& input) {
@@ -154,6 +160,7 @@ std::vector<RenderTask> plan_rendering(const Options& options, const Input& inpu
   for (const View& view : chosen_views(options, views)) {
     RenderTask& task = tasks.emplace_back();
     task.view = view;
+    if (options.render_width > 0) task.view.camera = with_width(view.camera, options.render_width);
     if (!options.render_folder.empty() && has_colors(input))
       task.picture = picture_path(options, view.name, "");
     if (!options.render_folder.empty() && has_truth)

@@ -336,6 +336,11 @@ TEST_F(Programs, RenderAMeshColouredByItsErrors) {
   // The coloured mesh is rendered without the truth, too, and only where the truth is seen with it.
   ASSERT_EQ(run("EvaluateReconstruction", "-i errors.ply --render-folder own" + views).exit_code,
             0);
+  ASSERT_EQ(
+      run("EvaluateReconstruction", "-i errors.ply --render-folder small --render-width 80" + views)
+          .exit_code,
+      0);
+  EXPECT_EQ(io::read_image_size(folder_ / "small" / "0000.jpg"), cv::Size(80, 60));
   Mesh half = height_field(60, 2, ripples);
   std::erase_if(half.faces, [&](const auto& face) { return half.vertices[face[0]].x() > 0.2f; });
   io::write_mesh_ply(folder_ / "half.ply", half);
@@ -366,6 +371,9 @@ TEST_F(Programs, RefuseToRender) {
   refuses("--render-type is gif", "-i textured.ply --render-folder out --render-type gif" + views);
   refuses("--render-samples is 0",
           "-i textured.ply --render-folder out --render-samples 0" + views);
+  refuses("--render-width is -1", "-i textured.ply --render-folder out --render-width -1" + views);
+  refuses("--render-width 100: photographs",
+          "-i textured.ply --photographs . --render-width 100" + views);
   refuses("truth.ply: the mesh has neither", "-i truth.ply --render-folder out" + views);
   refuses("cloud.ply has no faces", "-i cloud.ply --render-folder out" + views);
   refuses("--render is for clouds and meshes", "-i a.dmap -m a.tiff --render-folder out" + views);
