@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reconstructs point clouds from photographs in three ways, and measures each cloud against ground
 # truth: in air; under water behind a flat port, with --refractive; and under water as is common
-# today, without refraction, with a lens that COLMAP calibrates itself.
+# today, without refraction, with a lens that COLMAP calibrates itself. The first two clouds become
+# textured meshes.
 #
 #   bash apps/pipeline/demo.sh [closeup|reef] [--full]
 #
 # Needs Debian 12, and a network connection to install packages. --full: full resolution; without
 # it, images are halved in width and height. Results:
-# build/demo/{air,refractive,selfcalibrated}.ply, table.json and report.html. Another run keeps
-# COLMAP's models and the ground truth. axial_pipeline/demo.py runs the steps.
+# build/demo/{air,refractive,selfcalibrated}.ply, {air,refractive}.glb, table.json and report.html.
+# Another run keeps COLMAP's models and the ground truth. axial_pipeline/demo.py runs the steps.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -36,6 +37,6 @@ if ! cmake --preset release >build/configure.log 2>&1 </dev/null; then
   die "cmake --preset release: failed, its output is in build/configure.log"
 fi
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
-  EvaluateReconstruction AlignModel
+  EvaluateReconstruction AlignModel ReconstructMesh RefineMesh TextureMesh
 
 PYTHONPATH=apps/pipeline exec python3 -B -m axial_pipeline.demo --seconds $SECONDS "$@"

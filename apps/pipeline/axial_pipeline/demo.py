@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reconstructs point clouds of a simulated scene in three ways, and measures each cloud against
-ground truth. apps/pipeline/demo.sh runs this module after the build, in the root of the source."""
+"""Reconstructs point clouds of a simulated scene in three ways, turns two of them into textured
+meshes, and measures clouds and meshes against ground truth. apps/pipeline/demo.sh runs this module
+after the build, in the root of the source."""
 
 import argparse
 import pathlib
 import shutil
 import time
 
-from . import demo_page, demo_table, files, truth
+from . import demo_mesh, demo_page, demo_table, files, truth
 from .colmap_model import colmap_model
 from .failure import run_main
 from .programs import Programs
@@ -18,6 +19,7 @@ TOLERANCES = {"closeup": 0.002, "reef": 0.005}  # of F-scores [m]
 RESOLUTION = {"half": ("--resolution-level", 1, "--min-resolution", 320),
               "full": ("--resolution-level", 0)}
 PICTURED_VIEWS = ("0000", "0005")  # whose depth maps are drawn
+MESHES = ("air", "refractive")  # the runs whose clouds become meshes
 
 
 def options():
@@ -37,6 +39,7 @@ class Demo:
         self.data = pathlib.Path("data/synthetic") / self.scene
         self.work = OUT / "work" / self.scene
         self.truth = self.work / "truth"
+        self.media = {"air": "air", "refractive": "water", "selfcalibrated": "water"}
 
     def stage(self, text):
         """Prints the headline of a stage, with the time since the start."""
@@ -49,12 +52,13 @@ class Demo:
         colmap_model(self.data / medium, self.work / name, calibration)
         return truth.align_to_truth(self.programs, self.work / name, self.data)
 
-    def reconstruct(self, run, poses, medium, housing=None):
-        """Reconstructs the photographs of `medium` from scratch. Writes the time of
-        DensifyPointCloud to the file `seconds`."""
+    def reconstruct(self, run, poses, housing=None):
+        """Reconstructs the photographs of `run` from scratch. Writes the time of DensifyPointCloud
+        to the file `seconds`."""
         folder = self.work / run
         files.clear(folder)
-        shown(self.programs.import_scene(poses, self.data / medium, folder / "scene.mvs", housing))
+        shown(self.programs.import_scene(poses, self.data / self.media[run], folder / "scene.mvs",
+                                         housing))
         begin = time.monotonic()
         refractive = ["--refractive"] if housing else []
         shown(self.programs.densify("scene.mvs", folder, *RESOLUTION[self.size], *refractive))
@@ -70,7 +74,7 @@ class Demo:
             "--error-cloud", f"{result}.ply", "--picture", f"{result}.png", "--picture-width", 900,
             *more))
 
-    def depth_pictures(self, run, medium, poses, log):
+    def depth_pictures(self, run, poses, log):
         """Draws two depth maps beside the truth."""
         for view in PICTURED_VIEWS:
             number = depth_map_number(poses / "images.txt", f"{view}.jpg")
@@ -78,7 +82,7 @@ class Demo:
                 continue
             folder = self.work / run
             shown(self.programs.evaluate(
-                folder / f"depth{number:04}.dmap", self.truth / medium / f"{view}.distance.tiff",
+                folder / f"depth{number:04}.dmap", self.truth / self.media[run] / f"{view}.distance.tiff",
                 "--tolerance", TOLERANCES[self.scene], "--picture", folder / f"depth-{view}.png"),
                 output=log)
 
@@ -100,12 +104,19 @@ def reconstruct_three_ways(demo):
     demo.stage("Poses without a port: COLMAP calibrates a lens from the photographs under water")
     poses_today = demo.poses("poses-today", "water", truth.self_calibrated_lens(demo.data))
     demo.stage("(a) In air")
-    demo.reconstruct("air", poses, "air")
+    demo.reconstruct("air", poses)
     demo.stage("(b) Under water, refractive, same poses")
-    demo.reconstruct("refractive", poses, "water", demo.data / "housing.json")
+    demo.reconstruct("refractive", poses, demo.data / "housing.json")
     demo.stage("(c) Under water, self-calibrated lens, no refraction")
-    demo.reconstruct("selfcalibrated", poses_today, "water")
+    demo.reconstruct("selfcalibrated", poses_today)
     return poses
+
+
+def make_meshes(demo):
+    demo.stage("(a) Mesh, refined and textured, in air")
+    demo_mesh.make_mesh(demo, "air")
+    demo.stage("(b) Mesh, refined and textured, under water, refractive")
+    demo_mesh.make_mesh(demo, "refractive", demo.data / "housing.json")
 
 
 def evaluate_all(demo, poses):
@@ -115,29 +126,39 @@ def evaluate_all(demo, poses):
     demo.evaluate("refractive", "evaluation", *wet)
     demo.evaluate("selfcalibrated", "evaluation", *wet)
     demo.evaluate("selfcalibrated", "evaluation-moved", *wet, "--align", "icp")
+    demo_mesh.evaluate_mesh(demo, "air", TOLERANCES[demo.scene])
+    demo_mesh.evaluate_mesh(demo, "refractive", TOLERANCES[demo.scene], *wet)
     with open(demo.work / "depth.log", "w") as log:
-        demo.depth_pictures("air", "air", poses, log)
-        demo.depth_pictures("refractive", "water", poses, log)
+        demo.depth_pictures("air", poses, log)
+        demo.depth_pictures("refractive", poses, log)
     for run in ("air", "refractive", "selfcalibrated"):
         shutil.copy(demo.work / run / "scene_dense.ply", OUT / f"{run}.ply")
+    for run in MESHES:
+        shutil.copy(demo.work / run / "textured.glb", OUT / f"{run}.glb")
 
 
 def write_results(demo):
     rows = demo_table.load(demo.work)
     lines = [*rows, demo_table.load_best_fit(demo.work)]
-    files.write(OUT / "table.json", demo_table.json_table(lines, demo.scene, demo.size))
+    meshes = demo_mesh.load(rows, MESHES)
+    files.write(OUT / "table.json", demo_table.json_table(lines, demo_mesh.kept(meshes), demo.scene,
+                                                          demo.size))
     files.write(OUT / "report.html", demo_page.page(
-        rows, lines, scene=demo.scene, description=demo_table.SCENES[demo.scene], size=demo.size))
-    print(demo_table.text_table(lines))
+        rows, lines, meshes, demo.data / demo.media["refractive"] / demo_mesh.LEFT_OUT,
+        scene=demo.scene, description=demo_table.SCENES[demo.scene], size=demo.size))
+    print(demo_table.text_table(demo_table.table(lines)))
+    print("\n" + demo_table.text_table(demo_mesh.table(meshes)))
 
 
 def run(demo):
     demo.work.mkdir(parents=True, exist_ok=True)
     demo.stage(f"Ground truth of the scene '{demo.scene}', simulated again from its seed")
     truth.make_truth(demo.programs, demo.scene, demo.truth)
-    evaluate_all(demo, reconstruct_three_ways(demo))
-    demo.stage(f"Done: {OUT}/{{air,refractive,selfcalibrated}}.ply, {OUT}/table.json, "
-               f"{OUT}/report.html")
+    poses = reconstruct_three_ways(demo)
+    make_meshes(demo)
+    evaluate_all(demo, poses)
+    demo.stage(f"Done: {OUT}/{{air,refractive,selfcalibrated}}.ply, {OUT}/{{air,refractive}}.glb, "
+               f"{OUT}/table.json, {OUT}/report.html")
     write_results(demo)
 
 

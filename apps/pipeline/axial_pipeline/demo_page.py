@@ -6,14 +6,16 @@ import html
 import math
 import string
 
-from .demo_table import cells, headings
+from . import demo_mesh, demo_table
 
 
-def html_table(rows):
-    head = "".join(f"<th>{html.escape(h)}</th>" for h in headings(rows))
+def html_table(table, rows):
+    """`table`: the headings, and the cells of each of `rows`."""
+    head = "".join(f"<th>{html.escape(h)}</th>" for h in table[0])
     body = "".join(
-        f'<tr><th><i style="background:{row["color"]}"></i>{html.escape(cells(row)[0])}</th>' +
-        "".join(f"<td>{cell}</td>" for cell in cells(row)[1:]) + "</tr>" for row in rows)
+        f'<tr><th><i style="background:{row["color"]}"></i>{html.escape(cells[0])}</th>' +
+        "".join(f"<td>{cell}</td>" for cell in cells[1:]) + "</tr>"
+        for cells, row in zip(table[1:], rows))
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
@@ -91,7 +93,8 @@ def histogram_svg(rows):
 
 def image(path, caption):
     data = base64.b64encode(path.read_bytes()).decode()
-    return (f'<figure><img src="data:image/png;base64,{data}" alt="{html.escape(caption)}">'
+    kind = "jpeg" if path.suffix == ".jpg" else "png"
+    return (f'<figure><img src="data:image/{kind};base64,{data}" alt="{html.escape(caption)}">'
             f"<figcaption>{html.escape(caption)}</figcaption></figure>")
 
 
@@ -110,6 +113,18 @@ def depth_pictures(rows):
             view = path.stem.removeprefix("depth-")
             figures.append(image(path, f'{row["title"]}, view {view}: estimate, truth, error'))
     return "".join(figures)
+
+
+def mesh_pictures(meshes, photograph):
+    name = photograph.stem
+    cards = "".join(
+        f'<section class="card"><h3><i style="background:{row["color"]}"></i>'
+        f'{html.escape(row["title"])}</h3>' +
+        image(row["folder"] / "rendered" / f"{name}.jpg", f"Textured, view {name}") +
+        image(row["folder"] / "rendered" / f"{name}.errors.jpg", "Coloured by error") + "</section>"
+        for row in meshes)
+    return (f'<section class="card"><h3>The photograph under water</h3>' +
+            image(photograph, f"View {name}, left out of texturing") + "</section>" + cards)
 
 
 PAGE = string.Template("""<!doctype html>
@@ -166,14 +181,26 @@ was moved rigidly onto the true surface. Seconds are those of DensifyPointCloud.
 <p>Dashed: medians.</p>
 <h2>Where they are wrong</h2>
 <div class="cards">$clouds</div>
+<h2>From clouds to textured meshes</h2>
+<div class="panel">$mesh_table</div>
+<p>ReconstructMesh makes a mesh from the clouds of (a) and (b), RefineMesh moves its vertices until the
+photographs agree, and TextureMesh gives it the colours of the photographs, without view $left_out.
+Numbers are those of the surface that at least two views see. PSNR compares the textured mesh, rendered
+into view $left_out through the port of its camera, with the photograph that was not used. Seconds are
+those of the three programs.</p>
+<div class="cards">$mesh_pictures</div>
 <h2>Depth maps beside the truth</h2>
 <div class="depths">$depths</div>
 </main></body></html>
 """)
 
 
-def page(rows, lines, **texts):
-    """The text of the page. `rows`: the runs. `lines`: the rows of the table. `texts`: the scene's
-    name and description, and the size of the images."""
-    return PAGE.substitute(texts, table=html_table(lines), histograms=histogram_svg(rows),
-                           clouds=cloud_pictures(rows), depths=depth_pictures(rows))
+def page(rows, lines, meshes, photograph, **texts):
+    """The text of the page. `rows`: the runs. `lines`: the rows of the table. `meshes`: the rows of
+    the table of meshes. `photograph`: the file of the view that was left out of texturing. `texts`:
+    the scene's name and description, and the size of the images."""
+    return PAGE.substitute(
+        texts, table=html_table(demo_table.table(lines), lines), histograms=histogram_svg(rows),
+        clouds=cloud_pictures(rows), depths=depth_pictures(rows),
+        mesh_table=html_table(demo_mesh.table(meshes), meshes), left_out=photograph.stem,
+        mesh_pictures=mesh_pictures(meshes, photograph))

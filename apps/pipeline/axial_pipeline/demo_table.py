@@ -55,8 +55,12 @@ def headings(rows):
             f"F-score at {rows[0]['tolerance_m'] * 1e3:g} mm", "seconds"]
 
 
-def text_table(rows):
-    table = [headings(rows)] + [cells(row) for row in rows]
+def table(rows):
+    return [headings(rows), *map(cells, rows)]
+
+
+def text_table(table):
+    """A table of cells as text. The first row holds the headings."""
     widths = [max(len(line[i]) for line in table) for i in range(len(table[0]))]
     lines = ["  ".join(cell.ljust(w) if i == 0 else cell.rjust(w)
                        for i, (cell, w) in enumerate(zip(line, widths))) for line in table]
@@ -67,7 +71,8 @@ KEPT = ("run", "points", "mean_m", "median_m", "rms_m", "tolerance_m", "precisio
         "f_score", "seconds")
 
 
-def json_table(lines, scene, size):
-    """The text of table.json."""
+def json_table(lines, meshes, scene, size):
+    """The text of table.json. `meshes`: the numbers of the meshes."""
     return json.dumps({"scene": scene, "size": size,
-                       "runs": [{key: row[key] for key in KEPT} for row in lines]}, indent=1) + "\n"
+                       "runs": [{key: row[key] for key in KEPT} for row in lines],
+                       "meshes": meshes}, indent=1) + "\n"
