@@ -7,8 +7,8 @@
 #
 #   bash apps/pipeline/demo.sh [closeup|reef] [--full]
 #
-# Needs Debian 12, and a network connection to install packages. --full: full resolution; without
-# it, images are halved in width and height. Results:
+# Needs Debian 12, and a network connection to install packages. --full: matching at full resolution;
+# without it, at half the width and height. Results:
 # build/demo/{air,refractive,selfcalibrated}.ply, {air,refractive}.glb, table.json and report.html.
 # Another run keeps COLMAP's models and the ground truth. axial_pipeline/demo.py runs the steps.
 set -euo pipefail

@@ -333,7 +333,6 @@ TEST_F(Programs, RenderAMeshColouredByItsErrors) {
   EXPECT_GT(picture(100, 280)[2], picture(100, 280)[0]);
   EXPECT_GT(picture(100, 40)[0], picture(100, 40)[2]);
   EXPECT_FALSE(fs::exists(folder_ / "out" / "0000.jpg")) << "the mesh has no colours of its own";
-  // The coloured mesh is rendered without the truth, too, and only where the truth is seen with it.
   ASSERT_EQ(run("EvaluateReconstruction", "-i errors.ply --render-folder own" + views).exit_code,
             0);
   ASSERT_EQ(
