@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.h"
+#include "base/naming.h"
 #include "evaluate/alignment.h"
 #include "evaluate/point_uncertainty.h"
 #include "evaluate/views.h"
@@ -16,16 +16,6 @@
 #include "scene/textured_mesh.h"
 
 namespace axial::apps {
-
-// Adds the file's name to errors of `action`, which does not know the file.
-template <class Action>
-auto naming(const std::filesystem::path& file, Action action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    fail("{}: {}", file.string(), error.what());
-  }
-}
 
 // The reconstruction: a mesh if the file has faces, else a cloud.
 struct Input {

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
@@ -51,16 +52,6 @@ void check_memory(const std::string& work, std::uint64_t bytes, const Options& o
 
 void check_memory_to_read(const fs::path& file, std::uint64_t bytes, const Options& options) {
   check_memory("reading " + file.string(), bytes, options);
-}
-
-// Calls `work`. Its errors get the name of `file`.
-template <class Work>
-auto naming(const fs::path& file, Work&& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    fail("{}: {}", file.string(), error.what());
-  }
 }
 
 Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
@@ -37,18 +38,6 @@ void check_outputs(const Options& options, const densify::Project& project) {
   for (const fs::path& output : {options.output, state_file(options)}) {
     require_not_an_input(output, inputs, "--output-file");
     require_writable(output);
-  }
-}
-
-// Calls `work`. Its errors get the name of `file`, unless they name an option.
-template <class Work>
-auto naming(const fs::path& file, Work&& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    if (message.starts_with("--") || message.starts_with("/")) throw;
-    fail("{}: {}", file.string(), message);
   }
 }
 

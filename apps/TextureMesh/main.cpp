@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/same_file.h"
@@ -86,22 +87,6 @@ texture::Options with_memory(const Settings& settings, const Photographs& photog
   return options;
 }
 
-// Textures the mesh. Errors get the name of the mesh, unless they name an option or a photograph.
-TexturedMesh textured_mesh(const Settings& settings, Mesh mesh, const Photographs& photographs,
-                           texture::Report& facts) {
-  try {
-    return texture::texture_mesh(
-        std::move(mesh), photographs.views(),
-        [&](std::size_t view) { return photographs.load(view); },
-        with_memory(settings, photographs), &facts,
-        [](const std::string& stage) { return console_progress(stage); });
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    if (message.starts_with("--") || message.starts_with("/")) throw;
-    fail("{}: {}", settings.mesh.string(), message);
-  }
-}
-
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -119,7 +104,13 @@ int run(int argc, char** argv) {
   scene = {};
   return_freed_memory();
   texture::Report facts;
-  const TexturedMesh textured = textured_mesh(settings, std::move(mesh), photographs, facts);
+  const TexturedMesh textured = naming(settings.mesh, [&] {
+    return texture::texture_mesh(
+        std::move(mesh), photographs.views(),
+        [&](std::size_t view) { return photographs.load(view); },
+        with_memory(settings, photographs), &facts,
+        [](const std::string& stage) { return console_progress(stage); });
+  });
   return_freed_memory();
   report(textured, facts);
   keep_inputs(settings, photographs, textured.textures.size());

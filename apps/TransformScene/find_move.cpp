@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/naming.h"
 #include "evaluate/scene_alignment.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/position_file.h"
@@ -18,16 +19,6 @@ namespace axial::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Adds the file's name to errors of `action`, which does not know the file.
-template <class Action>
-auto naming(const fs::path& file, Action action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    fail("{}: {}", file.string(), error.what());
-  }
-}
 
 void tell(const evaluate::SceneAlignment& alignment, const std::string& how) {
   log_info(

@@ -7,24 +7,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/bilinear.h"
 
 namespace axial::evaluate {
 namespace {
-
-Eigen::Vector3f texel(const cv::Mat3b& texture, int x, int y) {
-  const cv::Vec3b& bgr = texture(y, x);
-  return {static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2])};
-}
-
-Eigen::Vector3f interpolated(const cv::Mat3b& texture, const Eigen::Vector2f& at) {
-  const float x = std::clamp(at.x(), 0.0f, static_cast<float>(texture.cols - 1));
-  const float y = std::clamp(at.y(), 0.0f, static_cast<float>(texture.rows - 1));
-  const int left = static_cast<int>(x), right = std::min(left + 1, texture.cols - 1);
-  const int top = static_cast<int>(y), bottom = std::min(top + 1, texture.rows - 1);
-  const float a = x - static_cast<float>(left), b = y - static_cast<float>(top);
-  return (1 - b) * ((1 - a) * texel(texture, left, top) + a * texel(texture, right, top)) +
-         b * ((1 - a) * texel(texture, left, bottom) + a * texel(texture, right, bottom));
-}
 
 Eigen::Vector3f as_bgr(const Rgb& color) {
   return {static_cast<float>(color[2]), static_cast<float>(color[1]), static_cast<float>(color[0])};
@@ -82,7 +68,7 @@ Coloring texture_coloring(const TexturedMesh& mesh) {
     const TexturedMesh::Corners& uv = mesh.uv[hit.face];
     const Eigen::Vector2f at = uv[0] + hit.u * (uv[1] - uv[0]) + hit.v * (uv[2] - uv[0]);
     const bool is_known = uv[0] != uv[1] || uv[0] != uv[2];
-    return {interpolated(mesh.textures[mesh.texture_of[hit.face]], at), is_known};
+    return {bilinear(mesh.textures[mesh.texture_of[hit.face]], at), is_known};
   };
 }
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "texture/bilinear.h"
+#include "scene/bilinear.h"
 #include "texture/occluders.h"
 
 namespace axial::texture {

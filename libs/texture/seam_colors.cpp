@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "texture/bilinear.h"
+#include "scene/bilinear.h"
 
 namespace axial::texture {
 namespace {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "scene/bilinear.h"
 #include "scene/textured_mesh.h"
 #include "simulate/render.h"
-#include "texture/bilinear.h"
 #include "texture/texture_mesh.h"
 
 namespace axial::test {
@@ -150,7 +150,7 @@ inline std::optional<Eigen::Vector3f> color_at(const TexturedMesh& mesh, std::si
   const auto& uv = mesh.uv[face];
   if ((uv[1] - uv[0]).norm() == 0) return {};
   const Eigen::Vector2f at = weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2];
-  return texture::bilinear(mesh.textures[mesh.texture_of[face]], at).reverse();
+  return bilinear(mesh.textures[mesh.texture_of[face]], at).reverse();
 }
 
 // Calls visit(face, colour, point) for three points inside each face that a view sees.

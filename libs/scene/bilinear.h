@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/core.hpp>
 
-namespace axial::texture {
+namespace axial {
 
 // The colour (B G R) at the position `at` (x, y) [px], interpolated bilinearly between pixel
 // centres at integers. A position beyond the outermost pixel centres is moved to the nearest
@@ -25,4 +25,4 @@ inline Eigen::Vector3f bilinear(const cv::Mat3b& image, const Eigen::Vector2f& a
          b * ((1 - a) * pixel(j + below, i) + a * pixel(j + below, i + next));
 }
 
-}  // namespace axial::texture
+}  // namespace axial
