@@ -55,8 +55,8 @@ class Merger {
     sum_.setZero();
     weights_ = 0;
     views_.clear();
-    for (const std::uint32_t k : neighbours(i, 2 * limit_ / sharpest))
-      if (is_near(i, k)) absorb(i, k);
+    find_neighbours(i, 2 * limit_ / sharpest);
+    for (const auto& [k, distance2] : found_) absorb(i, k);
     absorb(i, i);
     if (++result.count > most) {
       const std::size_t count = result.count;
@@ -85,19 +85,18 @@ class Merger {
     return sharpest;
   }
 
-  // Other points within `radius`, the nearest first.
-  std::vector<std::uint32_t> neighbours(std::uint32_t i, float radius) {
+  // Finds the points that point i absorbs, all within `radius`, the nearest first.
+  void find_neighbours(std::uint32_t i, float radius) {
     found_.clear();
     nanoflann::SearchParams params;
     params.sorted = false;
     if (limit_ > 0) tree_.radiusSearch(cloud_.positions[i].data(), radius * radius, found_, params);
+    std::erase_if(found_, [&](const auto& found) {
+      return found.first == i || used_[found.first] || !is_near(i, found.first);
+    });
     std::sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
       return std::pair(a.second, a.first) < std::pair(b.second, b.first);
     });
-    std::vector<std::uint32_t> result;
-    for (const auto& [k, distance2] : found_)
-      if (k != i && !used_[k]) result.push_back(k);
-    return result;
   }
 
   bool is_near(std::uint32_t i, std::uint32_t k) const {

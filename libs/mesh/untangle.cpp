@@ -2,6 +2,7 @@
 #include <CGAL/Polygon_mesh_processing/manifoldness.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
 #include <span>
@@ -36,6 +37,30 @@ std::vector<Face> intersecting_faces(const HalfedgeMesh& mesh, const Faces& amon
   return faces;
 }
 
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Face>;
+
+template <class Faces>
+std::vector<Box> boxes_of(const HalfedgeMesh& mesh, const Faces& faces) {
+  std::vector<Box> boxes;
+  for (const Face face : faces) {
+    CGAL::Bbox_3 box;
+    for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
+      box += mesh.point(vertex).bbox();
+    boxes.emplace_back(box, face);
+  }
+  return boxes;
+}
+
+// The faces that intersect another face, ascending, where at least one of the two is in `suspects`.
+std::vector<Face> intersecting_near(const HalfedgeMesh& mesh, const std::vector<Face>& suspects) {
+  std::vector<Box> some = boxes_of(mesh, suspects), all = boxes_of(mesh, mesh.faces());
+  std::vector<Face> near = suspects;
+  CGAL::box_intersection_d(some.begin(), some.end(), all.begin(), all.end(),
+                           [&](const Box&, const Box& hit) { near.push_back(hit.info()); });
+  sort_unique(near);
+  return intersecting_faces(mesh, near);
+}
+
 std::vector<Vertex> corners_of(const HalfedgeMesh& mesh, const std::vector<Face>& faces) {
   std::vector<Vertex> corners;
   for (const Face face : faces)
@@ -52,6 +77,23 @@ std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> fa
       if (face != HalfedgeMesh::null_face()) faces.push_back(face);
   sort_unique(faces);
   return faces;
+}
+
+// By the vertices' indices; those of removed vertices are undefined.
+std::vector<Eigen::Vector3d> positions(const HalfedgeMesh& mesh) {
+  std::vector<Eigen::Vector3d> result(mesh.num_vertices());
+  for (const auto vertex : mesh.vertices()) result[vertex.idx()] = position(mesh, vertex);
+  return result;
+}
+
+// Adds to `faces` the faces with a corner that was not at the same place in `before`.
+void add_moved_faces(const HalfedgeMesh& mesh, const std::vector<Eigen::Vector3d>& before,
+                     std::vector<Face>& faces) {
+  for (const auto face : mesh.faces())
+    for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
+      if (vertex.idx() >= before.size() || before[vertex.idx()] != position(mesh, vertex))
+        faces.push_back(face);
+  sort_unique(faces);
 }
 
 // Moves the corners of `faces` half of the way to the mean of their neighbours.
@@ -88,19 +130,24 @@ std::size_t untangle(HalfedgeMesh& mesh) {
   std::vector<Face> faces = intersecting_faces(mesh, mesh.faces());
   if (faces.empty()) return 0;
   // The other sheets of the surface near a face are found only if they intersect something already.
-  // The check of all faces at the end finds the rest.
+  // The check of the faces that moved against all faces finds the rest.
   const std::vector<Face> near = with_neighbours(mesh, with_neighbours(mesh, faces));
+  std::vector<Face> suspects = faces;
+  std::vector<Eigen::Vector3d> before = positions(mesh);
   for (int round = 0; round < kRounds && !faces.empty(); ++round) {
     smooth_around(mesh, faces);
     faces = intersecting_faces(mesh, near);
   }
   std::size_t removed = 0;
   for (;;) {
-    faces = intersecting_faces(mesh, mesh.faces());
+    add_moved_faces(mesh, before, suspects);
+    faces = intersecting_near(mesh, suspects);
     if (faces.empty()) return removed;
+    before = positions(mesh);
     for (const Face face : faces)
       if (!mesh.is_removed(face)) CGAL::Euler::remove_face(mesh.halfedge(face), mesh);
     removed += faces.size() + remove_spikes(mesh);
+    suspects.clear();
   }
 }
 
