@@ -156,6 +156,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   refuse_not_built(visible);
   refuse_not_built(hidden);
   check_values(options, raw);
+  options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
   options.reconstruct.name_of = option_of;
   warn_of_no_effect(options);

@@ -6,7 +6,9 @@
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 
-#include <span>
+#include <algorithm>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -22,22 +24,61 @@ double mean_edge_length(const HalfedgeMesh& mesh) {
   return sum / static_cast<double>(mesh.number_of_edges());
 }
 
+using Components = HalfedgeMesh::Property_map<HalfedgeMesh::Face_index, std::size_t>;
+
+Components find_components(HalfedgeMesh& mesh, const std::string& name) {
+  Components component =
+      mesh.add_property_map<HalfedgeMesh::Face_index, std::size_t>(name, 0).first;
+  pmp::connected_components(mesh, component);
+  return component;
+}
+
+// The diagonals of the components' bounding boxes, in mean edge lengths of the mesh.
+std::vector<double> sizes_of(const HalfedgeMesh& mesh, const Components& component) {
+  std::vector<CGAL::Bbox_3> boxes;
+  for (const auto face : mesh.faces()) {
+    boxes.resize(std::max(boxes.size(), component[face] + 1));
+    for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
+      boxes[component[face]] += mesh.point(vertex).bbox();
+  }
+  const double edge = mean_edge_length(mesh);
+  std::vector<double> sizes;
+  sizes.reserve(boxes.size());
+  for (const CGAL::Bbox_3& box : boxes)
+    sizes.push_back(Eigen::Vector3d(box.x_span(), box.y_span(), box.z_span()).norm() / edge);
+  return sizes;
+}
+
 // Returns the number of removed components.
 std::size_t remove_small_components(HalfedgeMesh& mesh, double factor) {
   if (factor == 0 || mesh.number_of_faces() == 0) return 0;
-  const double least = factor * mean_edge_length(mesh);
-  auto component =
-      mesh.add_property_map<HalfedgeMesh::Face_index, std::size_t>("f:component", 0).first;
-  std::vector<CGAL::Bbox_3> boxes(pmp::connected_components(mesh, component));
-  for (const auto face : mesh.faces())
-    for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
-      boxes[component[face]] += mesh.point(vertex).bbox();
+  Components component = find_components(mesh, "f:component");
+  const std::vector<double> sizes = sizes_of(mesh, component);
   std::vector<std::size_t> small;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const CGAL::Bbox_3& box = boxes[i];
-    const Eigen::Vector3d size(box.x_span(), box.y_span(), box.z_span());
-    if (size.norm() < least) small.push_back(i);
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (sizes[i] < factor) small.push_back(i);
+  pmp::remove_connected_components(mesh, small, component);
+  mesh.remove_property_map(component);
+  mesh.collect_garbage();
+  return small.size();
+}
+
+// Removes components smaller than `factor` mean edge lengths that were parts of larger components
+// when `before` was found. Returns their number.
+std::size_t remove_cut_off_components(HalfedgeMesh& mesh, const Components& before, double factor) {
+  if (factor == 0 || mesh.number_of_faces() == 0) return 0;
+  Components component = find_components(mesh, "f:component");
+  const std::vector<double> sizes = sizes_of(mesh, component);
+  std::vector<std::size_t> origins(sizes.size());
+  for (const auto face : mesh.faces()) origins[component[face]] = before[face];
+  std::map<std::size_t, std::size_t> largest;  // component of each origin
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const auto entry = largest.emplace(origins[i], i).first;
+    if (sizes[i] > sizes[entry->second]) entry->second = i;
   }
+  std::vector<std::size_t> small;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (sizes[i] < factor && largest[origins[i]] != i) small.push_back(i);
   pmp::remove_connected_components(mesh, small, component);
   mesh.remove_property_map(component);
   mesh.collect_garbage();
@@ -123,15 +164,14 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
     check_edge_length(surface, options.edge_length);
     remesh(surface, options.edge_length);
     mend(surface, options, result);
-    result.removed_intersections = untangle(surface);
-  } else {
-    result.removed_intersections = untangle(surface);
   }
+  const Components before = find_components(surface, "f:before");
+  result.removed_intersections = untangle(surface);
+  result.removed_components += remove_cut_off_components(surface, before, options.cut_off);
   if (surface.number_of_faces() == 0)
     fail(
         "no face of the mesh is left: all pieces are smaller than the limit for spurious pieces, "
-        "or "
-        "their faces intersect each other");
+        "or their faces intersect each other");
   return from_halfedges(surface);
 }
 

@@ -20,6 +20,9 @@ struct CleanOptions {
   std::size_t close_holes = 30;  // close holes with a border of at most this many edges; 0: none
   unsigned smooth = 0;           // number of smoothing steps in step 5; 0: none
   double edge_length = 0;        // length of the edges after remeshing [m]; 0: no remeshing
+  // Step 8 removes the pieces that step 7 cut off and that are below this size, in mean edge
+  // lengths as for `spurious`; 0: none.
+  double cut_off = 20;
 };
 
 // What clean() did.
@@ -40,7 +43,8 @@ struct CleanReport {
 //   5. smoothing,
 //   6. remeshing and step 4 again, if `edge_length` is above 0,
 //   7. smoothing of faces that intersect each other, and removal of these faces if smoothing does
-//      not help.
+//      not help,
+//   8. removal of small pieces that step 7 cut off. The largest piece of each component stays.
 //
 // Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
 // neighbours. Vertices without faces are removed. Colours are lost. `report` is overwritten; null:

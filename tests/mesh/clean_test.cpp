@@ -41,6 +41,7 @@ CleanOptions nothing() {
   options.spikes = false;
   options.close_holes = 0;
   options.smooth = 0;
+  options.cut_off = 0;
   return options;
 }
 
@@ -151,17 +152,43 @@ TEST(Clean, TwoSheetsThatTouchAtACornerArePulledApart) {
   EXPECT_EQ(report.removed_intersections, 0u);
 }
 
-TEST(Clean, FacesThatCrossAreRemoved) {
+// A floor and a wall that cross each other in the line y = `y`, z = 0.
+Mesh floor_and_wall(float y) {
   Mesh mesh = grid(12);
   Mesh wall = grid(12);
-  for (Eigen::Vector3f& v : wall.vertices) v = {v.x() + 0.3f, 6.4f, v.y() - 6.2f};
+  for (Eigen::Vector3f& v : wall.vertices) v = {v.x() + 0.3f, y, v.y() - 6.2f};
   append(mesh, wall);
+  return mesh;
+}
+
+TEST(Clean, FacesThatCrossAreRemoved) {
+  const Mesh mesh = floor_and_wall(6.4f);
   CleanReport report;
   const Mesh cleaned = clean(mesh, nothing(), &report);
   EXPECT_GT(report.removed_intersections, 0u);
   CleanReport again;
   EXPECT_EQ(clean(cleaned, nothing(), &again).faces.size(), cleaned.faces.size());
   EXPECT_EQ(again.removed_intersections, 0u);
+}
+
+TEST(Clean, SmallPiecesThatAreCutOffAreRemoved) {
+  const Mesh mesh = floor_and_wall(9.4f);
+  CleanOptions options = nothing();
+  const Mesh pieces = clean(mesh, options);
+  const auto beyond = [](const Mesh& of) {  // vertices of the floor behind the wall
+    return std::ranges::count_if(of.vertices, [](const auto& v) { return v.y() > 11; });
+  };
+  EXPECT_GT(beyond(pieces), 0);
+  options.cut_off = 20;
+  CleanReport report;
+  const Mesh cleaned = clean(mesh, options, &report);
+  EXPECT_GT(report.removed_components, 0u);
+  EXPECT_EQ(beyond(cleaned), 0);
+  // The largest piece of each sheet stays, although it is smaller than 20 edges, too: three
+  // quarters of the floor and half of the wall.
+  EXPECT_GT(area(cleaned), 0.5 * area(pieces));
+  options.cut_off = 1;
+  EXPECT_EQ(clean(mesh, options).faces.size(), pieces.faces.size());
 }
 
 TEST(Clean, SmoothingDampsNoiseAndKeepsThePlace) {
