@@ -78,9 +78,9 @@ struct DistortedLens {
     return at;
   }
 
-  // The tangents of the direction that the lens images at `pixel`, and d(tangents)/d(pixel)
-  // [1/px]. If the lens images no direction at the pixel, the result is a direction at the edge of
-  // the lens's field, and project() maps this direction to another pixel. A NaN pixel gives NaN.
+  // The tangents of the direction whose image is `pixel`, and d(tangents)/d(pixel) [1/px]. If the
+  // pixel is the image of no direction, the result is a direction at the edge of the lens's field
+  // of view, and project() maps this direction to another pixel. A NaN pixel gives NaN.
   PlanePoint<T> tangents(const Vector2<T>& pixel) const {
     const T inv_fx = T(1) / pinhole.fx, inv_fy = T(1) / pinhole.fy;
     const Vector2<T> d{(pixel.x() - pinhole.cx) * inv_fx, (pixel.y() - pinhole.cy) * inv_fy};

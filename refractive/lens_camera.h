@@ -165,9 +165,9 @@ class LensCamera {
   const DistortedLens<T>& distorted_lens() const { return lens_; }
   const Inner& inner() const { return inner_; }
 
-  // The ray of `pixel` in the scene medium, in the camera frame. If the lens images no direction at
-  // the pixel, the result is the ray of a direction at the edge of the lens's field. A NaN pixel
-  // gives a ray with a NaN direction.
+  // The ray of `pixel` in the scene medium, in the camera frame. If the pixel is the image of no
+  // direction, the result is the ray of a direction at the edge of the lens's field of view. A NaN
+  // pixel gives a ray with a NaN direction.
   AxialRay<T> ray(const Vector2<T>& pixel) const { return inner_.ray(lens_.tangents(pixel).point); }
 
   // The ray of `pixel`, as above. `jacobian` receives the derivatives of the ray by the pixel.

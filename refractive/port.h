@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A port of either kind, for code that passes on ports but does not use their parameters.
+// A port of either kind: flat (FlatPort) or dome (DomePort).
 #pragma once
 
 #include <variant>

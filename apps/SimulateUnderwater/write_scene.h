@@ -12,8 +12,8 @@
 
 namespace axial::apps {
 
-// Returns the name, such as "0007", that the files of a view and its image in the sparse model have
-// without extension.
+// Returns the name of a view's files without extension, such as "0007". The view's image in the
+// sparse model has this name, too, with the extension .jpg.
 std::string view_name(std::size_t view);
 
 // Writes a COLMAP model with one camera, the true poses and the true observations: cameras.txt,

@@ -14,8 +14,9 @@ namespace axial {
 // user named by mistake.
 void log_to_file_too(const std::filesystem::path& file);
 
-// Writes a line, with date and time, to the file of log_to_file_too() and not to standard output,
-// at any level of the log. Does nothing if log_to_file_too() was not called.
+// Writes a line, with date and time, to the file of log_to_file_too(), but not to standard output.
+// The line is written whatever level set_log_level() of base/log.h has set. Does nothing if
+// log_to_file_too() was not called.
 void log_to_file_only(std::string_view line);
 
 }  // namespace axial

@@ -126,9 +126,9 @@ struct FusionSize {
   bool colors = false;       // whether FusionProviders::load_color is given
 };
 
-// An upper bound of the memory [bytes] that fuse() holds. Precondition: size.maps is at least the
-// number of a view and its neighbours, and at most size.views. The portions of the cloud and the
-// memory that the providers need while they load are not included.
+// An upper bound of the memory [bytes] that fuse() holds. Precondition: size.maps is at least 1
+// plus the largest number of neighbours of any view, and at most size.views. The portions of the
+// cloud and the memory that the providers need while they load are not included.
 std::uint64_t bytes_needed(const FusionSize& size);
 
 // Returns the normals of a map, estimated from the back-projected points in the 3x3 neighbourhood

@@ -28,8 +28,9 @@ struct RelativePose {
   Eigen::Vector3f apply(const Eigen::Vector3f& x) const { return rotation * x + translation; }
 };
 
-// The surface point [m] of a hypothesis at the window's centre and the point's derivative by the
-// reference pixel (u, v) [m/px], in the reference camera's frame.
+// The point [m] in which the ray of the reference pixel, the centre of the window, meets the plane
+// of a hypothesis, and the derivative of this point by the pixel (u, v) [m/px]. Both are in the
+// reference camera's frame.
 struct PatchDerivative {
   Eigen::Vector3f point;
   refractive::Matrix32<float> by_pixel;

@@ -48,10 +48,10 @@ Viewpoint viewpoint_of(const View& view, int width);
 Viewpoint principal_viewpoint(std::span<const Eigen::Vector3f> positions,
                               std::span<const Eigen::Vector3f> normals, int width, int height);
 
-// Draws the points as squares of 2 to 7 pixels on white. The nearest point covers the others.
-// Points behind a viewpoint with perspective are left out. The squares are smaller if the picture
-// contains more points, so that the picture of a dense cloud has no gaps. Precondition: `colors`
-// has one colour for each point, in the order of `positions`.
+// Draws the points as squares on white. All squares have the same side: 1.5 times the mean spacing
+// of the points in the picture, at least 2 and at most 7 pixels. The nearest point covers the
+// others. Points behind a viewpoint with perspective are left out. Precondition: `colors` has one
+// colour for each point, in the order of `positions`.
 cv::Mat3b draw_cloud(std::span<const Eigen::Vector3f> positions, std::span<const Rgb> colors,
                      const Viewpoint& viewpoint);
 

@@ -43,7 +43,7 @@ class PhotographCamera {
   PhotographImage image(const Eigen::Vector3d& X) const;
 
   // The ray in water of `pixel`, in the camera frame [m]. Without a port, it is the ray in air.
-  // Origin and direction are NaN if the lens images no direction at this pixel.
+  // Origin and direction are NaN if the pixel is the image of no direction.
   refractive::AxialRay<double> ray(const Eigen::Vector2d& pixel) const;
 
   // The principal point (cx, cy) of the lens [px].

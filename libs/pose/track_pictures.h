@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether photographs show what tracks and cameras predict: compares small patches of two
-// photographs around the images of one point. Reason: the tracks may come from other photographs of
-// the same views, taken in air. In this case only the photographs show whether a port is right.
+// Checks whether photographs agree with tracks and cameras: compares small patches of two
+// photographs, at the two places where the tracks or the cameras have the images of one point. The
+// tracks alone are not enough: they may come from photographs of the same views that were taken in
+// air, and then contain no refraction. In this case only the pixels of the underwater photographs
+// show whether a port is right.
 #pragma once
 
 #include <array>

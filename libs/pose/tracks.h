@@ -15,8 +15,8 @@ namespace axial::pose {
 // a ray. Precondition: all rays are in one frame.
 std::optional<Eigen::Vector3d> triangulate(std::span<const refractive::AxialRay<double>> rays);
 
-// Triangulates all points from the rays of their observations. Observations at whose pixel the lens
-// images no direction are not used. A point for which triangulate(rays) returns nothing keeps its
+// Triangulates all points from the rays of their observations. Observations whose pixel is the
+// image of no direction are not used. A point for which triangulate(rays) returns nothing keeps its
 // position.
 void triangulate(Bundle& bundle);
 

@@ -45,8 +45,8 @@ std::uint64_t bytes_of_textures(std::span<const cv::Size> sizes);
 // (>= 0): the amount of an unsharp mask, 0 for none. The mask replaces a photograph T by
 // (1 + sharpness) T - sharpness (G * T), where * is convolution and G a Gaussian with a standard
 // deviation of 1.5 px. Where a part extends beyond the photograph, it repeats the photograph's
-// border pixels. At most `in_flight` photographs are in work at the same time, and at most as many
-// as there are threads (0: as many as there are threads).
+// border pixels. `in_flight`: the largest number of photographs in work at the same time. 0, and
+// values above the number of threads, count as the number of threads.
 void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSource& images,
            double sharpness, std::size_t in_flight = 0);
 

@@ -28,8 +28,10 @@ namespace axial::io {
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 
-// Estimates of the memory [bytes] that the two functions need, with their result. The estimates are
-// made from the size and the header of the file. 0 for a file that cannot be read.
+// Estimates of the memory [bytes] that read_cloud_of_scene() and read_mesh_of_scene() need, with
+// their result. The estimate for a cloud is made from the size and the header of the file, and is 0
+// if the header cannot be read or does not fit the size. The estimate for a mesh is made from the
+// size alone, and is 0 if the size cannot be found.
 std::uint64_t bytes_to_read_cloud(const std::filesystem::path& ply);
 std::uint64_t bytes_to_read_mesh(const std::filesystem::path& ply);
 
