@@ -44,19 +44,14 @@ void check_outputs(const Options& options) {
   require_writable(options.output);
 }
 
-// Error if `work`, which takes `bytes` bytes, exceeds the memory that is allowed.
-void check_memory(const std::string& work, std::uint64_t bytes, const Options& options) {
-  require_memory(std::max(resident_memory(), kProgramBytes) + bytes,
-                 memory_limit(options.max_memory, "--max-memory"), "--max-memory", work);
-}
-
-void check_memory_to_read(const fs::path& file, std::uint64_t bytes, const Options& options) {
-  check_memory("reading " + file.string(), bytes, options);
+MemoryAllowance memory_of(const Options& options) {
+  return {options.max_memory, "--max-memory", kProgramBytes};
 }
 
 Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
   const fs::path file = cloud_file(options);
-  if (!file.empty()) check_memory_to_read(file, io::bytes_to_read_cloud(file), options);
+  if (!file.empty())
+    memory_of(options).require(io::bytes_to_read_cloud(file), "reading " + file.string());
   PointCloud cloud =
       file.empty() ? cloud_of(scene.scene) : io::read_cloud_of_scene(scene.frame, file);
   const fs::path& source = file.empty() ? options.scene.scene : file;
@@ -67,10 +62,11 @@ Mesh reconstruct(const io::SceneWithCameras& scene, const Options& options) {
 }
 
 Mesh clean_given(const io::SceneWithCameras& scene, const Options& options) {
-  check_memory_to_read(options.mesh, io::bytes_to_read_mesh(options.mesh), options);
+  memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
+                             "reading " + options.mesh.string());
   const Mesh mesh = io::read_mesh_of_scene(scene.frame, options.mesh);
-  check_memory("cleaning " + options.mesh.string(), mesh::bytes_to_clean(mesh.vertices.size()),
-               options);
+  memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
+                             "cleaning " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, options.reconstruct.clean); });
 }
 
@@ -86,7 +82,7 @@ int run(int argc, char** argv) {
   const ThreadLimit threads(options.parsed.common.max_threads);
   check_outputs(options);
   if (const auto counts = io::count_mvs(options.scene.scene))
-    check_memory_to_read(options.scene.scene, counts->reading_bytes(), options);
+    memory_of(options).require(counts->reading_bytes(), "reading " + options.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.scene);
   if (scene.scene.region) scene.scene.region = with_border(*scene.scene.region, options.roi_border);
   options.reconstruct.max_bytes = memory_limit(options.max_memory, "--max-memory");

@@ -41,14 +41,13 @@ void check_outputs(const Options& options, const densify::Project& project) {
   }
 }
 
-// Error if `work`, which takes `bytes` bytes, exceeds the memory that is allowed.
-void check_memory(const std::string& work, std::uint64_t bytes, const Options& options) {
-  require_memory(std::max(resident_memory(), densify::kProgramBytes) + bytes,
-                 densify::memory_limit(options.scene), "--max-memory", work);
+MemoryAllowance memory_of(const Options& options) {
+  return {options.scene.max_memory, "--max-memory", densify::kProgramBytes};
 }
 
 Mesh read_mesh(const Options& options, const LocalFrame& frame) {
-  check_memory("reading " + options.mesh.string(), io::bytes_to_read_mesh(options.mesh), options);
+  memory_of(options).require(io::bytes_to_read_mesh(options.mesh),
+                             "reading " + options.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, options.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", options.mesh.string());
   log_info("Mesh {}: {} vertices, {} faces", options.mesh.filename().string(), mesh.vertices.size(),
@@ -56,8 +55,8 @@ Mesh read_mesh(const Options& options, const LocalFrame& frame) {
   if (options.decimate == 1) return mesh;
   mesh::CleanOptions fewer = options.cleaning;
   fewer.decimate = options.decimate;
-  check_memory("decimating " + options.mesh.string(), mesh::bytes_to_clean(mesh.vertices.size()),
-               options);
+  memory_of(options).require(mesh::bytes_to_clean(mesh.vertices.size()),
+                             "decimating " + options.mesh.string());
   return naming(options.mesh, [&] { return mesh::clean(mesh, fewer); });
 }
 
@@ -81,9 +80,8 @@ Shares share_out_memory(const Options& options, const densify::Project& project)
     image = std::max(image, densify::bytes_needed({pixels, view.masked(), false}));
     decode = std::max(decode, densify::bytes_needed_to_load(io::bytes_needed(view.file), pixels));
   }
-  const std::uint64_t limit = densify::memory_limit(options.scene);
-  const std::uint64_t used = std::max(resident_memory(), densify::kProgramBytes) + decode;
-  const std::uint64_t room = limit > used ? limit - used : 0;
+  const std::uint64_t left = memory_of(options).left();
+  const std::uint64_t room = left - std::min(left, decode);
   Shares shares;
   shares.images = std::clamp<std::size_t>(room / 8 / std::max<std::uint64_t>(image, 1), 2,
                                           std::max<std::size_t>(project.views.size(), 2));

@@ -26,15 +26,13 @@ namespace fs = std::filesystem;
 // The memory of the program itself: code and libraries, stacks, small blocks.
 constexpr std::uint64_t kProgramBytes = 64 * kMegabyte;
 
-// Error if reading `file`, which takes `bytes` bytes, exceeds the memory that is allowed.
-void check_memory_to_read(const fs::path& file, std::uint64_t bytes, const Settings& settings) {
-  require_memory(std::max(resident_memory(), kProgramBytes) + bytes,
-                 memory_limit(settings.max_memory, "--max-memory"), "--max-memory",
-                 "reading " + file.string());
+MemoryAllowance memory_of(const Settings& settings) {
+  return {settings.max_memory, "--max-memory", kProgramBytes};
 }
 
 Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  check_memory_to_read(settings.mesh, io::bytes_to_read_mesh(settings.mesh), settings);
+  memory_of(settings).require(io::bytes_to_read_mesh(settings.mesh),
+                              "reading " + settings.mesh.string());
   Mesh mesh = io::read_mesh_of_scene(frame, settings.mesh);
   if (mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces", settings.mesh.string(), mesh.vertices.size(),
@@ -73,9 +71,7 @@ void require_writable_outputs(const Settings& settings) {
 // The options of texture_mesh(), with what is left of the memory after the input was read.
 texture::Options with_memory(const Settings& settings, const Photographs& photographs) {
   texture::Options options = settings.texture;
-  const std::uint64_t limit = memory_limit(settings.max_memory, "--max-memory");
-  const std::uint64_t used = std::max(resident_memory(), kProgramBytes);
-  options.max_bytes = limit > used ? limit - used : 1;
+  options.max_bytes = std::max<std::uint64_t>(memory_of(settings).left(), 1);  // 0: no limit
   options.image_bytes = photographs.bytes_to_load();
   options.bytes_to_write = [&settings](const texture::ResultSize& size) {
     std::uint64_t bytes = 0;
@@ -94,7 +90,8 @@ int run(int argc, char** argv) {
   const Settings& settings = options.settings;
   const ThreadLimit limit(options.parsed.common.max_threads);
   if (const auto counts = io::count_mvs(settings.scene.scene))
-    check_memory_to_read(settings.scene.scene, counts->reading_bytes(), settings);
+    memory_of(settings).require(counts->reading_bytes(),
+                                "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
   const Photographs photographs(scene.scene, settings);

@@ -12,9 +12,7 @@
 #include "base/error.h"
 #include "base/file_extension.h"
 #include "base/first_error.h"
-#include "base/log.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "base/same_file.h"
 #include "io/colmap/colmap_export.h"
 #include "io/images/image.h"
@@ -24,12 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Job {
-  std::size_t image = 0;
-  fs::path target;
-  cv::Size size;
-};
-
 cv::Size shrunk(const cv::Size& size, unsigned max_resolution) {
   const double factor =
       static_cast<double>(max_resolution) / static_cast<double>(std::max(size.width, size.height));
@@ -37,9 +29,30 @@ cv::Size shrunk(const cv::Size& size, unsigned max_resolution) {
   return {side(size.width), side(size.height)};
 }
 
-std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::path& folder) {
+// The size and the path of the smaller image in the scene.
+void replace_by(const SmallImage& small, const fs::path& folder, SceneImage& image) {
+  image.path = (folder / small.name).string();
+  image.camera = image.camera.resized(small.size.width, small.size.height);
+}
+
+void shrink(const SmallImage& image, const fs::path& target) {
+  constexpr int kQuality = 95;
+  const cv::Mat pixels = io::read_photograph(image.source).pixels;
+  cv::Mat small;
+  cv::resize(pixels, small, image.size, 0, 0, cv::INTER_AREA);
+  if (is_jpeg_name(target))
+    io::write_jpeg(target, small, kQuality);
+  else
+    io::write_png(target, small);
+}
+
+}  // namespace
+
+std::vector<SmallImage> find_large_images(unsigned max_resolution, const fs::path& folder,
+                                          Scene& scene) {
   const fs::path common = io::common_image_folder(scene);
-  std::vector<Job> jobs;
+  std::vector<SmallImage> found;
+  std::vector<std::size_t> large;
   std::vector<fs::path> photographs, targets;
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
@@ -49,46 +62,30 @@ std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::
     if (std::cmp_less_equal(std::max(header.size.width, header.size.height), max_resolution))
       continue;
     if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
-    fs::path target = folder / fs::path(image.path).lexically_normal().lexically_relative(common);
-    if (!(is_jpeg_name(target) && header.bits == 8) && target.extension() != ".png")
-      target += ".png";
-    jobs.push_back({i, target, shrunk(header.size, max_resolution)});
-    targets.push_back(target);
+    fs::path name = fs::path(image.path).lexically_normal().lexically_relative(common);
+    if (!(is_jpeg_name(name) && header.bits == 8) && name.extension() != ".png") name += ".png";
+    found.push_back({image.path, name, shrunk(header.size, max_resolution)});
+    large.push_back(i);
+    targets.push_back(folder / name);
   }
   require_no_inputs(targets, photographs, "--max-resolution");
   if (std::set(targets.begin(), targets.end()).size() < targets.size())
     fail("--max-resolution: two images would become the same file below {}", folder.string());
-  return jobs;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    replace_by(found[k], folder, scene.images[large[k]]);
+  return found;
 }
 
-void shrink(const Job& job, const std::string& source) {
-  constexpr int kQuality = 95;
-  const cv::Mat pixels = io::read_photograph(source).pixels;
-  cv::Mat small;
-  cv::resize(pixels, small, job.size, 0, 0, cv::INTER_AREA);
-  if (is_jpeg_name(job.target))
-    io::write_jpeg(job.target, small, kQuality);
-  else
-    io::write_png(job.target, small);
-}
-
-}  // namespace
-
-void shrink_images(unsigned max_resolution, const fs::path& folder, Scene& scene) {
-  const std::vector<Job> jobs = jobs_of(scene, max_resolution, folder);
-  for (const Job& job : jobs) make_folder(job.target.parent_path());
-  FirstError error;
-  for_each_in_flight(jobs.size(), thread_count(), [&](std::size_t k) {
-    error.run(k, [&] { shrink(jobs[k], scene.images[jobs[k].image].path); });
+void write_small_images(const std::vector<SmallImage>& images, const fs::path& folder) {
+  if (images.empty()) return;
+  write_folder(folder, [&](const fs::path& staging) {
+    for (const SmallImage& image : images) make_folder((staging / image.name).parent_path());
+    FirstError error;
+    for_each_in_flight(images.size(), thread_count(), [&](std::size_t k) {
+      error.run(k, [&] { shrink(images[k], staging / images[k].name); });
+    });
+    error.rethrow();
   });
-  error.rethrow();
-  for (const Job& job : jobs) {
-    SceneImage& image = scene.images[job.image];
-    image.path = job.target.string();
-    image.camera = image.camera.resized(job.size.width, job.size.height);
-  }
-  log_info("{} of {} images were shrunk to at most {} pixels, in {}", jobs.size(),
-           scene.images.size(), max_resolution, folder.string());
 }
 
 }  // namespace axial::apps

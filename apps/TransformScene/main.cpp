@@ -2,6 +2,8 @@
 // Moves a scene, its cloud and its mesh by a similarity, shrinks its images, and measures volumes.
 
 #include <algorithm>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -18,6 +20,7 @@
 #include "io/ply/ply_transform.h"
 #include "measure_volume.h"
 #include "options.h"
+#include "texture_copies.h"
 
 namespace axial::apps {
 namespace {
@@ -34,35 +37,75 @@ fs::path mesh_output(const Options& options) {
   return path;
 }
 
-// Called before the work.
-void check_outputs(const Options& options) {
-  const fs::path& scene = options.files.scene;
-  const std::vector<fs::path> inputs{scene,
-                                     io::housing_file(options.files),
-                                     io::lenses_beside(scene),
-                                     io::geo_offset_beside(scene),
-                                     options.cloud,
-                                     options.mesh,
-                                     options.align,
-                                     options.transform,
-                                     options.positions};
-  std::vector<fs::path> outputs;
+fs::path folder_of_small_images(const Options& options) {
+  return options.output.parent_path() / fmt::format("images{}", options.max_resolution);
+}
+
+// A PLY file that is moved with the scene.
+struct MovedPly {
+  std::string what;
+  fs::path input, output;
+};
+
+std::vector<MovedPly> moved_plys(const Options& options) {
+  std::vector<MovedPly> plys;
+  if (!options.moves()) return plys;
+  if (!options.cloud.empty()) plys.push_back({"cloud", options.cloud, cloud_output(options)});
+  if (!options.mesh.empty()) plys.push_back({"mesh", options.mesh, mesh_output(options)});
+  return plys;
+}
+
+// What is moved besides the scene.
+struct Files {
+  std::vector<MovedPly> plys;
+  std::vector<TextureCopy> textures;  // of the mesh
+};
+
+Files files_of(const Options& options) {
+  Files files{moved_plys(options), {}};
+  if (options.moves() && !options.mesh.empty())
+    files.textures = texture_copies(options.mesh, mesh_output(options));
+  return files;
+}
+
+std::vector<NamedOutput> outputs_of(const Options& options, const Files& files) {
+  std::vector<NamedOutput> outputs;
+  for (const MovedPly& ply : files.plys) outputs.push_back({"--output-file", ply.output});
   if (options.writes_scene())
-    outputs = {options.output, io::housing_beside(options.output),
-               io::lenses_beside(options.output), io::geo_offset_beside(options.output)};
-  if (options.moves() && !options.cloud.empty()) outputs.push_back(cloud_output(options));
-  if (options.moves() && !options.mesh.empty()) outputs.push_back(mesh_output(options));
-  require_no_inputs(outputs, inputs, "--output-file");
+    for (const fs::path& file :
+         {options.output, io::housing_beside(options.output), io::lenses_beside(options.output),
+          io::geo_offset_beside(options.output)})
+      outputs.push_back({"--output-file", file});
+  if (options.moves() && !options.transform_out.empty())
+    outputs.push_back({"--transform-out", options.transform_out});
+  for (const TextureCopy& texture : files.textures)
+    if (texture.needed) outputs.push_back({"--mesh-file", texture.to});
+  return outputs;
+}
+
+// Called before the work. Makes the folders of the outputs.
+void check_outputs(const Options& options, const Files& files) {
+  const fs::path& scene = options.files.scene;
+  std::vector<fs::path> inputs{scene,
+                               io::housing_file(options.files),
+                               io::lenses_beside(scene),
+                               io::geo_offset_beside(scene),
+                               options.cloud,
+                               options.mesh,
+                               options.align,
+                               options.transform,
+                               options.positions};
+  for (const TextureCopy& texture : files.textures) inputs.push_back(texture.from);
+  const std::vector<NamedOutput> outputs = outputs_of(options, files);
+  for (const NamedOutput& output : outputs)
+    require_not_an_input(output.path, inputs, output.setting);
+  require_different(outputs);
   std::error_code ignored;
-  if (!outputs.empty()) fs::create_directories(options.output.parent_path(), ignored);
-  for (const fs::path& output : outputs) require_writable(output);
-  if (!options.moves() || options.transform_out.empty()) return;
-  require_not_an_input(options.transform_out, inputs, "--transform-out");
-  std::vector<NamedOutput> all;
-  for (const fs::path& output : outputs) all.push_back({"--output-file", output});
-  all.push_back({"--transform-out", options.transform_out});
-  require_different(all);
-  require_writable(options.transform_out);
+  for (const NamedOutput& output : outputs) {
+    if (output.setting != "--transform-out")
+      fs::create_directories(output.path.parent_path(), ignored);
+    require_writable(output.path);
+  }
 }
 
 void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& scene) {
@@ -73,7 +116,7 @@ void apply(const Options& options, const FrameMove& move, io::SceneWithCameras& 
         io::moved(move.between_worlds(), std::move(*scene.housing), options.scale_ports);
 }
 
-// Called before the first file is written, because the scene is written last.
+// Called before the first file is written.
 void require_writable_scene(const Options& options, const Scene& scene) {
   const std::string file = options.files.scene.string();
   if (std::ranges::none_of(scene.images, &SceneImage::calibrated))
@@ -83,26 +126,58 @@ void require_writable_scene(const Options& options, const Scene& scene) {
       fail("{}: point {} has no finite position after the transformation", file, i);
 }
 
-void write_clouds(const Options& options, const FrameMove& move) {
-  if (!options.moves()) return;
-  if (!options.cloud.empty()) {
-    io::transform_ply(options.cloud, cloud_output(options), move);
-    log_info("{}: transformed cloud", cloud_output(options).string());
-  }
-  if (!options.mesh.empty()) {
-    io::transform_ply(options.mesh, mesh_output(options), move);
-    log_info("{}: transformed mesh", mesh_output(options).string());
-  }
-  if (!options.transform_out.empty())
-    write_atomically(options.transform_out, evaluate::matrix_text(move.between_worlds()));
+void copy_texture(const TextureCopy& texture, const fs::path& temporary) {
+  std::error_code error;
+  if (!fs::copy_file(texture.from, temporary, error))
+    fail("{}: cannot be copied to {}: {}", texture.from.string(), texture.to.string(),
+         error.message());
 }
 
-// The files beside the scene are written first: without them the scene would be read as a scene
-// without ports at the origin.
-void write_scene(const Options& options, const io::SceneWithCameras& scene) {
+// A file to write, and how to write it under a temporary name.
+struct Output {
+  fs::path path;
+  std::function<void(const fs::path& temporary)> write;
+};
+
+// The last output is the scene. It needs the files beside it and the smaller images.
+std::vector<Output> all_outputs(const Options& options, const Files& files, const FrameMove& move,
+                                const Scene& scene) {
+  std::vector<Output> outputs;
+  for (const TextureCopy& texture : files.textures)
+    if (texture.needed)
+      outputs.push_back({texture.to, [&](const fs::path& file) { copy_texture(texture, file); }});
+  for (const MovedPly& ply : files.plys)
+    outputs.push_back(
+        {ply.output, [&](const fs::path& file) { io::transform_ply(ply.input, file, move); }});
+  if (options.moves() && !options.transform_out.empty())
+    outputs.push_back({options.transform_out, [&](const fs::path& file) {
+                         write_atomically(file, evaluate::matrix_text(move.between_worlds()));
+                       }});
+  outputs.push_back({options.output, [&](const fs::path& file) {
+                       io::write_mvs(file, scene, options.files.working_folder);
+                     }});
+  return outputs;
+}
+
+// No file changes before all inputs are read. The files beside the scene are written before the
+// scene: without them the scene would be read as a scene without ports at the origin.
+void write_all(const Options& options, const Files& files, const FrameMove& move,
+               const std::vector<SmallImage>& images, const io::SceneWithCameras& scene) {
   const io::SceneLenses lenses = io::lenses_of(scene.scene, options.output);
-  io::write_cameras_beside(options.output, scene, lenses, options.files);
-  io::write_mvs(options.output, scene.scene, options.files.working_folder);
+  const std::vector<Output> outputs = all_outputs(options, files, move, scene.scene);
+  std::vector<fs::path> paths;
+  for (const Output& output : outputs) paths.push_back(output.path);
+  write_together(paths, [&](const std::vector<fs::path>& temporaries) {
+    for (std::size_t k = 0; k < outputs.size(); ++k) outputs[k].write(temporaries[k]);
+    write_small_images(images, folder_of_small_images(options));
+    io::write_cameras_beside(options.output, scene, lenses, options.files);
+  });
+  for (const MovedPly& ply : files.plys)
+    log_info("{}: transformed {}", ply.output.string(), ply.what);
+  if (options.max_resolution > 0)
+    log_info("{} of {} images were shrunk to at most {} pixels, in {}", images.size(),
+             scene.scene.images.size(), options.max_resolution,
+             folder_of_small_images(options).string());
   log_info("{}: {} images, {} points", options.output.string(), scene.scene.images.size(),
            scene.scene.points.size());
 }
@@ -111,19 +186,20 @@ int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
   const ThreadLimit threads(options.parsed.common.max_threads);
-  check_outputs(options);
+  const Files files = files_of(options);
+  check_outputs(options, files);
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.files);
   const FrameMove move = find_move(options, scene);
   check_scale(options, scene, move.similarity);
   apply(options, move, scene);
   if (options.writes_scene()) require_writable_scene(options, scene.scene);
-  write_clouds(options, move);
-  if (options.max_resolution > 0)
-    shrink_images(options.max_resolution,
-                  options.output.parent_path() / fmt::format("images{}", options.max_resolution),
-                  scene.scene);
-  if (options.writes_scene()) write_scene(options, scene);
   if (options.compute_volume) measure_volume(options, scene.scene, move);
+  if (!options.writes_scene()) return 0;
+  std::vector<SmallImage> images;
+  if (options.max_resolution > 0)
+    images =
+        find_large_images(options.max_resolution, folder_of_small_images(options), scene.scene);
+  write_all(options, files, move, images, scene);
   return 0;
 }
 

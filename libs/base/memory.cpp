@@ -81,11 +81,17 @@ std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting) 
   }
 }
 
-void require_memory(std::uint64_t bytes, std::uint64_t limit, const std::string& setting,
-                    const std::string& work) {
-  if (bytes > limit)
+void MemoryAllowance::require(std::uint64_t bytes, const std::string& work) const {
+  const std::uint64_t needed = std::max(resident_memory(), program_bytes) + bytes;
+  const std::uint64_t limit = memory_limit(megabytes, setting);
+  if (needed > limit)
     fail("{}: {} MB are too little, {} needs {} MB", setting, limit / kMegabyte, work,
-         bytes / kMegabyte + 1);
+         needed / kMegabyte + 1);
+}
+
+std::uint64_t MemoryAllowance::left() const {
+  const std::uint64_t limit = memory_limit(megabytes, setting);
+  return limit - std::min(limit, std::max(resident_memory(), program_bytes));
 }
 
 std::uint64_t resident_memory() {

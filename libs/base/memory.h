@@ -23,10 +23,22 @@ inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in
 // is 0 and the system does not report how much memory is available.
 std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
 
-// Throws an Error if `bytes` is more than `limit`. The message is one line. It begins with
-// `setting`, the name of the limit, and tells how many megabytes `work` needs.
-void require_memory(std::uint64_t bytes, std::uint64_t limit, const std::string& setting,
-                    const std::string& work);
+// The memory that a program may use, to check before each piece of work. The limit is
+// memory_limit(megabytes, setting) at the time of a call.
+struct MemoryAllowance {
+  std::uint64_t megabytes = 0;      // 0: 70 % of available_memory()
+  std::string setting;              // the name of `megabytes` in messages
+  std::uint64_t program_bytes = 0;  // of code and libraries, stacks and small blocks [bytes]
+
+  // Throws an Error if the program would exceed the limit with `bytes` more bytes than it uses now.
+  // The use is resident_memory(), but at least program_bytes, so that a program that has just begun
+  // decides like one that has loaded all of its code. The message is one line. It begins with
+  // `setting` and tells how many megabytes the program needs for `work`.
+  void require(std::uint64_t bytes, const std::string& work) const;
+
+  // The bytes between the use, as in require(), and the limit. 0 if the use is at the limit.
+  std::uint64_t left() const;
+};
 
 // The bytes of this process that are in memory now (resident set), including its code and its
 // libraries. The number differs by some pages from run to run.

@@ -2,40 +2,15 @@
 #include "evaluate/topology.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "evaluate/self_intersections.h"
 #include "evaluate/surface.h"
 
 namespace axial::evaluate {
 namespace {
-
-// Disjoint sets of the numbers below `count`.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-  }
-  std::size_t root(std::size_t i) {
-    while (parents_[i] != i) {
-      parents_[i] = parents_[parents_[i]];
-      i = parents_[i];
-    }
-    return i;
-  }
-  // Returns true if the two were in different groups.
-  bool join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
-
- private:
-  std::vector<std::size_t> parents_;
-};
 
 // The side of a face from one corner to the next, of the vertices low < high.
 struct Side {
@@ -73,7 +48,7 @@ void for_each_edge(std::span<const Side> sides, const Visit& visit) {
 }
 
 void count_edges(std::span<const Side> sides, std::size_t vertices, Topology& topology) {
-  Groups border(vertices);
+  DisjointSets<std::size_t> border(vertices);
   std::size_t border_vertices = 0, joined = 0;
   std::vector<bool> on_border(vertices, false);
   const auto mark = [&](std::uint32_t vertex) {
@@ -94,7 +69,7 @@ void count_edges(std::span<const Side> sides, std::size_t vertices, Topology& to
 }
 
 std::size_t count_components(std::span<const Side> sides, std::size_t faces) {
-  Groups groups(faces);
+  DisjointSets<std::size_t> groups(faces);
   std::size_t components = faces;
   for_each_edge(sides, [&](std::span<const Side> edge) {
     for (const Side& side : edge)
@@ -106,7 +81,7 @@ std::size_t count_components(std::span<const Side> sides, std::size_t faces) {
 // Joins the corners of the faces at each vertex over the edges of two faces: each group of corners
 // is a fan.
 void count_vertices(const Mesh& mesh, std::span<const Side> sides, Topology& topology) {
-  Groups corners(3 * mesh.faces.size());
+  DisjointSets<std::size_t> corners(3 * mesh.faces.size());
   std::vector<std::uint8_t> fans(mesh.vertices.size(), 0);  // 2: more than one
   const auto corner = [](std::uint32_t face, std::uint8_t at) {
     return std::size_t{3} * face + at;

@@ -3,7 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
+
+#include "base/disjoint_sets.h"
 
 namespace axial::mesh {
 namespace {
@@ -40,26 +41,6 @@ std::vector<Facet> facets_between(const Tetrahedra& tetrahedra, const std::vecto
   }
   return facets;
 }
-
-// Joins corners of faces to vertices.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t root(std::uint32_t corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 class SurfaceBuilder {
  public:
@@ -129,7 +110,7 @@ class SurfaceBuilder {
   const std::vector<bool>& occupied_;
   const std::vector<Facet>& facets_;
   std::vector<Tetrahedra::Four> number_;  // of the facet, or kNone
-  CornerSets sets_;
+  DisjointSets<std::uint32_t> sets_;      // corners of facets that are one vertex
 };
 
 float longest_edge(const Triangle& corners, std::span<const Eigen::Vector3f> points,

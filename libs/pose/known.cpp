@@ -4,34 +4,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
+#include "base/disjoint_sets.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {
 namespace {
 
-// Connected components of the graph of images and points with observations as edges (union-find).
+// Connected components of the graph of images and points with observations as edges.
 class Connected {
  public:
   explicit Connected(const Bundle& bundle)
-      : parents_(bundle.images.size() + bundle.points.size()), images_(bundle.images.size()) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+      : sets_(bundle.images.size() + bundle.points.size()), images_(bundle.images.size()) {
     for (const Observation& observation : bundle.observations)
-      parents_[root(observation.image)] = root(images_ + observation.point);
+      sets_.join(observation.image, images_ + observation.point);
   }
 
-  bool images(std::size_t a, std::size_t b) { return root(a) == root(b); }
-  bool points(std::size_t a, std::size_t b) { return root(images_ + a) == root(images_ + b); }
+  bool images(std::size_t a, std::size_t b) { return sets_.root(a) == sets_.root(b); }
+  bool points(std::size_t a, std::size_t b) { return images(images_ + a, images_ + b); }
 
  private:
-  std::size_t root(std::size_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-
-  std::vector<std::size_t> parents_;
+  DisjointSets<std::size_t> sets_;  // of the images, and of the points after them
   std::size_t images_;
 };
 

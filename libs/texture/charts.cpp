@@ -4,36 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "texture/labels.h"
 
 namespace axial::texture {
 namespace {
 
-// Sets of faces that are joined one by one.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    for (std::uint32_t i = 0; i < count; ++i) parent_[i] = i;
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The root of a set is its first face.
-  void join(std::uint32_t i, std::uint32_t j) {
-    const auto [low, high] = std::minmax({root(i), root(j)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 // Numbers the charts in the order of their first faces.
 void number_charts(std::span<const FacePair> pairs, std::span<const std::uint32_t> labels,
                    Charts& result) {
-  Sets sets(labels.size());
+  DisjointSets<std::uint32_t> sets(labels.size());
   for (const FacePair& p : pairs)
     if (labels[p.a] == labels[p.b]) sets.join(p.a, p.b);
   result.chart_of.assign(labels.size(), kNoChart);

@@ -8,7 +8,7 @@ import re
 import struct
 
 import tiny_scene
-from programs import ProgramTest, files_below, main, read, write
+from programs import contents, files_below, main, read, write
 
 TURN = ((0.36, 0.48, -0.8), (-0.8, 0.60, 0.0), (0.48, 0.64, 0.60))  # a rotation in exact decimals
 SHIFT = (1.5, -2.25, 0.75)
@@ -241,6 +241,114 @@ class Moves(Transform):
             self.assertEqual(struct.unpack(">II", png[16:24]), (48, 36))
         self.succeeds("DensifyPointCloud", "-i", "moved.mvs", "-w", self.work, "--resolution-level",
                       0, "--min-resolution", 16)
+
+
+class Outputs(Transform):
+    """An error leaves no output, and the files of an earlier run as they were."""
+
+    def refused_and_nothing_changed(self, expected, *arguments):
+        self.refused(expected, *arguments)  # into a new place
+        self.assertFalse(os.path.exists(self.path("work", "images48")))
+        for name in ("moved.mvs", "moved.ply", "moved_mesh.ply", "moved.housing.json", "out.txt",
+                     os.path.join("images48", "0000.png")):
+            write(self.path("work", name), "old")
+        before = contents(self.work)
+        self.refused(expected, *arguments)
+        self.assertEqual(contents(self.work), before)
+
+    def everything(self):
+        self.port(PORT)
+        return ("-t", self.path("t.txt"), "--scale-ports", "-p", "cloud.ply", "-m", "mesh.ply",
+                "--transform-out", self.path("work", "out.txt"), "--max-resolution", 48)
+
+    def test_a_bad_mesh_after_a_good_cloud(self):
+        write(self.mesh, read(self.mesh)[:-9])
+        self.refused_and_nothing_changed("mesh.ply", *self.everything())
+
+    def test_a_bad_image_after_good_images(self):
+        image = self.images[-1]
+        write(image, read(image)[:len(read(image)) // 2])  # the header of the file is good
+        self.refused_and_nothing_changed(image, *self.everything())
+
+    def test_a_volume_that_is_not_defined(self):
+        self.refused_and_nothing_changed("mesh.ply: it is not closed", *self.everything(),
+                                         "--compute-volume", 1, "--plane-threshold", -1)
+
+    def test_files_of_an_earlier_run_are_replaced(self):
+        arguments = self.everything()
+        self.transform(*arguments)
+        first = contents(self.work)
+        for name in set(first) & {"moved.mvs", "moved.ply", os.path.join("images48", "0001.png")}:
+            write(self.path("work", name), "old")
+        other = self.path("work", "images48", "other.txt")
+        write(other, "not an image of this run")
+        self.transform(*arguments)
+        os.remove(other)
+        self.assertEqual(contents(self.work), first)
+
+
+class Textures(Transform):
+    """A mesh that is written to another folder takes its textures along."""
+
+    def setUp(self):
+        super().setUp()
+        write(self.path("work", "a.png"), b"first texture")
+        write(self.path("work", "more", "b 2.png"), b"second texture")
+        self.names("a.png", "more/b 2.png", "a.png")
+
+    def names(self, *names):
+        comments = "".join(f"comment TextureFile {name}\n" for name in names)
+        write(self.mesh, ascii_ply("float", CUBE, CUBE_FACES, comments=comments))
+
+    def arguments(self, output):
+        return ("-t", self.path("t.txt"), "-m", "mesh.ply", "-o", output)
+
+    def move(self, output="there/moved.mvs"):
+        return self.succeeds("TransformScene", "-i", "scene.mvs", "-w", self.work,
+                             *self.arguments(output))
+
+    def refuses_move(self, expected):
+        os.makedirs(self.path("work", "there"), exist_ok=True)
+        self.refuses(expected, "TransformScene", "-i", "scene.mvs", "-w", self.work,
+                     *self.arguments("there/moved.mvs"))
+
+    def test_textures_are_copied(self):
+        self.move()
+        names = re.findall(rb"comment TextureFile (.*)\n", self.at("there/moved_mesh.ply"))
+        self.assertEqual(names, [b"a.png", b"more/b 2.png", b"a.png"])
+        for name in names:
+            self.assertEqual(self.at("there/" + name.decode()), self.at(name.decode()))
+        first = contents(self.work)
+        self.move()  # the copies are there already
+        self.assertEqual(contents(self.work), first)
+
+    def test_nothing_is_copied_within_a_folder(self):
+        before = files_below(self.work)
+        self.move("moved.mvs")
+        self.assertEqual(files_below(self.work) - before, {"moved.mvs", "moved_mesh.ply"})
+        os.symlink(self.work, self.path("work", "link"))
+        self.move("link/again.mvs")
+        self.assertEqual(files_below(self.work) - before,
+                         {"moved.mvs", "moved_mesh.ply", "again.mvs", "again_mesh.ply"})
+
+    def test_another_file_is_not_replaced(self):
+        for name in ("a.png", "more/b 2.png"):
+            with self.subTest(name=name):
+                other = self.path("work", "there", name)
+                write(other, b"another image")
+                self.refuses_move(f"{other}: exists and differs from {self.path('work', name)}")
+                self.assertEqual(read(other), b"another image")
+                os.remove(other)
+
+    def test_textures_that_cannot_be_copied(self):
+        os.remove(self.path("work", "more", "b 2.png"))
+        self.refuses_move(f"mesh.ply: its texture {self.path('work', 'more', 'b 2.png')} is missing")
+        write(self.path("c.png"), b"texture")
+        self.names("more/../../c.png")
+        self.refuses_move("is outside of the folder of the mesh")
+        self.names("./moved.mvs")
+        write(self.path("work", "moved.mvs"), b"texture")
+        self.refuses_move("moved.mvs: is also a file of --output-file")
 
 
 class Alignment(Transform):

@@ -111,6 +111,34 @@ TEST(AllocatedMemory, CountsWhatIsHeldAndNothingElse) {
   }
 }
 
+TEST(MemoryAllowance, CountsAtLeastTheProgramItself) {
+  constexpr std::uint64_t kProgram = 1'000'000 * kMegabyte;  // more than this process uses
+  const MemoryAllowance allowance{1'000'010, "--limit", kProgram};
+  EXPECT_EQ(allowance.left(), 10 * kMegabyte);
+  EXPECT_NO_THROW(allowance.require(10 * kMegabyte, "reading a.ply"));
+  try {
+    allowance.require(10 * kMegabyte + 1, "reading a.ply");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "--limit: 1000010 MB are too little, reading a.ply needs 1000011 MB");
+  }
+  EXPECT_EQ((MemoryAllowance{999'999, "--limit", kProgram}.left()), 0u);
+}
+
+TEST(MemoryAllowance, CountsWhatTheProcessUses) {
+  const MemoryAllowance tiny{1, "--limit", 0};  // less than this process uses
+  EXPECT_EQ(tiny.left(), 0u);
+  EXPECT_THROW(tiny.require(0, "work"), Error);
+  const std::uint64_t used = resident_memory();
+  const MemoryAllowance allowance{used / kMegabyte + 100, "--limit", 0};
+  constexpr std::uint64_t kSlack = 20 * kMegabyte;  // what the process uses changes a little
+  EXPECT_NEAR(static_cast<double>(allowance.left()), 100.0 * kMegabyte,
+              static_cast<double>(kSlack));
+  EXPECT_NO_THROW(allowance.require(100 * kMegabyte - kSlack, "work"));
+  EXPECT_THROW(allowance.require(100 * kMegabyte + kSlack, "work"), Error);
+}
+
 // Other blocks lie between the large ones, so that a heap could not shrink.
 TEST(MapLargeBlocks, ReturnsEachWhenItIsFreed) {
 #ifdef AXIAL_SANITIZED

@@ -130,6 +130,13 @@ TEST_F(TexturedMeshTest, TheExtensionOrTheHeaderTellsTexturedMeshes) {
   EXPECT_FALSE(is_textured_mesh(path_));
 }
 
+TEST_F(TexturedMeshTest, APlyNamesItsTextures) {
+  write_textured_mesh(path_, two_squares(2), TexturedFormat::ply);
+  EXPECT_EQ(textures_of_ply(path_), (std::vector<std::string>{"a mesh0.png", "a mesh1.png"}));
+  write_mesh_ply(path_, two_squares(1).mesh);
+  EXPECT_TRUE(textures_of_ply(path_).empty());
+}
+
 TEST_F(TexturedMeshTest, ObjOfOtherProgramsIsRead) {
   io::write_png(folder_ / "t.png", cv::Mat3b(16, 32, cv::Vec3b(1, 2, 3)));
   write_atomically(folder_ / "m.mtl", "# a comment\n\nnewmtl plain\nnewmtl wall\nmap_Kd t.png\n");

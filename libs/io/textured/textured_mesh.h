@@ -86,6 +86,11 @@ TexturedMesh read_textured_obj(const std::filesystem::path& path,
 TexturedMesh read_textured_glb(const std::filesystem::path& path,
                                const std::optional<LocalFrame>& frame = {});
 
+// Returns the names of the textures of a PLY, from its comments TextureFile, in their order. A name
+// is a path that starts at the folder of the PLY. Error that names the file for a PLY with a
+// malformed header.
+std::vector<std::string> textures_of_ply(const std::filesystem::path& path);
+
 // True if `path` names a textured mesh. Files with the extensions .obj and .glb, in upper or lower
 // case, count as textured meshes and are not opened. Other files are PLY, and textured if they have
 // a comment TextureFile. Error that names the file for a PLY with a malformed header.

@@ -117,10 +117,14 @@ TexturedMesh read_textured_ply(const std::filesystem::path& path,
   return result;
 }
 
+std::vector<std::string> textures_of_ply(const std::filesystem::path& path) {
+  return parse_ply_header(read_file(path), path.string()).texture_files;
+}
+
 bool is_textured_mesh(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".obj" || extension == ".glb") return true;
-  return !parse_ply_header(read_file(path), path.string()).texture_files.empty();
+  return !textures_of_ply(path).empty();
 }
 
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
