@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 struct Job {
   std::size_t image = 0;
-  fs::path target;
+  fs::path name;  // relative to the folder of the outputs
   cv::Size size;
 };
 
@@ -49,11 +49,10 @@ std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::
     if (std::cmp_less_equal(std::max(header.size.width, header.size.height), max_resolution))
       continue;
     if (header.alpha) fail("{}: not built yet: it has transparent pixels", image.path);
-    fs::path target = folder / fs::path(image.path).lexically_normal().lexically_relative(common);
-    if (!(is_jpeg_name(target) && header.bits == 8) && target.extension() != ".png")
-      target += ".png";
-    jobs.push_back({i, target, shrunk(header.size, max_resolution)});
-    targets.push_back(target);
+    fs::path name = fs::path(image.path).lexically_normal().lexically_relative(common);
+    if (!(is_jpeg_name(name) && header.bits == 8) && name.extension() != ".png") name += ".png";
+    jobs.push_back({i, name, shrunk(header.size, max_resolution)});
+    targets.push_back(folder / name);
   }
   require_no_inputs(targets, photographs, "--max-resolution");
   if (std::set(targets.begin(), targets.end()).size() < targets.size())
@@ -61,30 +60,35 @@ std::vector<Job> jobs_of(const Scene& scene, unsigned max_resolution, const fs::
   return jobs;
 }
 
-void shrink(const Job& job, const std::string& source) {
+void shrink(const Job& job, const std::string& source, const fs::path& target) {
   constexpr int kQuality = 95;
   const cv::Mat pixels = io::read_photograph(source).pixels;
   cv::Mat small;
   cv::resize(pixels, small, job.size, 0, 0, cv::INTER_AREA);
-  if (is_jpeg_name(job.target))
-    io::write_jpeg(job.target, small, kQuality);
+  if (is_jpeg_name(target))
+    io::write_jpeg(target, small, kQuality);
   else
-    io::write_png(job.target, small);
+    io::write_png(target, small);
+}
+
+void write_images(const std::vector<Job>& jobs, const fs::path& folder, const Scene& scene) {
+  for (const Job& job : jobs) make_folder((folder / job.name).parent_path());
+  FirstError error;
+  for_each_in_flight(jobs.size(), thread_count(), [&](std::size_t k) {
+    error.run(k, [&] { shrink(jobs[k], scene.images[jobs[k].image].path, folder / jobs[k].name); });
+  });
+  error.rethrow();
 }
 
 }  // namespace
 
 void shrink_images(unsigned max_resolution, const fs::path& folder, Scene& scene) {
   const std::vector<Job> jobs = jobs_of(scene, max_resolution, folder);
-  for (const Job& job : jobs) make_folder(job.target.parent_path());
-  FirstError error;
-  for_each_in_flight(jobs.size(), thread_count(), [&](std::size_t k) {
-    error.run(k, [&] { shrink(jobs[k], scene.images[jobs[k].image].path); });
-  });
-  error.rethrow();
+  if (!jobs.empty())
+    write_folder(folder, [&](const fs::path& staging) { write_images(jobs, staging, scene); });
   for (const Job& job : jobs) {
     SceneImage& image = scene.images[job.image];
-    image.path = job.target.string();
+    image.path = (folder / job.name).string();
     image.camera = image.camera.resized(job.size.width, job.size.height);
   }
   log_info("{} of {} images were shrunk to at most {} pixels, in {}", jobs.size(),

@@ -83,17 +83,31 @@ void require_writable_scene(const Options& options, const Scene& scene) {
       fail("{}: point {} has no finite position after the transformation", file, i);
 }
 
-void write_clouds(const Options& options, const FrameMove& move) {
-  if (!options.moves()) return;
-  if (!options.cloud.empty()) {
-    io::transform_ply(options.cloud, cloud_output(options), move);
-    log_info("{}: transformed cloud", cloud_output(options).string());
-  }
-  if (!options.mesh.empty()) {
-    io::transform_ply(options.mesh, mesh_output(options), move);
-    log_info("{}: transformed mesh", mesh_output(options).string());
-  }
-  if (!options.transform_out.empty())
+void shrink_images_of(Scene& scene, const Options& options) {
+  if (options.max_resolution == 0) return;
+  shrink_images(options.max_resolution,
+                options.output.parent_path() / fmt::format("images{}", options.max_resolution),
+                scene);
+}
+
+// Writes the files of the cloud and of the mesh, and the images. An error in one of the inputs
+// leaves none of these outputs.
+void write_clouds_and_images(const Options& options, const FrameMove& move, Scene& scene) {
+  std::vector<fs::path> inputs, outputs;
+  const auto add = [&](const fs::path& input, const fs::path& output) {
+    if (!options.moves() || input.empty()) return;
+    inputs.push_back(input);
+    outputs.push_back(output);
+  };
+  add(options.cloud, cloud_output(options));
+  add(options.mesh, mesh_output(options));
+  write_together(outputs, [&](const std::vector<fs::path>& temporaries) {
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      io::transform_ply(inputs[i], temporaries[i], move);
+    shrink_images_of(scene, options);
+  });
+  for (const fs::path& output : outputs) log_info("{}: transformed", output.string());
+  if (options.moves() && !options.transform_out.empty())
     write_atomically(options.transform_out, evaluate::matrix_text(move.between_worlds()));
 }
 
@@ -117,13 +131,9 @@ int run(int argc, char** argv) {
   check_scale(options, scene, move.similarity);
   apply(options, move, scene);
   if (options.writes_scene()) require_writable_scene(options, scene.scene);
-  write_clouds(options, move);
-  if (options.max_resolution > 0)
-    shrink_images(options.max_resolution,
-                  options.output.parent_path() / fmt::format("images{}", options.max_resolution),
-                  scene.scene);
-  if (options.writes_scene()) write_scene(options, scene);
   if (options.compute_volume) measure_volume(options, scene.scene, move);
+  write_clouds_and_images(options, move, scene.scene);
+  if (options.writes_scene()) write_scene(options, scene);
   return 0;
 }
 

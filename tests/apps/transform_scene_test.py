@@ -415,8 +415,21 @@ class WrongInput(Transform):
                                (good.replace(b"vertex 60", b"vertex 0"), "has no vertices")):
             write(self.cloud, data)
             self.refused(expected, *t, "-p", "cloud.ply")
+        write(self.cloud, good)
+        mesh = read(self.mesh)
+        write(self.mesh, mesh[:-9])  # the cloud is good, but must not be written
+        self.refused("mesh.ply", *t, "-p", "cloud.ply", "-m", "mesh.ply")
+        write(self.mesh, mesh)
+        self.refused("mesh.ply: it is not closed", *t, "-p", "cloud.ply", "-m", "mesh.ply",
+                     "--compute-volume", 1, "--plane-threshold", -1)
         write(self.cloud, ascii_ply("float", [(1.0, math.inf, 2.0)]))
         self.refused("vertex 0 has a position that is not finite", *t, "-p", "cloud.ply")
+
+    def test_a_damaged_image_leaves_no_output(self):
+        photograph = read(self.images[2])
+        write(self.images[2], photograph[:len(photograph) // 2])
+        self.refused("0002.png", "-t", self.path("t.txt"), "-p", "cloud.ply", "-m", "mesh.ply",
+                     "--max-resolution", 48)
 
 
 if __name__ == "__main__":
