@@ -419,6 +419,9 @@ class WrongInput(Transform):
         mesh = read(self.mesh)
         write(self.mesh, mesh[:-9])  # the cloud is good, but must not be written
         self.refused("mesh.ply", *t, "-p", "cloud.ply", "-m", "mesh.ply")
+        for wrong in (b"3 2 1 60\n", b"3 2 1 -1\n"):
+            write(self.mesh, mesh.replace(b"3 2 1 3\n", wrong))
+            self.refused("mesh.ply: a face refers to vertex", *t, "-m", "mesh.ply")
         write(self.mesh, mesh)
         self.refused("mesh.ply: it is not closed", *t, "-p", "cloud.ply", "-m", "mesh.ply",
                      "--compute-volume", 1, "--plane-threshold", -1)
