@@ -323,8 +323,8 @@ TEST_F(Programs, LeaveNoOutputsIfAnInputIsRefused) {
   std::string damaged = read_file(folder_ / "photographs" / "0002.jpg");
   for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] ^= '\x55';
   write_atomically(folder_ / "photographs" / "0002.jpg", damaged);
-  const Outcome rendered = run("EvaluateReconstruction",
-                               command + "--photographs photographs --render-folder pictures");
+  const Outcome rendered =
+      run("EvaluateReconstruction", command + "--photographs photographs --render-folder pictures");
   EXPECT_EQ(rendered.exit_code, 1);
   EXPECT_THAT(rendered.output, HasSubstr("0002.jpg"));
   EXPECT_FALSE(fs::exists(folder_ / "pictures" / "0000.png"));
@@ -441,6 +441,10 @@ TEST_F(Programs, RefuseWrongInput) {
   EXPECT_EQ(
       run("EvaluateReconstruction", "-i cloud.ply --json no/such/folder/x.json" + truth).exit_code,
       1);
+  Mesh point = height_field(2, 2, ripples);
+  for (Eigen::Vector3f& x : point.vertices) x.setOnes();
+  io::write_mesh_ply(folder_ / "point.ply", point);
+  refuses("point.ply: the mesh has no area", "-i cloud.ply -m point.ply");
 }
 
 TEST_F(Programs, AlignModelRefusesWhatFixesNoSimilarity) {
