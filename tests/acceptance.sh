@@ -12,5 +12,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash apps/pipeline/install-deps.sh
 cmake --preset release -DAXIAL_TESTS=ON --log-level=WARNING
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
-  EvaluateReconstruction AlignModel RefinePoses held_out_check matching_benchmark
+  EvaluateReconstruction AlignModel RefinePoses ReconstructMesh RefineMesh TextureMesh held_out_check \
+  matching_benchmark
 exec python3 tests/acceptance/acceptance.py "$@"
