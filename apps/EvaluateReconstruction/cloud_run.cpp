@@ -78,9 +78,14 @@ void refuse_if_far(const Options& options, const Input& input, const Mesh& truth
          far - all.begin(), kFar / 1000, options.truth.string());
 }
 
+struct Alignment {
+  Similarity similarity;  // from the input's world to the truth's world
+  nlohmann::ordered_json report;
+};
+
 // Moves the input from its own frame to the truth's frame.
-nlohmann::ordered_json align(const Options& options, Input& input, const evaluate::Surface& surface,
-                             const Models& models) {
+Alignment align(const Options& options, Input& input, const evaluate::Surface& surface,
+                const Models& models) {
   const Frames& frames = models.frames;
   nlohmann::ordered_json report{{"method", options.align}};
   Similarity similarity;
@@ -89,14 +94,19 @@ nlohmann::ordered_json align(const Options& options, Input& input, const evaluat
   if (options.align != "none") input.move(similarity);
   similarity = evaluate::between_worlds(similarity, frames.input, frames.truth);
   report["transform"] = evaluate::to_json(similarity);
+  return {similarity, std::move(report)};
+}
+
+// Called after the measurement, which may refuse the input. `input` still has all its points.
+void write_alignment(const Options& options, const Input& input, const Similarity& similarity,
+                     const LocalFrame& frame) {
   if (!options.transform.empty())
     write_atomically(options.transform, evaluate::matrix_text(similarity));
-  const io::PlyPlacement placement{frames.truth, false};
+  const io::PlyPlacement placement{frame, false};
   if (!options.aligned.empty() && input.mesh)
     io::write_mesh_ply(options.aligned, *input.mesh, placement);
   if (!options.aligned.empty() && !input.mesh)
     io::write_cloud_ply(options.aligned, input.cloud, true, placement);
-  return report;
 }
 
 // Keeps the elements whose `keep` is true. The array may be empty.
@@ -220,6 +230,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   Input input = read_input(options, models.frames.input);
   const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
+  naming(options.truth, [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   require_kind(options, input);
@@ -227,11 +238,13 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   // Only an alignment by known centres brings together input and truth that are far apart.
   if (options.align != "centres") refuse_if_far(options, input, truth);
-  report["align"] = align(options, input, surface, models);
+  Alignment alignment = align(options, input, surface, models);
+  report["align"] = std::move(alignment.report);
   if (options.align == "centres") refuse_if_far(options, input, truth);
 
   PointCloud colored;
   const auto [result, mesh] = measure(options, input, truth, surface, views, colored);
+  write_alignment(options, input, alignment.similarity, models.frames.truth);
   fmt::print("{}", evaluate::table(result));
   if (mesh) fmt::print("{}", evaluate::table(*mesh));
   colored.colors = evaluate::error_colors(result.distances, options.color_max);

@@ -52,8 +52,9 @@ fs::path picture_path(const Options& options, const std::string& name, const cha
   return path += ending + ("." + options.render_type);
 }
 
+// Reads the whole photograph, so that a damaged one is found before the first picture is written.
 void check_photograph(const fs::path& photograph, const View& view) {
-  const cv::Size size = io::read_image_size(photograph);
+  const cv::Size size = io::read_color_image(photograph).size();
   if (size != cv::Size(view.camera.width, view.camera.height))
     fail("{}: is {} x {}, but its camera is {} x {}", photograph.string(), size.width, size.height,
          view.camera.width, view.camera.height);

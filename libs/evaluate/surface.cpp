@@ -73,6 +73,17 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+// Embree leaves out triangles with larger coordinates, and aborts at rays with larger numbers.
+constexpr float kLargest = 1e18f;
+
+bool is_small(const Eigen::Vector3f& x) {
+  return (x.array().abs() <= kLargest).all();
+}
+
+bool can_be_traced(const RTCRay& ray) {
+  return is_small({ray.org_x, ray.org_y, ray.org_z}) && is_small({ray.dir_x, ray.dir_y, ray.dir_z});
+}
+
 // A ray without end.
 RTCRay ray_from(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const Eigen::Vector3f from = origin.cast<float>(), along = direction.cast<float>();
@@ -103,6 +114,9 @@ void require_valid(const Mesh& mesh) {
 Surface::Surface(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   if (mesh.faces.empty()) fail("the mesh has no faces");
   require_valid(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (!is_small(mesh.vertices[i]))
+      fail("vertex {} of the mesh has a coordinate larger than {:g}", i, kLargest);
   impl_->vertices = mesh.vertices;
   impl_->faces = mesh.faces;
   impl_->device = rtcNewDevice(nullptr);
@@ -155,6 +169,7 @@ bool Surface::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, do
   RTCRay ray = ray_from(from, to - from);
   ray.tnear = static_cast<float>(skip);
   ray.tfar = 1;
+  if (!can_be_traced(ray)) return true;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene, &context, &ray);
@@ -166,6 +181,7 @@ std::optional<SurfaceHit> Surface::first_hit(const Eigen::Vector3d& origin,
   RTCRayHit query{};
   query.ray = ray_from(origin, direction);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!can_be_traced(query.ray)) return {};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(impl_->scene, &context, &query);

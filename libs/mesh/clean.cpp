@@ -128,10 +128,15 @@ void mend(HalfedgeMesh& mesh, const CleanOptions& options, CleanReport& report) 
   report.closed_holes += close_holes(mesh, options.close_holes);
 }
 
+// CGAL's remeshing does not end or crashes for a mesh without area. Long thin faces have a small
+// area, but their edges are split, too.
 void check_edge_length(const HalfedgeMesh& mesh, double length) {
   constexpr double kMostFaces = 1 << 28;
   const double equilateral = 0.433 * length * length;  // area
-  if (pmp::area(mesh) > kMostFaces * equilateral)
+  const double area = pmp::area(mesh);
+  const double edges = mean_edge_length(mesh) * static_cast<double>(mesh.number_of_edges());
+  if (area <= 0) fail("the mesh has no area, so that it cannot be remeshed");
+  if (area > kMostFaces * equilateral || edges > kMostFaces * length)
     fail("remeshing to edges of {} would make more than {} faces", length, kMostFaces);
 }
 
@@ -160,7 +165,7 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   mend(surface, options, result);
   separate_copies(surface);
   smooth(surface, options.smooth);
-  if (options.edge_length > 0) {
+  if (options.edge_length > 0 && surface.number_of_faces() > 0) {
     check_edge_length(surface, options.edge_length);
     remesh(surface, options.edge_length);
     mend(surface, options, result);

@@ -50,7 +50,8 @@ struct CleanReport {
 // neighbours. Vertices without faces are removed. Colours are lost. `report` is overwritten; null:
 // no report. Precondition: the corners of all faces are indices into the vertices. The result does
 // not depend on the number of threads. Throws an Error if no face of `mesh` has three different
-// vertices, if the steps leave no face, or if remeshing would make more than 2^28 faces.
+// vertices, if the steps leave no face, if a mesh without area shall be remeshed, or if remeshing
+// would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 // An estimate of the memory [bytes] of clean() with its result, besides `mesh`, if the mesh is not

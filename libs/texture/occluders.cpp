@@ -11,6 +11,17 @@
 #include "scene/check_mesh.h"
 
 namespace axial::texture {
+namespace {
+
+// Embree leaves out triangles with larger coordinates, and aborts at rays with larger numbers.
+constexpr float kLargestCoordinate = 1e18f;
+
+bool is_within_limit(const Eigen::Vector3f& x) {
+  return (x.array().abs() <= kLargestCoordinate).all();
+}
+
+}  // namespace
+
 struct Occluders::State {
   struct Release {
     void operator()(RTCDevice held) const { rtcReleaseDevice(held); }
@@ -23,6 +34,9 @@ struct Occluders::State {
 
 Occluders::Occluders(const Mesh& mesh) : state_(std::make_unique<State>()) {
   check_mesh(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (!is_within_limit(mesh.vertices[i]))
+      fail("vertex {} has a coordinate larger than {:g}", i, kLargestCoordinate);
   State& s = *state_;
   s.vertices.reserve(mesh.vertices.size() + 1);
   s.vertices = mesh.vertices;
@@ -55,6 +69,7 @@ bool Occluders::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   rtcInitIntersectContext(&context);
   const Eigen::Vector3f start = from.cast<float>();
   const Eigen::Vector3f way = (to - from).cast<float>();
+  if (!is_within_limit(start) || !is_within_limit(way)) return true;
   RTCRay ray{};
   ray.org_x = start.x(), ray.org_y = start.y(), ray.org_z = start.z();
   ray.dir_x = way.x(), ray.dir_y = way.y(), ray.dir_z = way.z();

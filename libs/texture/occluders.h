@@ -13,8 +13,8 @@ namespace axial::texture {
 class Occluders {
  public:
   // `mesh` must outlive the object. Throws an Error for a mesh that check_mesh() refuses
-  // (scene/check_mesh.h), for example without faces or with a coordinate that is not finite, and
-  // for a failure of Embree.
+  // (scene/check_mesh.h), for example without faces or with a coordinate that is not finite, for a
+  // coordinate larger than 1e18, and for a failure of Embree.
   explicit Occluders(const Mesh& mesh);
   ~Occluders();
   Occluders(const Occluders&) = delete;
@@ -22,7 +22,8 @@ class Occluders {
 
   // True if a face crosses the segment from `from` to `to`, in the frame of the mesh. Crossings
   // near `to` do not count: the segment ends before `to` by `tolerance` (0 to 1) times its length.
-  // A face therefore does not hide a point `to` that lies on the face. May be called concurrently.
+  // A face therefore does not hide a point `to` that lies on the face. True also if a point has a
+  // coordinate larger than 1e18 or one that is not finite. May be called concurrently.
   bool between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance) const;
 
  private:

@@ -151,6 +151,8 @@ class WrongInput(TextureTest):
         self.check("scene.ply: a face refers to vertex 9, but there are 9", vertices,
                    [*faces, (0, 1, 9)])
         self.check("scene.ply", [*vertices[:-1], (0, NAN, 1)], faces)
+        self.check("scene.ply: vertex 8 has a coordinate larger than 1e+18",
+                   [*vertices[:-1], (0, 1e20, 1)], faces)
         self.check("scene.ply: no view sees a face of the mesh", *wall(z=-1))
         self.check("no view sees a face of the mesh", vertices, [f[::-1] for f in faces])
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/atomic_file.h"
 #include "evaluate/program_fixture.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
@@ -61,6 +62,30 @@ TEST_F(Programs, RenderATexturedMeshIntoViews) {
     EXPECT_EQ(json["views"][1]["mean_difference"], 10.0);
     EXPECT_FALSE(json["views"][0].contains("truth_covered"));
   }
+}
+
+TEST_F(Programs, LeaveNoOutputsIfAnInputIsRefused) {
+  write_scene();
+  write_textured(folder_);
+  const std::string command = "-i textured.ply --cameras true --render all --render-samples 1 ";
+  ASSERT_EQ(run("EvaluateReconstruction", command + "--render-folder photographs").exit_code, 0);
+  for (const char* name : {"0000", "0001", "0002"})
+    if (const fs::path png = folder_ / "photographs" / name; fs::exists(png.string() + ".png"))
+      fs::rename(png.string() + ".png", png.string() + ".jpg");
+  std::string damaged = read_file(folder_ / "photographs" / "0002.jpg");
+  for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] ^= '\x55';
+  write_atomically(folder_ / "photographs" / "0002.jpg", damaged);
+  const Outcome rendered =
+      run("EvaluateReconstruction", command + "--photographs photographs --render-folder pictures");
+  EXPECT_EQ(rendered.exit_code, 1);
+  EXPECT_THAT(rendered.output, HasSubstr("0002.jpg"));
+  EXPECT_FALSE(fs::exists(folder_ / "pictures" / "0000.png"));
+  const Outcome measured = run("EvaluateReconstruction",
+                               "-i textured.ply -m truth.ply --cameras true --min-views 99 "
+                               "--aligned aligned.ply --transform-out moved.txt");
+  EXPECT_EQ(measured.exit_code, 1) << measured.output;
+  EXPECT_FALSE(fs::exists(folder_ / "aligned.ply"));
+  EXPECT_FALSE(fs::exists(folder_ / "moved.txt"));
 }
 
 TEST_F(Programs, RenderAMeshColouredByItsErrors) {

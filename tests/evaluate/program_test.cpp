@@ -246,6 +246,10 @@ TEST_F(Programs, RefuseWrongInput) {
   EXPECT_EQ(
       run("EvaluateReconstruction", "-i cloud.ply --json no/such/folder/x.json" + truth).exit_code,
       1);
+  Mesh point = height_field(2, 2, ripples);
+  for (Eigen::Vector3f& x : point.vertices) x.setOnes();
+  io::write_mesh_ply(folder_ / "point.ply", point);
+  refuses("point.ply: the mesh has no area", "-i cloud.ply -m point.ply");
 }
 
 TEST_F(Programs, AlignModelRefusesWhatFixesNoSimilarity) {

@@ -115,6 +115,17 @@ TEST(Surface, RefusesUnusableMeshes) {
   mesh = flat_square(1, 0);
   mesh.vertices[2].y() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(Surface{mesh}, Error);
+  mesh.vertices[2].y() = 1e20f;
+  EXPECT_THROW(Surface{mesh}, Error);
+}
+
+TEST(Surface, NothingIsSeenFromBeyondTheLargestCoordinate) {
+  const Surface surface(flat_square(2, 1));
+  for (const double far : {1e20, 1e300}) {
+    EXPECT_TRUE(surface.blocked({0.3, 0.2, 0}, {0.3, 0.2, -far}));
+    EXPECT_TRUE(surface.blocked({far, 0.2, 0}, {0.3, 0.2, 2}));
+    EXPECT_FALSE(surface.first_hit({0.3, 0.2, -far}, {0, 0, 1}));
+  }
 }
 
 TEST(Sampling, IsUniformByArea) {

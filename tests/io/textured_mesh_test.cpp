@@ -185,6 +185,10 @@ TEST_F(TexturedMeshTest, WrongGlbIsRefused) {
   EXPECT_THAT(error(with("\"mode\":4", "\"mode\":1")), HasSubstr("not made of triangles"));
   EXPECT_THAT(error(with("TEXCOORD_0", "TEXCOORD_1")), HasSubstr("has no TEXCOORD_0"));
   EXPECT_THAT(error(with("\"count\":12", "\"count\":99")), HasSubstr("end outside their"));
+  const std::size_t at = good.find("\"buffers\":[{");
+  const std::string buffer = good.substr(at, good.find('}', at) - at);
+  EXPECT_THAT(error(with(buffer, "\"buffers\":[{\"byteLength\":0")),
+              HasSubstr("do not fit together"));
 }
 
 TEST_F(TexturedMeshTest, WrongPlyIsRefused) {

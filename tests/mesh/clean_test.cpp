@@ -228,5 +228,18 @@ TEST(Clean, RefusesMeshesWithoutFaces) {
   EXPECT_THAT(error_of([&] { clean(grid(3), options); }), testing::HasSubstr("spurious"));
 }
 
+TEST(Clean, RefusesToRemeshWithoutEndOrArea) {
+  CleanOptions options = nothing();
+  options.edge_length = 0.5;
+  Mesh point = grid(3);
+  for (Eigen::Vector3f& v : point.vertices) v.setOnes();
+  EXPECT_THAT(error_of([&] { clean(point, options); }), testing::HasSubstr("no area"));
+  options.edge_length = 1e-9;
+  EXPECT_THAT(error_of([&] { clean(grid(3), options); }), testing::HasSubstr("faces"));
+  Mesh needles = grid(3);
+  for (Eigen::Vector3f& v : needles.vertices) v.y() *= 1e-20f;
+  EXPECT_THAT(error_of([&] { clean(needles, options); }), testing::HasSubstr("faces"));
+}
+
 }  // namespace
 }  // namespace axial::mesh

@@ -99,6 +99,19 @@ void move_vertex(const Vertices& vertices, std::uint64_t index, const std::strin
   if (vertices.error[0] != kAbsent) row[vertices.error[0]][0] *= vertices.similarity.scale;
 }
 
+// Error if one of the corners of a face, a list in `row`, is not one of the `vertices` vertices.
+void check_corners(const PlyElement& face, const Row& row, std::uint64_t vertices,
+                   const std::string& file) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const PlyProperty& property = face.properties[i];
+    if (!property.is_list || (property.name != "vertex_indices" && property.name != "vertex_index"))
+      continue;
+    for (const double corner : row[i])
+      if (!(corner >= 0 && corner < static_cast<double>(vertices)))
+        fail("{}: a face refers to vertex {}, but there are {}", file, corner, vertices);
+  }
+}
+
 // The lines of the header, with another format and another origin.
 std::string new_header(std::string_view text, const std::string& geo) {
   std::string header = "ply\nformat binary_little_endian 1.0\n" + geo;
@@ -162,6 +175,7 @@ void transform_ply(const std::filesystem::path& input, const std::filesystem::pa
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_row(body, element, row);
       if (&element == vertices.element) move_vertex(vertices, i, file, row);
+      if (element.name == "face") check_corners(element, row, vertices.element->count, file);
       write_row(out, element, row);
     }
   }

@@ -20,8 +20,8 @@ namespace axial::io {
 // float64 in the world, without a comment geo_offset.
 //
 // Error that names the file for a malformed or truncated file, a file without vertices, positions
-// that are neither float32 nor float64, a position that is not finite after the move, or an output
-// that cannot be written.
+// that are neither float32 nor float64, a position that is not finite after the move, a face that
+// refers to a vertex which does not exist, or an output that cannot be written.
 void transform_ply(const std::filesystem::path& input, const std::filesystem::path& output,
                    const FrameMove& move);
 

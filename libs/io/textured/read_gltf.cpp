@@ -47,8 +47,10 @@ tinygltf::Model parsed(const std::string& bytes, const std::string& file) {
     good = reader.LoadBinaryFromMemory(&model, &error, &warning,
                                        reinterpret_cast<const unsigned char*>(bytes.data()),
                                        static_cast<unsigned>(bytes.size()), "");
-  } catch (const std::exception& exception) {
-    error = exception.what();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {  // the library uses an object that the file does not have
+    error = "the objects of its JSON part do not fit together";
   }
   if (good) return model;
   const std::string first = error.substr(0, error.find('\n'));
