@@ -36,6 +36,7 @@
 #include "depth/plane_map.h"
 #include "depth/random.h"
 #include "depth/strips.h"
+#include "depth/sweep_input.h"
 
 namespace axial::depth {
 
@@ -46,31 +47,6 @@ inline constexpr std::size_t kOwnViews = 4;  // largest number of views for a pi
 // alternate from pixel to pixel, and a plane that is good in one view is propagated together with
 // this view.
 inline constexpr std::size_t kManyViews = 5;
-
-struct SweepInput {
-  std::uint32_t image_id = 0;  // global id of the reference image: a key of the random numbers
-  std::uint32_t sweep = 0;     // unique over levels and passes; odd sweeps run backwards
-  // Range of depths [m], above 0. A plane at another depth counts as no hypothesis.
-  float min_depth = 0;
-  float max_depth = 0;
-  // Prior depths from the coarser level [m]; 0: this pixel has no prior; null: no pixel has a
-  // prior.
-  const cv::Mat1f* prior = nullptr;
-  // Prior depths [m] that replace `prior` at textureless pixels; 0: this pixel has no prior; null:
-  // `prior` counts at textureless pixels, too. A textureless pixel without a prior loses its
-  // hypothesis. A geometric pass sets this field to the current depths: so textureless pixels,
-  // which have their depths from the coarser levels, do not lose these depths.
-  const cv::Mat1f* textureless_prior = nullptr;
-  // Non-zero: visit this pixel. Zero: the pixel loses its hypothesis. Null: visit all pixels.
-  const cv::Mat1b* mask = nullptr;
-  int trial_pairs = 0;  // pairs of trials around the best hypothesis, at most 4
-  // True in the first sweep of a level: a pixel without a hypothesis gets a random plane, and a
-  // pixel whose plane is not certain tries random planes. False: neither happens.
-  bool first = false;
-  // True: the pixel's own plane and the planes of its neighbours are scored in up to kManyViews
-  // views.
-  bool many_views = false;
-};
 
 // One sweep over the planes of `map`. `matcher`: Matcher or LaneMatcher (lane_matcher.h).
 template <class Matcher>

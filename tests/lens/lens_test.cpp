@@ -11,6 +11,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "io/colmap/colmap_lens.h"
+#include "lens/lens_cameras.h"
 #include "lens/lens_fit.h"
 #include "refractive/distorted_lens.h"
 
@@ -20,35 +21,6 @@ namespace {
 using Eigen::Vector2d;
 using io::ColmapCamera;
 using io::lens_of;
-
-constexpr double kFx = 700, kFy = 650, kCx = 330.5, kCy = 236.5;  // pixel centres at 0.5
-
-ColmapCamera two_focal_camera(const std::string& model, std::vector<double> distortion) {
-  ColmapCamera camera{1, model, 640, 480, {kFx, kFy, kCx, kCy}};
-  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
-  return camera;
-}
-
-ColmapCamera one_focal_camera(const std::string& model, std::vector<double> distortion) {
-  ColmapCamera camera{1, model, 640, 480, {kFx, kCx, kCy}};
-  camera.params.insert(camera.params.end(), distortion.begin(), distortion.end());
-  return camera;
-}
-
-cv::Matx33d opencv_k() {
-  return {kFx, 0, kCx - 0.5, 0, kFy, kCy - 0.5, 0, 0, 1};
-}
-
-double within(double limit) {
-  return limit * (static_cast<double>(*rc::gen::inRange(-1000000, 1000001)) / 1e6);
-}
-
-// The distorted point before focal lengths and principal point are applied.
-Vector2d distorted(const ColmapCamera& camera, double u, double v) {
-  const Vector2d pixel = image_direction(lens_of(camera), u, v);
-  const bool one = camera.params.size() == 4 || camera.params.size() == 3;
-  return {(pixel.x() - (kCx - 0.5)) / kFx, (pixel.y() - (kCy - 0.5)) / (one ? kFx : kFy)};
-}
 
 // Both sides evaluate the same polynomial in double, so 1e-9 px allows for rounding.
 constexpr double kRounding = 1e-9;
