@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <ceres/crs_matrix.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -64,14 +64,15 @@ Sparse inverse_of_blocks(const Sparse& blocks) {
   return result;
 }
 
-// The normal matrix of the camera parameters, with the points eliminated (Schur complement).
-Eigen::MatrixXd reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camera_columns) {
+// The normal matrix of the camera parameters, with the points eliminated (Schur complement). It is
+// sparse: two images share entries only if they observe a common point.
+Sparse reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camera_columns) {
   const Sparse cameras = jacobian.leftCols(camera_columns);
   const Sparse points = jacobian.rightCols(jacobian.cols() - camera_columns);
   const Sparse across = cameras.transpose() * points;
   const Sparse own = points.transpose() * points;
   const Sparse eliminated = across * inverse_of_blocks(own) * Sparse(across.transpose());
-  return Eigen::MatrixXd(Sparse(cameras.transpose() * cameras)) - Eigen::MatrixXd(eliminated);
+  return Sparse(cameras.transpose() * cameras) - eliminated;
 }
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -80,10 +81,12 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // radians and indices differ by orders of magnitude.
 class Covariance {
  public:
-  explicit Covariance(const Eigen::MatrixXd& normal)
+  explicit Covariance(const Sparse& normal)
       : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
-    Eigen::MatrixXd scaled = scale_.asDiagonal() * normal * scale_.asDiagonal();
-    scaled.diagonal().array() += kDamping;
+    Sparse scaled = scale_.asDiagonal() * normal * scale_.asDiagonal();
+    Sparse damping(normal.rows(), normal.cols());
+    damping.setIdentity();
+    scaled += kDamping * damping;
     factor_.compute(scaled);
   }
 
@@ -92,7 +95,8 @@ class Covariance {
   double variance(const Eigen::VectorXd& direction) const {
     const Eigen::VectorXd scaled = scale_.asDiagonal() * direction;
     if (factor_.info() != Eigen::Success || scaled.isZero(0)) return kInfinite;
-    const double variance = factor_.matrixL().solve(scaled).squaredNorm();
+    const Eigen::VectorXd ordered = factor_.permutationP() * scaled;
+    const double variance = factor_.matrixL().solve(ordered).squaredNorm();
     const bool determined = variance < 1e-3 / kDamping * scaled.squaredNorm();
     return determined ? variance : kInfinite;
   }
@@ -100,7 +104,7 @@ class Covariance {
  private:
   static constexpr double kDamping = 1e-12;
   Eigen::VectorXd scale_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::SimplicialLLT<Sparse> factor_;
 };
 
 // The normal equations at the solution, and the columns of each parameter block.
