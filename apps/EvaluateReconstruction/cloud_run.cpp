@@ -230,7 +230,8 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   Input input = read_input(options, models.frames.input);
   const Mesh truth = io::read_mesh_ply(options.truth, models.frames.truth);
   const evaluate::Surface surface = naming(options.truth, [&] { return evaluate::Surface(truth); });
-  naming(options.truth, [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area
+  naming(options.truth,
+         [&] { evaluate::sample_surface(truth, 1, options.seed); });  // needs an area
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   require_kind(options, input);

@@ -14,8 +14,8 @@ namespace {
 
 using Ray = refractive::AxialRay<double>;
 
-// The ray in water of every observation, in the world frame. An observation whose pixel is the image
-// of no direction gets NaN.
+// The ray in water of every observation, in the world frame. An observation whose pixel is the
+// image of no direction gets NaN.
 std::vector<Ray> world_rays(const Bundle& bundle) {
   const std::vector<PhotographCamera> cameras = cameras_now(bundle);
   std::vector<Ray> rays;
