@@ -139,21 +139,25 @@ PointCloud counted_points(const Options& options, Input& input,
   return counted;
 }
 
+// The view of the picture. Null if there are no views.
+const evaluate::View* view_of_picture(const Options& options,
+                                      std::span<const evaluate::View> views) {
+  if (views.empty()) return nullptr;
+  const auto view = std::find_if(views.begin(), views.end(), [&](const evaluate::View& candidate) {
+    return options.picture_camera.empty() || candidate.name == options.picture_camera;
+  });
+  if (view == views.end())
+    fail("--picture-camera {}: no such image in {}", options.picture_camera,
+         options.cameras.string());
+  return &*view;
+}
+
 void draw(const Options& options, const PointCloud& cloud, std::span<const evaluate::View> views) {
-  evaluate::Viewpoint viewpoint;
-  if (views.empty()) {
-    viewpoint = evaluate::principal_viewpoint(cloud.positions, cloud.normals, options.picture_width,
-                                              options.picture_width * 3 / 4);
-  } else {
-    const auto view =
-        std::find_if(views.begin(), views.end(), [&](const evaluate::View& candidate) {
-          return options.picture_camera.empty() || candidate.name == options.picture_camera;
-        });
-    if (view == views.end())
-      fail("--picture-camera {}: no such image in {}", options.picture_camera,
-           options.cameras.string());
-    viewpoint = evaluate::viewpoint_of(*view, options.picture_width);
-  }
+  const evaluate::View* view = view_of_picture(options, views);
+  const evaluate::Viewpoint viewpoint =
+      view ? evaluate::viewpoint_of(*view, options.picture_width)
+           : evaluate::principal_viewpoint(cloud.positions, cloud.normals, options.picture_width,
+                                           options.picture_width * 3 / 4);
   const cv::Mat3b picture = evaluate::draw_cloud(cloud.positions, cloud.colors, viewpoint);
   io::write_png(options.picture, evaluate::with_error_scale(picture, options.color_max));
 }
@@ -235,6 +239,7 @@ nlohmann::ordered_json run_cloud(const Options& options) {
   const std::vector<evaluate::View> views = read_views(options, models);
   if (options.strip) naming(options.cameras_model, [&] { evaluate::require_strip(views); });
   require_kind(options, input);
+  if (!options.picture.empty()) view_of_picture(options, views);  // an error before the work
   const std::vector<RenderTask> tasks = plan_rendering(options, input, views, true);
   nlohmann::ordered_json report{{"kind", input.mesh ? "mesh" : "cloud"}};
   // Only an alignment by known centres brings together input and truth that are far apart.
@@ -245,20 +250,21 @@ nlohmann::ordered_json run_cloud(const Options& options) {
 
   PointCloud colored;
   const auto [result, mesh] = measure(options, input, truth, surface, views, colored);
-  write_alignment(options, input, alignment.similarity, models.frames.truth);
   fmt::print("{}", evaluate::table(result));
   if (mesh) fmt::print("{}", evaluate::table(*mesh));
+  const evaluate::CloudEvaluation& evaluation = result;  // a lambda cannot capture a binding
+  const auto parts = naming(options.input, [&] {
+    return report_parts(options,
+                        {colored.positions, input.uncertainty, truth, surface, views, evaluation});
+  });
+  write_alignment(options, input, alignment.similarity, models.frames.truth);
   colored.colors = evaluate::error_colors(result.distances, options.color_max);
   write_errors(options, colored, models.frames.truth, views);
   const std::vector<Rgb> of_vertices = vertex_errors(options, input, surface, models.frames.truth);
   report["color_max"] = options.color_max;
   report.update(evaluate::to_json(result));
   if (mesh) report.update(evaluate::to_json(*mesh));
-  const evaluate::CloudEvaluation& evaluation = result;  // a lambda cannot capture a binding
-  report.update(naming(options.input, [&] {
-    return report_parts(options,
-                        {colored.positions, input.uncertainty, truth, surface, views, evaluation});
-  }));
+  report.update(parts);
   if (!tasks.empty()) report["render"] = render(options, input, tasks, &surface, of_vertices);
   return report;
 }

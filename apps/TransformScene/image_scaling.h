@@ -2,7 +2,6 @@
 // Shrinks the images of a scene.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <opencv2/core/types.hpp>
 #include <vector>
@@ -23,8 +22,8 @@ struct SmallImage {
 // the headers of the image files, and writes no file. The path of a smaller image in `folder` is
 // the image's path below the deepest common folder of all images. JPEG files with 8 bits stay JPEG,
 // other files become PNG. All other images and all masks stay where they are. Error for an image
-// whose header cannot be read or that has transparent pixels, and if a smaller image would replace
-// an image of the scene.
+// whose header cannot be read or that has transparent pixels, if two smaller images
+// would have one name, and if a smaller image would replace an image of the scene.
 std::vector<SmallImage> find_large_images(unsigned max_resolution,
                                           const std::filesystem::path& folder, Scene& scene);
 

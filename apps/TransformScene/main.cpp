@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moves a scene, its cloud and its mesh by a similarity, shrinks its images, and measures volumes.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -95,7 +98,10 @@ void check_outputs(const Options& options, const Files& files) {
                                options.align,
                                options.transform,
                                options.positions};
-  for (const TextureCopy& texture : files.textures) inputs.push_back(texture.from);
+  for (const TextureCopy& texture : files.textures) {
+    inputs.push_back(texture.from);
+    if (!texture.needed) inputs.push_back(texture.to);
+  }
   const std::vector<NamedOutput> outputs = outputs_of(options, files);
   for (const NamedOutput& output : outputs)
     require_not_an_input(output.path, inputs, output.setting);

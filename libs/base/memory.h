@@ -23,10 +23,11 @@ inline constexpr std::uint64_t kMegabyte = 1'000'000;  // the unit of options in
 // is 0 and the system does not report how much memory is available.
 std::uint64_t memory_limit(std::uint64_t megabytes, const std::string& setting);
 
-// The memory that a program may use, to check before each piece of work. The limit is
-// memory_limit(megabytes, setting) at the time of a call.
+// The memory that a program may use, to check before each piece of work.
 struct MemoryAllowance {
-  std::uint64_t megabytes = 0;      // 0: 70 % of available_memory()
+  // The limit. 0: 70 % of the memory that is available or used by this process, at the time of a
+  // call.
+  std::uint64_t megabytes = 0;
   std::string setting;              // the name of `megabytes` in messages
   std::uint64_t program_bytes = 0;  // of code and libraries, stacks and small blocks [bytes]
 

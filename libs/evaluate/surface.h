@@ -51,13 +51,14 @@ class Surface {
 
   // True if a triangle crosses the segment from `from` to `to`, in either direction. The part of
   // the segment next to `from` does not count, so that a point on the surface does not hide itself.
-  // `skip`: the length of this part divided by the length of the segment. True also if a point has
-  // a coordinate larger than 1e18 or one that is not finite: nothing is seen from so far away.
+  // `skip`: the length of this part divided by the length of the segment. True also if a
+  // coordinate of `from` or of `to` - `from` is larger than 1e18 or not finite: nothing is seen
+  // from so far away.
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double skip = 1e-4) const;
 
   // Returns the first place where the ray from `origin` along `direction` meets the surface, from
-  // either side; nothing if it does not meet the surface, or if a coordinate of `origin` is larger
-  // than 1e18 or not finite.
+  // either side; nothing if it does not meet the surface, or if a coordinate of `origin` or of
+  // `direction` is larger than 1e18 or not finite.
   std::optional<SurfaceHit> first_hit(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction) const;
 

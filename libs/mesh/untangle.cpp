@@ -5,6 +5,7 @@
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,7 @@ using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Face>;
 template <class Faces>
 std::vector<Box> boxes_of(const HalfedgeMesh& mesh, const Faces& faces) {
   std::vector<Box> boxes;
+  boxes.reserve(faces.size());
   for (const Face face : faces) {
     CGAL::Bbox_3 box;
     for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
@@ -51,7 +53,8 @@ std::vector<Box> boxes_of(const HalfedgeMesh& mesh, const Faces& faces) {
   return boxes;
 }
 
-// The faces that intersect another face, ascending, where at least one of the two is in `suspects`.
+// The faces that intersect another face, ascending. Precondition: each pair of such faces has at
+// least one face in `suspects`.
 std::vector<Face> intersecting_near(const HalfedgeMesh& mesh, const std::vector<Face>& suspects) {
   std::vector<Box> some = boxes_of(mesh, suspects), all = boxes_of(mesh, mesh.faces());
   std::vector<Face> near = suspects;
@@ -79,9 +82,11 @@ std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> fa
   return faces;
 }
 
-// By the vertices' indices; those of removed vertices are undefined.
+// By the vertices' indices. Removed vertices have NaN, which equals no position: a new vertex may
+// get their index.
 std::vector<Eigen::Vector3d> positions(const HalfedgeMesh& mesh) {
-  std::vector<Eigen::Vector3d> result(mesh.num_vertices());
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Eigen::Vector3d> result(mesh.num_vertices(), Eigen::Vector3d::Constant(kNone));
   for (const auto vertex : mesh.vertices()) result[vertex.idx()] = position(mesh, vertex);
   return result;
 }

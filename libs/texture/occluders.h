@@ -22,8 +22,9 @@ class Occluders {
 
   // True if a face crosses the segment from `from` to `to`, in the frame of the mesh. Crossings
   // near `to` do not count: the segment ends before `to` by `tolerance` (0 to 1) times its length.
-  // A face therefore does not hide a point `to` that lies on the face. True also if a point has a
-  // coordinate larger than 1e18 or one that is not finite. May be called concurrently.
+  // A face therefore does not hide a point `to` that lies on the face. True also if a
+  // coordinate of `from` or of `to` - `from` is larger than 1e18 or not finite. May be called
+  // concurrently.
   bool between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance) const;
 
  private:

@@ -119,8 +119,8 @@ def good_in_water(air, water):
 
 @point_of_each_scene(
     "medians of three seeds: in air the errors, times and memory of meshes.py; behind "
-    f"the port errors at most {WATER} times those in air, F no lower; refining improves the median "
-    f"by 15 %; PSNR of a view left out at least {PSNR} dB; sound meshes")
+    f"the port errors at most {WATER} times those in air, F no lower, and refining improves the "
+    f"median by 15 %; PSNR of a view left out at least {PSNR} dB; sound meshes")
 def meshes(work, scene):
     air, water = ([result(work, scene, seed, medium) for seed in SEEDS]
                   for medium in ("air", "water"))

@@ -65,8 +65,8 @@ class Killed(Scene):
         while not os.path.exists(file) and process.poll() is None:
             time.sleep(0.002)
         process.kill()
-        process.wait()
-        return os.path.exists(file)
+        self.assertIn(process.wait(), (0, -signal.SIGKILL))
+        return process.returncode != 0 and os.path.exists(file)
 
     def check(self, folder, other, *command):
         """Compares runs in `folder` that are killed with a run in `other` that is not."""

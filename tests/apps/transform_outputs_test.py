@@ -7,7 +7,7 @@ import re
 
 import tiny_scene
 from programs import contents, files_below, main, read, write
-from transform_case import CUBE, CUBE_FACES, PORT, Mvs, Transform, ascii_ply, moved
+from transform_case import CUBE, CUBE_FACES, PORT, Mvs, Transform, ascii_ply
 
 
 class Outputs(Transform):
@@ -45,7 +45,8 @@ class Outputs(Transform):
         arguments = self.everything()
         self.transform(*arguments)
         first = contents(self.work)
-        for name in set(first) & {"moved.mvs", "moved.ply", os.path.join("images48", "0001.png")}:
+        for name in ("moved.mvs", "moved.ply", os.path.join("images48", "0001.png")):
+            self.assertIn(name, first)
             write(self.path("work", name), "old")
         other = self.path("work", "images48", "other.txt")
         write(other, "not an image of this run")
@@ -169,22 +170,12 @@ class WrongInput(Transform):
             self.refused(expected, *t, "-p", "cloud.ply")
         write(self.cloud, good)
         mesh = read(self.mesh)
-        write(self.mesh, mesh[:-9])  # the cloud is good, but must not be written
-        self.refused("mesh.ply", *t, "-p", "cloud.ply", "-m", "mesh.ply")
         for wrong in (b"3 2 1 60\n", b"3 2 1 -1\n"):
             write(self.mesh, mesh.replace(b"3 2 1 3\n", wrong))
             self.refused("mesh.ply: a face refers to vertex", *t, "-m", "mesh.ply")
         write(self.mesh, mesh)
-        self.refused("mesh.ply: it is not closed", *t, "-p", "cloud.ply", "-m", "mesh.ply",
-                     "--compute-volume", 1, "--plane-threshold", -1)
         write(self.cloud, ascii_ply("float", [(1.0, math.inf, 2.0)]))
         self.refused("vertex 0 has a position that is not finite", *t, "-p", "cloud.ply")
-
-    def test_a_damaged_image_leaves_no_output(self):
-        photograph = read(self.images[2])
-        write(self.images[2], photograph[:len(photograph) // 2])
-        self.refused("0002.png", "-t", self.path("t.txt"), "-p", "cloud.ply", "-m", "mesh.ply",
-                     "--max-resolution", 48)
 
 
 if __name__ == "__main__":

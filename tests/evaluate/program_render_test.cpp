@@ -69,9 +69,9 @@ TEST_F(Programs, LeaveNoOutputsIfAnInputIsRefused) {
   write_textured(folder_);
   const std::string command = "-i textured.ply --cameras true --render all --render-samples 1 ";
   ASSERT_EQ(run("EvaluateReconstruction", command + "--render-folder photographs").exit_code, 0);
-  for (const char* name : {"0000", "0001", "0002"})
-    if (const fs::path png = folder_ / "photographs" / name; fs::exists(png.string() + ".png"))
-      fs::rename(png.string() + ".png", png.string() + ".jpg");
+  for (const char* name : {"0000", "0001", "0002", "0003"})
+    fs::rename(folder_ / "photographs" / fmt::format("{}.png", name),
+               folder_ / "photographs" / fmt::format("{}.jpg", name));
   std::string damaged = read_file(folder_ / "photographs" / "0002.jpg");
   for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] ^= '\x55';
   write_atomically(folder_ / "photographs" / "0002.jpg", damaged);
@@ -80,6 +80,11 @@ TEST_F(Programs, LeaveNoOutputsIfAnInputIsRefused) {
   EXPECT_EQ(rendered.exit_code, 1);
   EXPECT_THAT(rendered.output, HasSubstr("0002.jpg"));
   EXPECT_FALSE(fs::exists(folder_ / "pictures" / "0000.png"));
+  const Outcome drawn = run("EvaluateReconstruction",
+                            "-i textured.ply -m truth.ply --cameras true --picture picture.png "
+                            "--picture-camera 9.jpg --aligned aligned.ply");
+  EXPECT_THAT(drawn.output, HasSubstr("--picture-camera 9.jpg: no such image"));
+  EXPECT_FALSE(fs::exists(folder_ / "aligned.ply"));
   const Outcome measured = run("EvaluateReconstruction",
                                "-i textured.ply -m truth.ply --cameras true --min-views 99 "
                                "--aligned aligned.ply --transform-out moved.txt");
