@@ -33,7 +33,7 @@ Components find_components(HalfedgeMesh& mesh, const std::string& name) {
   return component;
 }
 
-// The diagonals of the components' bounding boxes, in mean edge lengths of the mesh.
+// The diagonals of the components' bounding boxes.
 std::vector<double> sizes_of(const HalfedgeMesh& mesh, const Components& component) {
   std::vector<CGAL::Bbox_3> boxes;
   for (const auto face : mesh.faces()) {
@@ -41,32 +41,38 @@ std::vector<double> sizes_of(const HalfedgeMesh& mesh, const Components& compone
     for (const auto vertex : mesh.vertices_around_face(mesh.halfedge(face)))
       boxes[component[face]] += mesh.point(vertex).bbox();
   }
-  const double edge = mean_edge_length(mesh);
   std::vector<double> sizes;
   sizes.reserve(boxes.size());
   for (const CGAL::Bbox_3& box : boxes)
-    sizes.push_back(Eigen::Vector3d(box.x_span(), box.y_span(), box.z_span()).norm() / edge);
+    sizes.push_back(Eigen::Vector3d(box.x_span(), box.y_span(), box.z_span()).norm());
   return sizes;
 }
 
-// Returns the number of removed components.
-std::size_t remove_small_components(HalfedgeMesh& mesh, double factor) {
-  if (factor == 0 || mesh.number_of_faces() == 0) return 0;
-  Components component = find_components(mesh, "f:component");
-  const std::vector<double> sizes = sizes_of(mesh, component);
+// Removes the components for which is_small(component, size) holds. Returns their number.
+std::size_t remove_components(HalfedgeMesh& mesh, Components& component,
+                              const std::vector<double>& sizes, const auto& is_small) {
   std::vector<std::size_t> small;
   for (std::size_t i = 0; i < sizes.size(); ++i)
-    if (sizes[i] < factor) small.push_back(i);
+    if (is_small(i, sizes[i])) small.push_back(i);
   pmp::remove_connected_components(mesh, small, component);
   mesh.remove_property_map(component);
   mesh.collect_garbage();
   return small.size();
 }
 
+// Removes components smaller than `limit`. Returns their number.
+std::size_t remove_small_components(HalfedgeMesh& mesh, double limit) {
+  if (limit == 0 || mesh.number_of_faces() == 0) return 0;
+  Components component = find_components(mesh, "f:component");
+  return remove_components(mesh, component, sizes_of(mesh, component),
+                           [&](std::size_t, double size) { return size < limit; });
+}
+
 // Removes components smaller than `factor` mean edge lengths that were parts of larger components
 // when `before` was found. Returns their number.
 std::size_t remove_cut_off_components(HalfedgeMesh& mesh, const Components& before, double factor) {
   if (factor == 0 || mesh.number_of_faces() == 0) return 0;
+  const double limit = factor * mean_edge_length(mesh);
   Components component = find_components(mesh, "f:component");
   const std::vector<double> sizes = sizes_of(mesh, component);
   std::vector<std::size_t> origins(sizes.size());
@@ -76,13 +82,9 @@ std::size_t remove_cut_off_components(HalfedgeMesh& mesh, const Components& befo
     const auto entry = largest.emplace(origins[i], i).first;
     if (sizes[i] > sizes[entry->second]) entry->second = i;
   }
-  std::vector<std::size_t> small;
-  for (std::size_t i = 0; i < sizes.size(); ++i)
-    if (sizes[i] < factor && largest[origins[i]] != i) small.push_back(i);
-  pmp::remove_connected_components(mesh, small, component);
-  mesh.remove_property_map(component);
-  mesh.collect_garbage();
-  return small.size();
+  return remove_components(mesh, component, sizes, [&](std::size_t i, double size) {
+    return size < limit && largest[origins[i]] != i;
+  });
 }
 
 // Returns the number of closed holes.
@@ -159,7 +161,8 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   result = {};
   HalfedgeMesh surface = to_halfedges(mesh);
   if (surface.number_of_faces() == 0) fail("all faces of the mesh name a vertex twice");
-  result.removed_components = remove_small_components(surface, options.spurious);
+  const double spurious = options.spurious * mean_edge_length(surface);
+  result.removed_components = remove_small_components(surface, spurious);
   if (const std::size_t faces = faces_to_keep(surface, options); faces < surface.number_of_faces())
     decimate(surface, faces);
   mend(surface, options, result);
@@ -173,6 +176,7 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   const Components before = find_components(surface, "f:before");
   result.removed_intersections = untangle(surface);
   result.removed_components += remove_cut_off_components(surface, before, options.cut_off);
+  result.removed_components += remove_small_components(surface, spurious);
   if (surface.number_of_faces() == 0)
     fail(
         "no face of the mesh is left: all pieces are smaller than the limit for spurious pieces, "

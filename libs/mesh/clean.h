@@ -13,15 +13,15 @@ namespace axial::mesh {
 struct CleanOptions {
   double decimate = 1;           // fraction of the faces to keep in step 3, above 0; 1: all
   std::size_t target_faces = 0;  // number of faces to keep in step 3; 0: `decimate` decides
-  // Step 2 removes connected components whose bounding box has a diagonal below this many mean edge
-  // lengths of the mesh; 0: none.
+  // Steps 2 and 8 remove connected components whose bounding box has a diagonal below this many
+  // mean edge lengths of the mesh in step 2; 0: none.
   double spurious = 20;
   bool spikes = true;            // remove faces that hang on the mesh by one edge or one corner
   std::size_t close_holes = 30;  // close holes with a border of at most this many edges; 0: none
   unsigned smooth = 0;           // number of smoothing steps in step 5; 0: none
   double edge_length = 0;        // length of the edges after remeshing [m]; 0: no remeshing
-  // Step 8 removes the pieces that step 7 cut off and that are below this size, in mean edge
-  // lengths as for `spurious`; 0: none.
+  // Step 8 removes the pieces that step 7 cut off and whose bounding box has a diagonal below this
+  // many mean edge lengths of the mesh in step 8; 0: none.
   double cut_off = 20;
 };
 
@@ -44,7 +44,8 @@ struct CleanReport {
 //   6. remeshing and step 4 again, if `edge_length` is above 0,
 //   7. smoothing of faces that intersect each other, and removal of these faces if smoothing does
 //      not help,
-//   8. removal of small pieces that step 7 cut off. The largest piece of each component stays.
+//   8. removal of small pieces that step 7 cut off, except the largest piece of each component, and
+//      of components that are spurious now.
 //
 // Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
 // neighbours. Vertices without faces are removed. Colours are lost. `report` is overwritten; null:

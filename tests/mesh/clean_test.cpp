@@ -191,6 +191,22 @@ TEST(Clean, SmallPiecesThatAreCutOffAreRemoved) {
   EXPECT_EQ(clean(mesh, options).faces.size(), pieces.faces.size());
 }
 
+TEST(Clean, PiecesThatFallBelowTheLimitAreRemoved) {
+  // Each sheet has a diagonal of 14.9 mean edges, and the pieces of a sheet at most 12.
+  Mesh mesh = floor_and_wall(6.4f);
+  append(mesh, grid(30, {0, 0, 50}));
+  CleanOptions options = nothing();
+  options.spurious = 14;
+  CleanReport report;
+  const Mesh cleaned = clean(mesh, options, &report);
+  EXPECT_GT(report.removed_intersections, 0u);
+  EXPECT_TRUE(std::ranges::all_of(cleaned.vertices, [](const auto& v) { return v.z() == 50; }));
+  EXPECT_GT(area(cleaned), 890);  // 900 without the spikes at two corners
+  options.spurious = 15;
+  EXPECT_EQ(clean(mesh, options, &report).faces.size(), 1800u);
+  EXPECT_EQ(report.removed_intersections, 0u);
+}
+
 TEST(Clean, SmoothingDampsNoiseAndKeepsThePlace) {
   Mesh mesh = grid(20);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
