@@ -19,8 +19,10 @@ constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
                                     {"output", "--output-file"},
                                     {"overwrite_dmaps true", "--overwrite-dmaps 1"},
                                     {"pinhole_export", "--pinhole-export"},
+                                    {"plan", "--plan"},
                                     {"refractive", "--refractive"},
                                     {"report", "--report-file"},
+                                    {"until", "--until"},
                                     {"working_folder", "--working-folder"}};
 
 }  // namespace

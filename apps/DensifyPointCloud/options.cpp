@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/not_built.h"
+#include "base/parse_number.h"
+#include "base/split.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
@@ -22,7 +24,7 @@ namespace {
 struct Raw {
   std::string input, output, housing, mask_path;
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
-  std::string report;
+  std::string report, part, plan;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -70,6 +72,21 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
           "max-memory", &settings.max_memory,
           "largest memory to use [MB] (0: 70 % of the free memory); --estimate-colors 1 and "
           "--estimate-normals 1 keep the whole cloud in additional memory");
+}
+
+void declare_parts(OptionList& list, Raw& raw, Settings& settings) {
+  list.add("until", &settings.until,
+           "stop after this stage and write no cloud: photometric, geometric1, geometric2 and so "
+           "on, "
+           "adjusted, or maps, the last of them")
+      .add("part", &raw.part,
+           "I/N: make only the depth maps of the stage --until, and only of the I-th of N parts of "
+           "the images; the runs of all parts can share a folder")
+      .add("plan", &raw.plan,
+           "write stages, number of parts, CPU time and memory of each part to this file (.json) "
+           "and quit")
+      .add_with_default("plan-parts", &settings.planned_parts,
+                        "number of parts in the plan (0: a part takes about ten minutes)");
 }
 
 void declare_matching(OptionList& list, Settings& settings) {
@@ -234,6 +251,7 @@ void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings)
   settings.report = path(raw.report);
   settings.mask_folder = path(raw.mask_path);
   settings.pinhole_export = path(raw.pinhole_export);
+  settings.plan = path(raw.plan);
 }
 
 // From -v 3 on, pictures of the depth maps are written beside them, as by OpenMVS. From -v 5 on,
@@ -246,9 +264,31 @@ densify::Pictures pictures_of(int verbosity) {
 
 void check_pinhole_export(const Settings& settings) {
   if (!settings.pinhole_export.empty() &&
-      (!settings.fuse || only_exports(settings) || !settings.neighbour_lists_output.empty()))
+      (!settings.fuse || only_exports(settings) || !settings.neighbour_lists_output.empty() ||
+       !settings.until.empty() || !settings.plan.empty()))
     fail("--pinhole-export {}: needs a cloud, which this run does not make",
          settings.pinhole_export.string());
+}
+
+// A run for one stage or for a plan makes nothing else.
+void check_purpose(const Settings& settings) {
+  const bool other = only_exports(settings) || !settings.neighbour_lists_output.empty();
+  if (!settings.until.empty() && (!settings.make_maps || other))
+    fail("--until {}: this run makes no depth maps", settings.until);
+  if (!settings.plan.empty() && (!settings.make_maps || other || !settings.until.empty()))
+    fail("--plan {}: plans only runs that make all depth maps", settings.plan.string());
+}
+
+void take_part(const std::string& part, Settings& settings) {
+  if (part.empty()) return;
+  const std::vector<std::string_view> words = split(part, '/');
+  const auto number = [](std::string_view word) {
+    return parse_number<std::size_t>(word).value_or(0);
+  };
+  if (words.size() == 2) settings.part = number(words[0]), settings.parts = number(words[1]);
+  if (settings.part == 0 || settings.part > settings.parts || settings.parts > 1000000)
+    fail("--part {}: must be I/N with I from 1 to N, and N up to 1000000", part);
+  if (settings.until.empty()) fail("--part {}: needs --until", part);
 }
 
 // Fills the settings from the values of the options.
@@ -265,6 +305,8 @@ void convert(const Raw& raw, Options& options) {
   take_choices(raw, settings);
   settings.make_maps = raw.fusion_mode >= 0;
   settings.fuse = raw.fusion_mode <= 0;
+  take_part(raw.part, settings);
+  check_purpose(settings);
   check_pinhole_export(settings);
   settings.region = static_cast<RegionMode>(raw.estimate_roi);
   settings.fusion.two_if_undisputed = !given(options.parsed, "number-views-fuse");
@@ -295,6 +337,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   io::declare_bit_depth(program.visible, settings.bit_depth);
   declare_camera(program.visible, raw, settings);
   declare_matching(program.visible, settings);
+  declare_parts(program.visible, raw, settings);
   declare_fusion(program.visible, raw, settings);
   declare_points(program.visible, raw, settings);
   UnusedInput::declare(program.visible, settings.allow_missing);

@@ -64,6 +64,10 @@ void warn_of_options_without_effect(const Options& options) {
       warn_of(options, names, "with --output-view-neighbors-file, which matches no images");
     return;
   }
+  if (settings.parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
+  if (!settings.until.empty()) warn_of(options, kFusion, "with --until, which makes no cloud");
+  if (!settings.plan.empty()) warn_of(options, {"report-file"}, "with --plan");
+  if (settings.plan.empty()) warn_of(options, {"plan-parts"}, "without --plan");
   if (!settings.make_maps)
     for (const Names& names : {kMatching, kMapSize})
       warn_of(options, names, "with --fusion-mode -1, which uses depth maps unchanged");

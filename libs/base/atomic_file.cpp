@@ -6,8 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
-#include <charconv>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -17,15 +18,25 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/hash.h"
+#include "base/parse_number.h"
 
 namespace axial {
 namespace {
+
+// Identifies this machine in the names of temporary files, because several machines can write to
+// one folder, and the number of a process says nothing on another machine.
+std::string machine() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return Fingerprint().add(std::string_view(name.data())).hex().substr(0, 8);
+}
 
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   std::filesystem::path name = path.filename();
   const std::string extension = name.extension().string();
   name.replace_extension();
-  name += fmt::format(".{}.tmp{}", ::getpid(), extension);
+  name += fmt::format(".{}-{}.tmp{}", machine(), ::getpid(), extension);
   return path.parent_path() / name;
 }
 
@@ -33,6 +44,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
 struct TemporaryName {
   std::string target;
   pid_t process = 0;
+  std::string machine;  // empty: of an earlier version, which did not name the machine
 };
 
 // Empty if `name` was not made by temporary_beside().
@@ -43,20 +55,32 @@ std::optional<TemporaryName> parse_temporary(std::string_view name) {
   if (!extension.empty() && extension.rfind('.') != 0) return std::nullopt;
   const std::size_t dot = name.rfind('.', mark - 1);
   if (dot == std::string_view::npos || dot == 0) return std::nullopt;
-  pid_t process = 0;
-  const char* const end = name.data() + mark;
-  const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, process);
-  if (error != std::errc() || stop != end || process <= 0) return std::nullopt;
-  return TemporaryName{std::string(name.substr(0, dot)).append(extension), process};
+  std::string_view number = name.substr(dot + 1, mark - dot - 1), machine;
+  if (const std::size_t dash = number.find('-'); dash == 8) {
+    machine = number.substr(0, dash);
+    number.remove_prefix(dash + 1);
+  }
+  const auto process = parse_number<pid_t>(number);
+  if (!process || *process <= 0) return std::nullopt;
+  return TemporaryName{std::string(name.substr(0, dot)).append(extension), *process,
+                       std::string(machine)};
+}
+
+// Whether the process that created a temporary has ended. The processes of other machines are not
+// known: they count as ended a day after the last change of the temporary.
+bool has_ended(const TemporaryName& temporary, const std::filesystem::path& path) {
+  if (temporary.machine.empty() || temporary.machine == machine())
+    return ::kill(temporary.process, 0) != 0 && errno == ESRCH;
+  std::error_code error;
+  const auto changed = std::filesystem::last_write_time(path, error);
+  return !error && std::filesystem::file_time_type::clock::now() - changed > std::chrono::days(1);
 }
 
 // The final name of a temporary, or of a temporary of a temporary, whose process has ended. Empty
 // for all other names.
-std::optional<std::string> abandoned_by(const std::string& name) {
-  std::optional<TemporaryName> temporary = parse_temporary(name);
-  if (!temporary) return std::nullopt;
-  const bool dead = ::kill(temporary->process, 0) != 0 && errno == ESRCH;
-  if (!dead) return std::nullopt;
+std::optional<std::string> abandoned_by(const std::filesystem::path& path) {
+  std::optional<TemporaryName> temporary = parse_temporary(path.filename().string());
+  if (!temporary || !has_ended(*temporary, path)) return std::nullopt;
   while (const auto inner = parse_temporary(temporary->target)) temporary = inner;
   return temporary->target;
 }
@@ -68,8 +92,7 @@ std::multimap<std::string, std::filesystem::path> abandoned_in(
   std::error_code ignored;
   for (const auto& entry :
        std::filesystem::directory_iterator(folder.empty() ? "." : folder, ignored))
-    if (auto target = abandoned_by(entry.path().filename().string()))
-      found.emplace(std::move(*target), entry.path());
+    if (auto target = abandoned_by(entry.path())) found.emplace(std::move(*target), entry.path());
   return found;
 }
 

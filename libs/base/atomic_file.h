@@ -101,9 +101,10 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t max_byte
 
 // Removes from `folder` the temporary files and folders of this header that killed processes left
 // there, if their final names begin with `prefix`. An empty `folder` is the current folder. The
-// name of a temporary file contains the number of the process that created it. Temporary files of
-// running processes stay. Failures are ignored: what cannot be removed stays, and a folder that
-// cannot be read is skipped.
+// name of a temporary file contains an identifier of the machine and the number of the process that
+// created it. Temporary files of running processes stay. Temporary files of other machines stay for
+// a day after their last change. Failures are ignored: what cannot be removed stays, and a folder
+// that cannot be read is skipped.
 void remove_abandoned(const std::filesystem::path& folder, const std::string& prefix);
 
 }  // namespace axial

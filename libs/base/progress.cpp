@@ -20,6 +20,21 @@ struct State {
   Clock::time_point shown;
 };
 
+// The first items are slow, because threads and caches start empty, and may finish out of order.
+bool can_estimate(std::size_t done, std::size_t total, double elapsed) {
+  return done * 20 >= total || (done >= 32 && elapsed >= 10);
+}
+
+std::string line_of(const std::string& title, std::size_t done, std::size_t total, double elapsed) {
+  if (done == total) return fmt::format("{} {}/{} (100%, {:.1f}s)", title, done, total, elapsed);
+  const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(total);
+  std::string left;
+  if (done > 0 && can_estimate(done, total, elapsed))
+    left = fmt::format(", {:.0f}s left",
+                       elapsed / static_cast<double>(done) * static_cast<double>(total - done));
+  return fmt::format("{} {}/{} ({:.0f}%, {:.0f}s{})", title, done, total, percent, elapsed, left);
+}
+
 }  // namespace
 
 ProgressSink console_progress(const std::string& title) {
@@ -29,17 +44,10 @@ ProgressSink console_progress(const std::string& title) {
     if (!logs(level)) return;
     const auto now = Clock::now();
     const std::chrono::duration<double> since = now - state->shown;
-    if (done < total && since.count() < (terminal ? 0.2 : 5.0)) return;
+    if (done < total && since.count() < (terminal ? 0.2 : 3.0)) return;
     state->shown = now;
     const double elapsed = std::chrono::duration<double>(now - state->start).count();
-    const double left =
-        done > 0 ? elapsed / static_cast<double>(done) * static_cast<double>(total - done) : 0.0;
-    const double percent =
-        total > 0 ? 100.0 * static_cast<double>(done) / static_cast<double>(total) : 100.0;
-    const std::string line =
-        done < total ? fmt::format("{} {}/{} ({:.0f}%, {:.0f}s, {:.0f}s left)", title, done, total,
-                                   percent, elapsed, left)
-                     : fmt::format("{} {}/{} (100%, {:.1f}s)", title, done, total, elapsed);
+    const std::string line = line_of(title, done, total, elapsed);
     if (terminal && done < total) {
       fmt::print("\r{}\033[K", line);
       std::fflush(stdout);

@@ -16,6 +16,7 @@
 #include "densify/pinhole_export.h"
 #include "densify/pinhole_folder.h"
 #include "densify/project.h"
+#include "densify/work_plan.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
 
@@ -58,17 +59,26 @@ std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
   return project.scene.points.size();
 }
 
-// The images are in memory only in this function.
-std::size_t make_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
-                       const ExistingMaps& existing, const fs::path& ply) {
-  ImageStore images(project, settings, plan.cached_images);
-  images.check_all(plan.decodes);
+// Makes or uses the depth maps of the run's images.
+void prepare_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                  const ExistingMaps& existing, ImageStore& images) {
+  if (settings.parts > 0)
+    images.check_part(plan.decodes);
+  else
+    images.check_all(plan.decodes);
   if (settings.make_maps)
     make_depth_maps(project, settings, plan, existing, images);
   else
     check_agreement(project, settings, plan, false, [&](std::size_t image) {
       return read_final_map(project, settings, existing, image, images.mask(image));
     });
+}
+
+// The images are in memory only in this function.
+std::size_t make_cloud(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                       const ExistingMaps& existing, const fs::path& ply) {
+  ImageStore images(project, settings, plan.cached_images);
+  prepare_maps(project, settings, plan, existing, images);
   return settings.fuse ? write_cloud(project, settings, plan, existing, images, ply)
                        : write_sparse_cloud(project, settings, ply);
 }
@@ -79,6 +89,24 @@ void remove_depth_maps(const Project& project, const Settings& settings) {
     fs::remove(file);
     fs::remove(file.string() + ".json");
   }
+}
+
+Report make_stage(const Settings& settings, const SceneObserver& observer) {
+  stages_to_make(settings);  // throws for a wrong name
+  Project project = load_project(settings, observer);
+  const ExistingMaps existing = checked_maps(project, settings);
+  const MemoryPlan plan = plan_memory(project, settings);
+  check_outputs(project, settings);
+  ImageStore images(project, settings, plan.cached_images);
+  prepare_maps(project, settings, plan, existing, images);
+  return {Result::stage, {}, 0, project.part.size()};
+}
+
+Report write_plan(const Settings& settings, const SceneObserver& observer) {
+  const Project project = load_project(settings, observer);
+  check_outputs(project, settings);
+  write_work_plan(settings.plan, project, settings);
+  return {Result::plan, {}};
 }
 
 Report reconstruct(const Settings& settings, const SceneObserver& observer) {
@@ -114,6 +142,8 @@ Report densify(const Settings& settings, const SceneObserver& observer) {
   check_outputs(settings);
   if (only_exports(settings)) return export_points(settings);
   if (!settings.neighbour_lists_output.empty()) return write_lists(settings, observer);
+  if (!settings.plan.empty()) return write_plan(settings, observer);
+  if (!settings.until.empty()) return make_stage(settings, observer);
   return reconstruct(settings, observer);
 }
 

@@ -12,10 +12,12 @@ namespace axial::densify {
 
 // What a run has written.
 enum class Result {
-  dense_cloud,     // depth maps, and the cloud fused from them
-  sparse_cloud,    // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
-  point_export,    // see cloud_exports.h
-  neighbour_lists  // see neighbour_lists.h
+  dense_cloud,   // depth maps, and the cloud fused from them
+  sparse_cloud,  // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
+  point_export,  // see cloud_exports.h
+  neighbour_lists,  // see neighbour_lists.h
+  stage,            // depth maps of the stage Settings::until, of all images or of a part
+  plan              // see work_plan.h
 };
 
 // The result of densify().
@@ -23,7 +25,7 @@ struct Report {
   Result result = Result::dense_cloud;
   std::filesystem::path cloud;  // file of the cloud that was written; empty: none
   std::size_t points = 0;       // number of points of this cloud
-  // Number of images whose depth map was made or used; exports, lists: 0.
+  // Number of images whose depth map was made or used; exports, lists, plan: 0.
   std::size_t depth_maps = 0;
   // For dense_cloud and sparse_cloud: whether no camera has a port or a distorted lens. Only then
   // do OpenMVS's programs read the depth maps and the scene correctly. Otherwise true, without a

@@ -2,10 +2,13 @@
 #include "densify/depth_stage.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "base/error.h"
 #include "densify/agreement_check.h"
 #include "densify/map_stages.h"
 #include "depth/border.h"
@@ -34,20 +37,23 @@ class MapMaker {
       : project_(project), settings_(settings), images_(images) {}
 
   std::vector<Stage> stages() const {
+    const std::vector<std::string> names = stage_names(settings_);
     std::vector<Stage> stages;
-    stages.push_back({"photometric", "Estimated depth maps",
+    stages.push_back({names[0], "Estimated depth maps",
                       [this](std::size_t image, PreviousMaps&) { return estimate(image); }});
     for (int pass = 0; pass < settings_.geometric_iterations; ++pass)
-      stages.push_back({fmt::format("geometric{}", pass + 1),
-                        fmt::format("Geometric-consistency pass {}", pass + 1),
-                        [this, pass](std::size_t image, PreviousMaps& previous) {
-                          return refine(image, pass, previous);
-                        }});
+      stages.push_back(
+          {names[stages.size()], fmt::format("Geometric-consistency pass {}", pass + 1),
+           [this, pass](std::size_t image, PreviousMaps& previous) {
+             return refine(image, pass, previous);
+           },
+           false,
+           [this](std::size_t image) { return with(image, with_maps(project_.sources[image])); }});
     if (settings_.postprocess & kAdjust)
       stages.push_back(
-          {"adjusted", "Adjusted depth maps",
+          {names.back(), "Adjusted depth maps",
            [this](std::size_t image, PreviousMaps& previous) { return adjust(image, previous); },
-           true});
+           true, [this](std::size_t image) { return with(image, adjusting(image)); }});
     return stages;
   }
 
@@ -58,6 +64,18 @@ class MapMaker {
     for (const ViewScore& neighbour : list)
       if (!project_.sources[neighbour.image].empty()) images.push_back(neighbour.image);
     return images;
+  }
+
+  // The images whose maps adjust the map of `image`.
+  std::vector<std::size_t> adjusting(std::size_t image) const {
+    std::vector<std::size_t> images = with_maps(project_.neighbours[image]);
+    images.resize(std::min(images.size(), std::size_t{depth::AdjustOptions().max_neighbours}));
+    return images;
+  }
+
+  static std::vector<std::size_t> with(std::size_t image, std::vector<std::size_t> others) {
+    others.push_back(image);
+    return others;
   }
 
   void add_view(Task& task, std::size_t image) const {
@@ -120,9 +138,8 @@ class MapMaker {
 
   DepthMap adjust(std::size_t image, PreviousMaps& previous) const {
     std::vector<DepthMap> neighbours;
-    for (const std::size_t neighbour : with_maps(project_.neighbours[image]))
-      if (neighbours.size() < depth::AdjustOptions().max_neighbours)
-        neighbours.push_back(*previous.get(neighbour));
+    for (const std::size_t neighbour : adjusting(image))
+      neighbours.push_back(*previous.get(neighbour));
     return named(depth::adjust_with_neighbours(*previous.get(image), neighbours), image);
   }
 
@@ -133,6 +150,24 @@ class MapMaker {
 
 }  // namespace
 
+std::vector<std::string> stage_names(const Settings& settings) {
+  std::vector<std::string> names{"photometric"};
+  for (int pass = 0; pass < settings.geometric_iterations; ++pass)
+    names.push_back(fmt::format("geometric{}", pass + 1));
+  if (settings.postprocess & kAdjust) names.emplace_back("adjusted");
+  return names;
+}
+
+std::size_t stages_to_make(const Settings& settings) {
+  const std::vector<std::string> names = stage_names(settings);
+  if (settings.until.empty() || settings.until == "maps") return names.size();
+  const auto found = std::ranges::find(names, settings.until);
+  if (found == names.end())
+    fail("{} {}: must be one of {}, maps", settings.name_of("until"), settings.until,
+         fmt::join(names, ", "));
+  return static_cast<std::size_t>(found - names.begin()) + 1;
+}
+
 fs::path depth_map_path(const Project& project, const Settings& settings, std::size_t image) {
   return settings.working_folder / fmt::format("depth{:04}.dmap", project.views[image].id);
 }
@@ -141,7 +176,7 @@ void make_depth_maps(const Project& project, const Settings& settings, const Mem
                      const ExistingMaps& existing, ImageStore& images) {
   const MapMaker maker(project, settings, images);
   StageRun run;
-  run.images = project.references;
+  run.images = project.part;
   run.final_file = [&](std::size_t image) { return depth_map_path(project, settings, image); };
   run.fingerprint = project.fingerprint;
   run.existing = existing;
@@ -152,7 +187,11 @@ void make_depth_maps(const Project& project, const Settings& settings, const Mem
   run.check = [&](bool first_stage, const ReadMap& read_map) {
     check_agreement(project, settings, plan, first_stage, read_map);
   };
-  run_stages(maker.stages(), run);
+  run.most_stages = stages_to_make(settings);
+  if (settings.parts > 0)
+    run_part(maker.stages(), run.most_stages - 1, run);
+  else
+    run_stages(maker.stages(), run);
 }
 
 }  // namespace axial::densify

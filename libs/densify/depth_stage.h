@@ -3,12 +3,24 @@
 // stopped continues where it ended.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "densify/existing_maps.h"
 #include "densify/image_store.h"
 #include "densify/memory_plan.h"
 #include "densify/project.h"
 
 namespace axial::densify {
+
+// The names of the stages of make_depth_maps(), in their order: "photometric", "geometric1",
+// "geometric2", ..., and "adjusted" if Settings::postprocess asks for the adjust filter.
+std::vector<std::string> stage_names(const Settings& settings);
+
+// The number of stages up to the stage Settings::until: 1 for the first. "maps" means the last
+// stage. All stages if `until` is empty. Throws an Error that lists the names if `until` is none of
+// them.
+std::size_t stages_to_make(const Settings& settings);
 
 // The path of the file of an image's final depth map: depthNNNN.dmap in the working folder, where
 // NNNN is the image's global id (View::id) with at least four digits. `image`: index into
@@ -17,7 +29,9 @@ std::filesystem::path depth_map_path(const Project& project, const Settings& set
                                      std::size_t image);
 
 // Makes the final depth map of every reference image (Project::references) and writes it to
-// depth_map_path(). The stages are, in this order: photometric matching,
+// depth_map_path(). If Settings::until is given, ends after this stage. If Settings::parts is above
+// 0, makes only the maps of this stage, and only of the images Project::part (run_part() in
+// map_stages.h). The stages are, in this order: photometric matching,
 // Settings::geometric_iterations geometric passes, and the adjust filter if Settings::postprocess
 // asks for it. The last stage before the adjust filter also removes unconfirmed depths
 // (depth/weak_texture.h), and then applies the speckle filter and the gap filter, each if

@@ -103,7 +103,7 @@ io::DmapSide side_to_read(DmapOrigin origin) {
 ExistingMaps find_existing_maps(const Project& project, const Settings& settings) {
   ExistingMaps maps(project.scene.images.size());
   // One map at a time: each is read completely, and the memory plan does not exist yet.
-  for (const std::size_t image : project.references)
+  for (const std::size_t image : project.part)
     maps[image] = io::dmap_status(depth_map_path(project, settings, image));
   return maps;
 }
@@ -119,7 +119,7 @@ DepthMap read_final_map(const Project& project, const Settings& settings, const 
 
 void check_overwriting(const Project& project, const Settings& settings, const ExistingMaps& maps) {
   std::vector<std::size_t> foreign;
-  for (const std::size_t image : project.references) {
+  for (const std::size_t image : project.part) {
     if (maps[image].origin == DmapOrigin::foreign) foreign.push_back(image);
     if (maps[image].origin == DmapOrigin::damaged)
       log_warning("{}: the depth map or its side file is damaged; the depth map is computed again",
@@ -136,7 +136,7 @@ void check_overwriting(const Project& project, const Settings& settings, const E
     return is_plain_pinhole(project.scene.images[image].camera);
   });
   fail("{}: was written by another program ({} of {} depth maps were): {}move it away, or give {}",
-       file, foreign.size(), project.references.size(),
+       file, foreign.size(), project.part.size(),
        fusable ? "fuse the existing depth maps (" + settings.name_of("make_maps false") + "), "
                : "it counts as the depth map of a pinhole camera: ",
        settings.name_of("overwrite_dmaps true"));
@@ -166,7 +166,7 @@ void keep_images_with_maps(Project& project, const Settings& settings, const Exi
     log_warning("{}; {}, for example, does not exist", line, missing.string());
   else
     log_info("{}", line);
-  project.references = std::move(kept);
+  project.references = project.part = std::move(kept);
 }
 
 }  // namespace axial::densify

@@ -11,12 +11,12 @@
 
 namespace axial::densify {
 
-// One state for each image of the scene: the state of the image's map file. Images that are not
-// references have DmapOrigin::none.
+// One state for each image of the scene: the state of the image's map file. Images without a
+// known map have DmapOrigin::none.
 using ExistingMaps = std::vector<io::DmapStatus>;
 
-// Reads the map files of all references (Project::references), one after the other, and returns
-// their states.
+// Reads the map files of the images Project::part, one after the other, and returns their states.
+// Other images have DmapOrigin::none.
 ExistingMaps find_existing_maps(const Project& project, const Settings& settings);
 
 // Whether the side file (io/openmvs/dmap.h) is used when a map of this origin is read. The side

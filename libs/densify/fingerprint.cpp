@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/hash.h"
-#include "base/parallel.h"
+#include "densify/file_contents.h"
 
 namespace axial::densify {
 namespace {
@@ -139,20 +138,7 @@ std::string changed_numbers(const Settings& settings) {
   return text;
 }
 
-// Fingerprints of the files that each view's pixels and mask come from.
-std::vector<std::string> content_of_files(const Project& project) {
-  std::vector<std::string> prints(project.views.size());
-  parallel_for(prints.size(), [&](std::size_t i) {
-    if (!project.scene.images[i].calibrated) return;
-    Fingerprint print;
-    print.add(read_file(project.scene.images[i].path));
-    if (!project.views[i].mask.empty()) print.add(read_file(project.views[i].mask));
-    prints[i] = print.hex();
-  });
-  return prints;
-}
-
-// Camera, pose and pixels of a view. `content`: of content_of_files().
+// Camera, pose and pixels of a view. `content`: of contents_of_views().
 void add_view(Fingerprint& print, const Project& project, std::size_t i,
               const std::string& content) {
   const View& view = project.views[i];
@@ -170,7 +156,7 @@ void add_view(Fingerprint& print, const Project& project, std::size_t i,
 std::string fingerprint_of_views(const Project& project, const Settings& settings) {
   Fingerprint print;
   print.add("AxialMVS views 1").add(static_cast<std::uint64_t>(settings.ignore_mask_label));
-  const std::vector<std::string> contents = content_of_files(project);
+  const std::vector<std::string> contents = contents_of_views(project, settings);
   for (std::size_t i = 0; i < contents.size(); ++i) add_view(print, project, i, contents[i]);
   return print.hex();
 }
@@ -181,7 +167,7 @@ std::string fingerprint(const Project& project, const Settings& settings) {
   print.add("AxialMVS depth maps 12");
   add_settings(print, settings);
   if (const std::string changed = changed_numbers(settings); !changed.empty()) print.add(changed);
-  const std::vector<std::string> contents = content_of_files(project);
+  const std::vector<std::string> contents = contents_of_views(project, settings);
   for (std::size_t i = 0; i < project.views.size(); ++i) {
     add_view(print, project, i, contents[i]);
     for (const auto* list : {&project.neighbours[i], &project.sources[i]}) {

@@ -3,6 +3,8 @@
 
 #include <mutex>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <vector>
 
 #include "base/first_error.h"
 #include "base/parallel.h"
@@ -77,19 +79,33 @@ cv::Mat1b ImageStore::mask(std::size_t image) {
 }
 
 void ImageStore::check_all(std::size_t at_once) {
-  const std::size_t count = project_.views.size();
+  std::vector<std::size_t> images;
+  for (std::size_t i = 0; i < project_.views.size(); ++i)
+    if (project_.scene.images[i].calibrated) images.push_back(i);
+  check(images, at_once);
+  labels_.warn_if_absent(project_);
+}
+
+void ImageStore::check_part(std::size_t at_once) {
+  std::set<std::size_t> images(project_.part.begin(), project_.part.end());
+  for (const std::size_t image : project_.part)
+    for (const ViewScore& source : project_.sources[image]) images.insert(source.image);
+  check(std::vector(images.begin(), images.end()), at_once);
+}
+
+void ImageStore::check(std::span<const std::size_t> images, std::size_t at_once) {
+  const std::size_t count = images.size();
   const ProgressSink progress = console_progress("Read images");
   std::mutex reporting;
   FirstError error;
   std::size_t done = 0;
   for_each_in_flight(count, at_once, [&](std::size_t i) {
-    const std::size_t image = count - 1 - i;
-    if (project_.scene.images[image].calibrated) error.run(image, [&] { get(image); });
+    const std::size_t image = images[count - 1 - i];
+    error.run(image, [&] { get(image); });
     const std::lock_guard lock(reporting);
     progress(++done, count);
   });
   error.rethrow();
-  labels_.warn_if_absent(project_);
 }
 
 }  // namespace axial::densify

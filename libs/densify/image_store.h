@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <span>
 
 #include "base/shared_cache.h"
 #include "densify/masks.h"
@@ -64,7 +65,12 @@ class ImageStore {
   // read in reverse order, so that the images that are needed first stay in the cache.
   void check_all(std::size_t at_once);
 
+  // As check_all(), but reads only the images Project::part and their sources.
+  void check_part(std::size_t at_once);
+
  private:
+  void check(std::span<const std::size_t> images, std::size_t at_once);
+
   const Project& project_;
   LabelCheck labels_;
   SharedCache<WorkImage> cache_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/map_stages.h"
 
+#include <algorithm>
 #include <mutex>
 #include <system_error>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -31,9 +33,11 @@ class Runner {
 
   void run() const {
     const std::size_t first = first_incomplete_stage();
-    if (first == stages_.size()) log_info("All {} depth maps exist already", run_.images.size());
+    const std::size_t end = std::min(run_.most_stages, stages_.size());
+    if (first >= end) log_info("All {} depth maps exist already", run_.images.size());
+    for (std::size_t s = 0; s + 1 < first; ++s) remove_stage(s);
     if (first > 0) check(first - 1);
-    for (std::size_t s = first; s < stages_.size(); ++s) {
+    for (std::size_t s = first; s < end; ++s) {
       // Matching often frees and allocates large blocks but holds few of them; later stages hold
       // many.
       if (stages_[s].whole_maps) map_large_blocks();
@@ -42,7 +46,16 @@ class Runner {
       if (s > 0) remove_stage(s - 1);
       if (!is_last(s) && run_.pictures == Pictures::maps_of_every_stage) draw(s);
     }
-    if (run_.pictures != Pictures::none) draw(stages_.size() - 1);
+    if (run_.pictures != Pictures::none && end == stages_.size()) draw(end - 1);
+  }
+
+  void run_part(std::size_t stage) const {
+    for (const std::size_t image : run_.images)
+      if (!finished(stage, image)) require_previous(stage, image);
+    if (stages_[stage].whole_maps) map_large_blocks();
+    run_stage(stage);
+    const bool drawn = run_.pictures == Pictures::maps_of_every_stage || is_last(stage);
+    if (run_.pictures != Pictures::none && drawn) draw(stage);
   }
 
  private:
@@ -64,6 +77,17 @@ class Runner {
       return run_.existing[image].origin == io::DmapOrigin::ours &&
              run_.existing[image].made_from == made_from(stage);
     return io::dmap_made_from(path(stage, image)) == made_from(stage);
+  }
+
+  // Error unless the maps that the stage needs for an image are there.
+  void require_previous(std::size_t stage, std::size_t image) const {
+    if (stage == 0) return;
+    for (const std::size_t needed : stages_[stage].needs(image))
+      if (!finished(stage - 1, needed))
+        fail(
+            "{}: is missing, or was made from other input or settings: first make the stage {} of "
+            "all parts",
+            path(stage - 1, needed).string(), stages_[stage - 1].name);
   }
 
   std::size_t first_incomplete_stage() const {
@@ -94,20 +118,20 @@ class Runner {
   }
 
   void make_maps(std::size_t stage, PreviousMaps& previous) const {
+    std::vector<std::size_t> missing;
+    for (const std::size_t image : run_.images)
+      if (!finished(stage, image)) missing.push_back(image);
+    if (const std::size_t reused = run_.images.size() - missing.size(); reused > 0)
+      log_info("{}: {} maps existed already", stages_[stage].title, reused);
     const ProgressSink progress = console_progress(stages_[stage].title);
     std::mutex mutex;
     std::size_t done = 0;
-    std::size_t reused = 0;
-    for_each_in_flight(run_.images.size(), run_.in_flight, [&](std::size_t i) {
-      const std::size_t image = run_.images[i];
-      const bool there = finished(stage, image);
-      if (!there)
-        io::write_dmap(path(stage, image), stages_[stage].make(image, previous), made_from(stage));
+    for_each_in_flight(missing.size(), run_.in_flight, [&](std::size_t i) {
+      const std::size_t image = missing[i];
+      io::write_dmap(path(stage, image), stages_[stage].make(image, previous), made_from(stage));
       const std::lock_guard lock(mutex);
-      if (there) ++reused;
-      progress(++done, run_.images.size());
+      progress(++done, missing.size());
     });
-    if (reused > 0) log_info("{}: {} maps existed already", stages_[stage].title, reused);
   }
 
   void check(std::size_t stage) const {
@@ -141,6 +165,10 @@ PreviousMaps::PreviousMaps(ReadMap read, bool whole, std::size_t capacity)
 
 void run_stages(std::span<const Stage> stages, const StageRun& run) {
   Runner(stages, run).run();
+}
+
+void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run) {
+  Runner(stages, run).run_part(stage);
 }
 
 }  // namespace axial::densify

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -54,6 +55,9 @@ struct Stage {
   // cache is StageRun::cached_maps. False: get() returns depths alone, and the capacity is
   // cached_depths.
   bool whole_maps = false;
+  // The images whose maps of the previous stage `make` needs for the map of an image. Empty for the
+  // first stage.
+  std::function<std::vector<std::size_t>(std::size_t image)> needs = {};
 };
 
 // The arguments that all stages share. Images are named by their index in the scene.
@@ -75,10 +79,13 @@ struct StageRun {
   // the call comes before the run makes a map, and `read_map` reads the maps of the latest complete
   // stage. `first_stage`: whether `read_map` reads maps of the first stage. Empty: no check.
   std::function<void(bool first_stage, const ReadMap& read_map)> check;
+  // The number of stages to run, if it is less than the number of all stages.
+  std::size_t most_stages = std::numeric_limits<std::size_t>::max();
 };
 
-// Runs the stages one after the other. The maps of the last stage are the result, in the files
-// `run.final_file`. Precondition: there is at least one stage.
+// Runs the stages one after the other. The maps of the last of `stages` are the result, in the
+// files `run.final_file`; `run.most_stages` can end the run earlier. Precondition: there is at
+// least one stage.
 //
 // * A file is used again only if its depth map is complete and its side file has the run's
 //   fingerprint and the stage's name. Every other file with the name of a map is overwritten by a
@@ -87,10 +94,18 @@ struct StageRun {
 //   stages are not needed. In a stage that is not complete, only the missing maps are made.
 // * Every stage reads only complete files of the previous stage. So a run that was stopped and
 //   continues gives the same bytes as a run without a stop.
-// * The files of a stage are removed when the next stage is complete.
+// * The files of a stage are removed when the next stage is complete. Files of earlier stages that
+//   other runs left are removed, too.
 //
 // Exceptions of Stage::make and StageRun::check end the run and reach the caller. The finished
 // files stay.
 void run_stages(std::span<const Stage> stages, const StageRun& run);
+
+// Makes the maps of the stage stages[stage] for the images `run.images`, which are a part of all
+// images. Other runs make the maps of the other images and of the other stages. No file is removed
+// and `run.check` is not called, because the run does not know whether other runs have ended. Maps
+// of the stage that exist are not made again. Throws an Error, before it makes a map, if
+// a map that the stage needs is missing or has another fingerprint. The error names the file.
+void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run);
 
 }  // namespace axial::densify

@@ -73,6 +73,8 @@ void check_outputs(const Settings& settings) {
                          settings.name_of("neighbour_lists_output"));
   require_writable(settings.output);
   require_writable(cloud_file(settings));
+  if (!settings.plan.empty())
+    require_not_an_input(settings.plan, scene_files(settings), settings.name_of("plan"));
   if (!settings.report.empty()) {
     require_not_an_input(settings.report, scene_files(settings), settings.name_of("report"));
     require_writable(settings.report);
@@ -94,6 +96,7 @@ void check_outputs(const Project& project, const Settings& settings) {
   outputs.push_back(io::housing_beside(settings.output));
   outputs.push_back(io::geo_offset_beside(settings.output));
   check_side_output(settings.name_of("report"), settings.report, inputs, outputs);
+  check_side_output(settings.name_of("plan"), settings.plan, inputs, outputs);
   check_side_output(settings.name_of("neighbour_lists_output"), settings.neighbour_lists_output,
                     inputs, outputs);
 }

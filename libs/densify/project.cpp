@@ -121,6 +121,16 @@ void select_views(Project& project, const Settings& settings, const SceneObserve
 
 }  // namespace
 
+std::vector<std::size_t> part_of(std::span<const std::size_t> images, const Settings& settings) {
+  std::size_t begin = 0, end = images.size();
+  if (settings.parts > 0) {
+    end = images.size() * settings.part / settings.parts;
+    begin = images.size() * (settings.part - 1) / settings.parts;
+  }
+  return {images.begin() + static_cast<std::ptrdiff_t>(begin),
+          images.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
 bool all_pinholes(const Project& project) {
   return std::ranges::none_of(
       project.views, [](const View& view) { return view.camera.port || view.camera.distortion; });
@@ -166,6 +176,7 @@ Project load_project(const Settings& settings, const SceneObserver& observer) {
   Project project = load_scene_and_headers(settings);
   check_ids(project);
   select_views(project, settings, observer);
+  project.part = part_of(project.references, settings);
   project.fingerprint = fingerprint(project, settings);
   return project;
 }

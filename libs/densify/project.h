@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Project : io::SceneWithCameras {
   // Source views for matching; image without a map: none.
   std::vector<std::vector<ViewScore>> sources;
   std::vector<std::size_t> references;  // images that get a depth map: indices, ascending
+  std::vector<std::size_t> part;        // the references whose maps this run makes (Settings::part)
   int bit_depth = 16;       // number of bits that the values of 16-bit images use, 8 to 16
   std::string fingerprint;  // the result of fingerprint() (fingerprint.h)
 };
@@ -65,6 +67,10 @@ Project load_scene_and_headers(const Settings& settings);
 // camera's, for an id that two images have, and if no image can get a depth map.
 // ImageStore::check_all() finds other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
+
+// The images of the part Settings::part: neighbours in the order of `images`. The numbers of images
+// of two parts differ by one at most. All images if Settings::parts is 0.
+std::vector<std::size_t> part_of(std::span<const std::size_t> images, const Settings& settings);
 
 // Whether no camera of Project::views has a port or a distorted lens.
 bool all_pinholes(const Project& project);

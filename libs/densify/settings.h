@@ -98,6 +98,17 @@ struct Settings {
   int export_number_views = 0;  // N or -N: points that N or more images see; -N: also a scene
   double estimate_scale = 0;    // above 0: all points, with sizes of this number of pixels
 
+  // The last stage to make: one of stage_names() (depth_stage.h). The run then writes depth maps,
+  // but no cloud and no scene. Empty: all stages and the cloud.
+  std::string until;
+  // If `parts` is above 0, the run makes only the maps of the stage `until`, and only of the images
+  // of one part (part_of() in project.h). `part` counts from 1. Runs of all parts, in any
+  // order and at the same time, give the maps of one run without parts.
+  std::size_t part = 0, parts = 0;
+  // If not empty, the run only writes this file: the work of each stage (work_plan.h).
+  std::filesystem::path plan;
+  std::size_t planned_parts = 0;  // number of parts in the file `plan`; 0: by the work
+
   Pictures pictures = Pictures::none;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
   unsigned max_threads = 0;      // largest number of threads; 0: as many as cores

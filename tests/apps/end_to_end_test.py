@@ -80,6 +80,39 @@ class EndToEnd(SceneTest):
         changed = self.densify("killed", "--refractive", "--iters", "3", *ALL_STAGES)
         self.assertNotRegex(changed, "exist(ed)? already", "maps of other options were taken over")
 
+    def test_parts_in_any_order_give_the_bytes_of_one_run(self):
+        for folder in ("whole", "parts"):
+            self.import_scene("water", folder)
+        self.densify("whole", "--refractive", *ALL_STAGES)
+        run = ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("parts"), "--refractive",
+               *ALL_STAGES)
+        self.succeeds(*run, "--plan", "plan.json", "--plan-parts", "3")
+        plan = json.loads(read(self.path("parts", "plan.json")))
+        self.assertEqual((plan["images"], plan["parts"]), (4, 3))
+        self.assertEqual(plan["stages"][0], "photometric")
+        self.assertEqual(plan["stages"][-1], "adjusted")
+        self.assertEqual(list(plan["per_part"]), sorted(plan["stages"]))
+        self.assertEqual(len(json.loads(read(self.path("parts", "depth_inputs.json")))["contents"]), 4)
+        self.refuses(".photometric.dmap: is missing", *run, "--until", "geometric1", "--part", "1/3")
+        for stage in [*plan["stages"][:-1], "maps"]:
+            for part in (2, 3, 1):
+                self.succeeds(*run, "--until", stage, "--part", f"{part}/3")
+        self.assertIn("All 4 depth maps exist already", self.succeeds(*run).stdout)
+        self.assertEqual({name: content for name, content in self.outputs("parts").items()
+                          if name not in ("plan.json", "depth_inputs.json")}, self.outputs("whole"))
+
+    def test_refuses_wrong_parts(self):
+        self.import_scene("air", "refused")
+        run = ("DensifyPointCloud", "-i", "scene.mvs", "-w", self.path("refused"), *QUICK)
+        for part in ("0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", "1/0"):
+            self.refuses(f"--part {part}: must be", *run, "--until", "maps", f"--part={part}")
+        self.refuses("--part 1/2: needs --until", *run, "--part", "1/2")
+        self.refuses("--until fast: must be one of photometric", *run, "--until", "fast")
+        self.refuses("--until maps: this run makes no", *run, "--until", "maps", "--fusion-mode", "-1")
+        self.refuses("--plan ", *run, "--plan", "p.json", "--until", "maps")
+        self.refuses("plan", *run, "--plan", "scene.mvs")
+        self.assertNotIn("p.json", files_below(self.path("refused")))
+
     def test_the_same_bytes_under_a_small_cap_on_memory(self):
         for stages in (QUICK, ALL_STAGES):
             with self.subTest(stages):

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -143,6 +144,25 @@ TEST(AtomicFile, RemovesOnlyTemporariesOfDeadProcesses) {
   remove_abandoned(folder, "depth");
   for (const std::string& name : abandoned) EXPECT_FALSE(fs::exists(folder / name)) << name;
   for (const std::string& name : kept) EXPECT_TRUE(fs::exists(folder / name)) << name;
+  fs::remove_all(folder);
+}
+
+// Several machines write to one folder. A process of another machine can run although its number is
+// free here.
+TEST(AtomicFile, KeepsTemporariesOfOtherMachinesForADay) {
+  const fs::path folder = test::empty_folder();
+  const pid_t dead = dead_process();
+  const std::string mine = AtomicFile(folder / "depth0.dmap").temporary().filename().string();
+  const std::string machine = mine.substr(std::string("depth0.").size(), 8);
+  const std::string ended = fmt::format("depth0.{}-{}.tmp.dmap", machine, dead);
+  ASSERT_EQ(mine, fmt::format("depth0.{}-{}.tmp.dmap", machine, ::getpid()));
+  const std::string fresh = fmt::format("depth0.{}-{}.tmp.dmap", "00000000", dead);
+  const std::string old = fmt::format("depth0.{}-{}.tmp.dmap", "00000001", dead);
+  for (const std::string& name : {mine, ended, fresh, old}) std::ofstream(folder / name) << "x";
+  fs::last_write_time(folder / old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  remove_abandoned(folder, "depth");
+  for (const std::string& name : {mine, fresh}) EXPECT_TRUE(fs::exists(folder / name)) << name;
+  for (const std::string& name : {ended, old}) EXPECT_FALSE(fs::exists(folder / name)) << name;
   fs::remove_all(folder);
 }
 

@@ -70,6 +70,19 @@ std::string in_file(LogLevel level) {
   return text;
 }
 
+TEST(Progress, TheFirstItemsGiveNoEstimate) {
+  testing::internal::CaptureStdout();
+  set_log_level(LogLevel::debug);
+  const ProgressSink progress = console_progress("Done things");
+  progress(1, 1000);
+  const ProgressSink later = console_progress("Done more");
+  later(50, 1000);
+  set_log_level(LogLevel::info);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, HasSubstr("Done things 1/1000 (0%, 0s)"));
+  EXPECT_THAT(text, HasSubstr("Done more 50/1000 (5%, 0s, 0s left)"));
+}
+
 TEST(Progress, RewritesOneLineOnATerminal) {
   const std::string text = on_terminal(LogLevel::debug);
   EXPECT_THAT(text, HasSubstr("\rDone things 1/4 (25%, 0s, 0s left)\033[K"));

@@ -29,7 +29,7 @@ class ExistingMapsTest : public testing::Test {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       project_.views.push_back(
           {static_cast<std::uint32_t>(i), test::dry_camera(), poses[i], {}, {}});
-      project_.references.push_back(i);
+      project_.references.push_back(i), project_.part.push_back(i);
     }
   }
 
@@ -58,7 +58,7 @@ TEST_F(ExistingMapsTest, TellsTheOriginOfEachMap) {
   EXPECT_EQ(maps[0].made_from, "print photometric");
   EXPECT_EQ(maps[1].origin, io::DmapOrigin::foreign);
   EXPECT_EQ(maps[2].origin, io::DmapOrigin::damaged);
-  project_.references = {0, 2};
+  project_.part = {0, 2};
   EXPECT_EQ(found()[1].origin, io::DmapOrigin::none);
 }
 

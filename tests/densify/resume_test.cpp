@@ -49,21 +49,40 @@ using Call = std::pair<std::string, std::size_t>;
 // previous stage, so that a wrong file of the previous stage changes the result.
 class Resume : public testing::Test {
  protected:
-  void run(const std::string& fingerprint = "print") {
+  void run(const std::string& fingerprint = "print", std::size_t most_stages = 3) {
     calls_.clear();
     checks_.clear();
-    std::vector<io::DmapStatus> existing(4);
-    for (const std::size_t image : images_) existing[image] = io::dmap_status(final_file(image));
-    StageRun run;
-    run.images = images_;
-    run.final_file = [&](std::size_t image) { return final_file(image); };
-    run.fingerprint = fingerprint;
-    run.existing = existing;
-    run.cached_depths = run.cached_maps = 2;
+    const auto existing = statuses(images_);
+    StageRun run = run_of(images_, existing, fingerprint);
+    run.most_stages = most_stages;
     run.check = [&](bool first_stage, const ReadMap& read_map) {
       checks_.emplace_back(first_stage, depth_of(read_map(3)));
     };
     run_stages(stages(), run);
+  }
+
+  void run_part(std::size_t stage, const std::vector<std::size_t>& images,
+                const std::string& fingerprint = "print") {
+    calls_.clear();
+    const auto existing = statuses(images);
+    axial::densify::run_part(stages(), stage, run_of(images, existing, fingerprint));
+  }
+
+  std::vector<io::DmapStatus> statuses(const std::vector<std::size_t>& images) const {
+    std::vector<io::DmapStatus> existing(4);
+    for (const std::size_t image : images) existing[image] = io::dmap_status(final_file(image));
+    return existing;
+  }
+
+  StageRun run_of(const std::vector<std::size_t>& images,
+                  const std::vector<io::DmapStatus>& existing, const std::string& fingerprint) {
+    StageRun run;
+    run.images = images;
+    run.final_file = [&](std::size_t image) { return final_file(image); };
+    run.fingerprint = fingerprint;
+    run.existing = existing;
+    run.cached_depths = run.cached_maps = 2;
+    return run;
   }
 
   // Runs until `place` and throws the call away there.
@@ -82,7 +101,8 @@ class Resume : public testing::Test {
       calls_.emplace_back(name, image);
       return flat_map(image, depth(image, previous));
     };
-    return {name, "Stage " + name, make, whole_maps};
+    const auto needs = [](std::size_t image) { return std::vector<std::size_t>{image, 0, 3}; };
+    return {name, "Stage " + name, make, whole_maps, needs};
   }
 
   std::vector<Stage> stages() {
@@ -247,6 +267,54 @@ TEST_F(Resume, AContinuedRunChecksTheLatestCompleteMaps) {
   run_until({"third", 2});
   run();
   EXPECT_EQ(checks_, (Checks{{false, 12}}));
+}
+
+TEST_F(Resume, PartsInAnyOrderGiveTheBytesOfOneRun) {
+  run();
+  const auto expected = files();
+  const std::vector<std::size_t> parts[] = {{0}, {2, 3}};
+  for (const bool reversed : {false, true}) {
+    for (const auto& [name, content] : files()) fs::remove(folder_ / name);
+    for (std::size_t stage = 0; stage < 3; ++stage)
+      for (const bool second : {reversed, !reversed}) {
+        run_part(stage, parts[second ? 1 : 0]);
+        EXPECT_EQ(calls_.size(), second ? 2u : 1u);
+      }
+    EXPECT_TRUE(fs::exists(file_of("first", 0)));
+    run();  // removes the files of the stages before the last
+    EXPECT_TRUE(calls_.empty());
+    EXPECT_EQ(files(), expected);
+  }
+}
+
+TEST_F(Resume, APartNeedsTheMapsOfThePreviousStage) {
+  run_part(0, {0, 2});
+  EXPECT_EQ(test::error_of([&] { run_part(1, {0}); }),
+            file_of("first", 3).string() +
+                ": is missing, or was made from other input or settings: first make the stage "
+                "first of all parts");
+  run_part(0, {3});
+  EXPECT_THAT(test::error_of([&] { run_part(1, {0}, "other"); }),
+              testing::HasSubstr("other input"));
+  run_part(1, {0});
+  EXPECT_EQ(calls_, (std::vector<Call>{{"second", 0}}));
+  run_part(1, {0, 3});
+  EXPECT_EQ(calls_, (std::vector<Call>{{"second", 3}}));
+}
+
+TEST_F(Resume, ARunEndsAfterTheStageThatIsAskedFor) {
+  run();
+  const auto expected = files();
+  for (const auto& [name, content] : expected) fs::remove(folder_ / name);
+  run("print", 2);
+  EXPECT_TRUE(fs::exists(file_of("second", 3)));
+  EXPECT_FALSE(fs::exists(final_file(3)));
+  EXPECT_EQ(checks_.size(), 1u);
+  run("print", 1);
+  EXPECT_TRUE(calls_.empty());
+  run();
+  EXPECT_EQ(calls_, calls_from({"third", 0}));
+  EXPECT_EQ(files(), expected);
 }
 
 TEST(PreviousMaps, KeepsDepthsAloneUnlessTheStageAsksForWholeMaps) {
