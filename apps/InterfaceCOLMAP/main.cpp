@@ -285,7 +285,8 @@ int import_model(const Options& options) {
   const io::ColmapImport import{input.folder, options.image_folder, folder / "undistorted",
                                 undistort};
   Scene scene = io::import_colmap_scene(input.model, import, console_progress("Undistorted images"),
-                                        progress_of_many("Prepared cameras"));
+                                        progress_of_many("Prepared cameras"),
+                                        progress_of_many("Checked images"));
   const io::SceneLenses lenses = io::lenses_of(scene, options.scene_file);
   // The housing is written first: a scene without its housing would be read as dry.
   write_ports(options, input, import, scene);

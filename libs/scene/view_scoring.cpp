@@ -10,6 +10,7 @@
 #include <mutex>
 #include <numeric>
 #include <span>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "base/heap_bytes.h"
@@ -128,17 +129,28 @@ void observe(const SceneImage& image, const Camera& camera, const Eigen::Vector3
   observation.cell = cell_of(projection.pixel, image.camera);
 }
 
-void observe_all(const Scene& scene, std::size_t image_index, Observations& observations) {
-  const SceneImage& image = scene.images[image_index];
-  std::visit(
-      [&](const auto& camera) {
-        for (const std::size_t i : observations.of_image(image_index)) {
-          Observation& observation = observations.all[i];
-          observe(image, camera, scene.points[observation.point].position.cast<double>(),
-                  observation);
-        }
-      },
-      make_camera<double>(image.camera));
+std::vector<CameraVariant<double>> cameras_of(const Scene& scene) {
+  std::vector<CameraVariant<double>> cameras;
+  cameras.reserve(scene.images.size());
+  for (const SceneImage& image : scene.images)
+    cameras.push_back(image.calibrated ? make_camera<double>(image.camera)
+                                       : CameraVariant<double>());
+  return cameras;
+}
+
+// Fills the observations of one point.
+void observe_point(const Scene& scene, const std::vector<CameraVariant<double>>& cameras,
+                   std::size_t point, Observations& observations) {
+  const Eigen::Vector3d position = scene.points[point].position.cast<double>();
+  for (std::size_t i = observations.point_begin[point]; i < observations.point_begin[point + 1];
+       ++i) {
+    Observation& observation = observations.all[i];
+    std::visit(
+        [&](const auto& camera) {
+          observe(scene.images[observation.image], camera, position, observation);
+        },
+        cameras[observation.image]);
+  }
 }
 
 double angle_weight(double angle, double optimal) {
@@ -187,7 +199,9 @@ void add_observation(const Observation& a, const Observation& b, double region_w
 std::vector<ViewScore> neighbours_of(const Scene& scene, std::size_t image,
                                      const Observations& observations,
                                      const ViewSelectionOptions& options) {
-  std::vector<Pair> pairs(scene.images.size());
+  // An image shares points with few of a survey's images: a list of all would make the time grow
+  // with the square of their number.
+  std::unordered_map<std::uint32_t, Pair> pairs;
   for (const std::size_t i : observations.of_image(image)) {
     const Observation& a = observations.all[i];
     if (!(a.depth > 0)) continue;
@@ -202,13 +216,13 @@ std::vector<ViewScore> neighbours_of(const Scene& scene, std::size_t image,
     }
   }
   std::vector<ViewScore> neighbours;
-  for (std::size_t b = 0; b < pairs.size(); ++b) {
-    if (pairs[b].points < std::max(1u, options.min_shared_points)) continue;
-    neighbours.push_back(pairs[b].score(static_cast<std::uint32_t>(b)));
-  }
+  for (const auto& [other, pair] : pairs)
+    if (pair.points >= std::max(1u, options.min_shared_points))
+      neighbours.push_back(pair.score(other));
   neighbours.shrink_to_fit();
-  std::stable_sort(neighbours.begin(), neighbours.end(),
-                   [](const ViewScore& x, const ViewScore& y) { return x.score > y.score; });
+  std::ranges::sort(neighbours, [](const ViewScore& x, const ViewScore& y) {
+    return x.score != y.score ? x.score > y.score : x.image < y.image;
+  });
   return neighbours;
 }
 
@@ -286,13 +300,46 @@ ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observation
   return result;
 }
 
+// Counts the work on images in thirds: projecting their points takes about half as long as
+// comparing them. Calls the sink from one thread at a time.
+class Counter {
+ public:
+  Counter(const ProgressSink& sink, std::size_t images) : sink_(sink), images_(images) {}
+
+  void add(std::size_t thirds) {
+    const std::lock_guard lock(mutex_);
+    thirds_ += thirds;
+    if (sink_) sink_(thirds_ / 3, images_);
+  }
+
+ private:
+  const ProgressSink& sink_;
+  std::size_t images_, thirds_ = 0;
+  std::mutex mutex_;
+};
+
+// Fills all observations. Observations lie in memory by point: going through them by image would
+// wait for memory at each of them.
+void observe_all(const Scene& scene, Observations& observations, Counter& counter) {
+  const std::vector<CameraVariant<double>> cameras = cameras_of(scene);
+  const std::size_t portions = scene.images.size(), points = scene.points.size();
+  parallel_for(portions, [&](std::size_t i) {
+    for (std::size_t p = points * i / portions; p < points * (i + 1) / portions; ++p)
+      observe_point(scene, cameras, p, observations);
+    counter.add(1);
+  });
+}
+
 }  // namespace
 
 ScoringMemory scoring_memory(const ScoringSize& size) {
   constexpr std::uint64_t kIndex = sizeof(std::size_t);
   const std::uint64_t lists = (size.points + size.observations + 3 * size.images) * kIndex;
+  // Each entry of a hash table is a block, and has a place in the list of buckets.
+  const std::uint64_t entry = heap_bytes(sizeof(Pair) + 2 * kIndex) + 2 * kIndex;
   const std::uint64_t working =
-      thread_count() * size.images * (sizeof(Pair) + 2 * sizeof(ViewScore));
+      size.images * std::max<std::uint64_t>(sizeof(CameraVariant<double>),
+                                            thread_count() * (entry + 2 * sizeof(ViewScore)));
   ScoringMemory memory;
   memory.work = size.observations * sizeof(Observation) + lists + working;
   memory.kept = size.images * (sizeof(ViewPreparation) + 2 * heap_bytes(1)) +
@@ -327,13 +374,13 @@ std::uint64_t count_neighbours(const Scene& scene, const ViewSelectionOptions& o
                [&](std::uint32_t image) { seen[next[image]++] = static_cast<std::uint32_t>(p); });
   std::atomic<std::uint64_t> total = 0;
   parallel_for(scene.images.size(), [&](std::size_t image) {
-    std::vector<std::uint32_t> shared(scene.images.size());
+    std::unordered_map<std::uint32_t, std::uint32_t> shared;
     for (std::size_t k = begin[image]; k < begin[image + 1]; ++k)
       each_image(scene, seen[k], [&](std::uint32_t other) { ++shared[other]; });
-    shared[image] = 0;
+    shared.erase(static_cast<std::uint32_t>(image));
     const std::uint32_t enough = std::max(1u, options.min_shared_points);
     total += static_cast<std::uint64_t>(
-        std::ranges::count_if(shared, [&](std::uint32_t points) { return points >= enough; }));
+        std::ranges::count_if(shared, [&](const auto& entry) { return entry.second >= enough; }));
   });
   return total;
 }
@@ -342,19 +389,17 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionO
                                               const ProgressSink& progress) {
   Observations observations = collect(scene);
   const std::size_t count = scene.images.size();
-  parallel_for(count, [&](std::size_t i) { observe_all(scene, i, observations); });
+  Counter counter(progress, count);
+  observe_all(scene, observations, counter);
 
   const auto calibrated =
       static_cast<std::size_t>(std::count_if(scene.images.begin(), scene.images.end(),
                                              [](const auto& image) { return image.calibrated; }));
   const std::size_t enough_views = std::min(options.min_views, calibrated > 0 ? calibrated - 1 : 0);
   std::vector<ViewPreparation> result(count);
-  std::size_t done = 0;
-  std::mutex reporting;
   parallel_for(count, [&](std::size_t i) {
     result[i] = prepare_image(scene, i, observations, enough_views, options);
-    const std::lock_guard lock(reporting);
-    if (progress) progress(++done, count);
+    counter.add(2);
   });
   return result;
 }

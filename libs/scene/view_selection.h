@@ -79,7 +79,7 @@ struct ViewPreparation {
 // The function ignores uncalibrated images, points that are not finite, and observations that the
 // camera cannot have made (points behind the camera or outside the port's field). A repeated
 // observation counts once. Let n be the number of views of a point. The time grows with the sum
-// of n^2 over all points and with the square of the number of images.
+// of n^2 over all points and with the number of images.
 std::vector<ViewPreparation> score_neighbours(Scene& scene,
                                               const ViewSelectionOptions& options = {},
                                               const ProgressSink& progress = {});

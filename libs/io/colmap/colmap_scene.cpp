@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <set>
 #include <unordered_map>
 
@@ -169,8 +170,11 @@ void import_points(const ColmapModel& model, const ColmapImport& import, Scene& 
   for (std::size_t i = 0; i < model.images.size(); ++i)
     index_of.emplace(model.images[i].id, static_cast<std::uint32_t>(i));
   std::size_t repetitions = 0;
+  scene.points.reserve(model.points.size());
+  scene.point_colors.reserve(model.points.size());
   for (const ColmapPoint3D& point : model.points) {
     SparsePoint sparse;
+    sparse.views.reserve(point.track.size());
     sparse.position = point.position.cast<float>();
     for (const ColmapTrackElement& element : point.track)
       sparse.views.push_back({index_of.at(element.image), 0.0f});
@@ -219,7 +223,8 @@ void check_ports(const Housing& resolved, const Scene& scene,
 }  // namespace
 
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
-                          const ProgressSink& undistorting, const ProgressSink& preparing_cameras) {
+                          const ProgressSink& undistorting, const ProgressSink& preparing_cameras,
+                          const ProgressSink& checking_images) {
   if (model.images.size() < 2)
     fail("{}: the model has {} registered images, at least 2 are needed",
          import.model_folder.string(), model.images.size());
@@ -246,12 +251,16 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
       all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
   FirstError error;
   std::vector<char> fits_jpeg(scene.images.size());
+  std::mutex mutex;
+  std::size_t checked = 0;
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
     error.run(i, [&] {
       fits_jpeg[i] = check_image(image.path, image.camera);
       check_mask(masks[i], image.camera);
     });
+    const std::lock_guard lock(mutex);
+    if (checking_images) checking_images(++checked, scene.images.size());
   });
   error.rethrow();
   if (!all_straight) undistort(model, import, resampled, masks, fits_jpeg, undistorting, scene);

@@ -38,7 +38,8 @@ struct ColmapImport {
 // this reason. Ports of the cameras are not used.
 //
 // `undistorting` gets the number of images undistorted so far, `preparing_cameras` the number of
-// cameras for which a rule has been chosen.
+// cameras for which a rule has been chosen, and `checking_images` the number of images whose header
+// was compared with the camera.
 //
 // Memory: one image for each thread is undistorted at a time. The undistortion map of a camera
 // stays in memory from the first to the last image of the camera.
@@ -49,7 +50,8 @@ struct ColmapImport {
 // replace a photograph.
 Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
                           const ProgressSink& undistorting = {},
-                          const ProgressSink& preparing_cameras = {});
+                          const ProgressSink& preparing_cameras = {},
+                          const ProgressSink& checking_images = {});
 
 // Returns a housing with the ports of `cameras` (ColmapCamera::port), by camera id. The port of the
 // camera with the id 1 is named "camera_1", and so on. Cameras without a port get the default port

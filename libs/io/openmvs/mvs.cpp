@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "io/images/image.h"
+#include "io/openmvs/mvs_counts.h"
 #include "private/openmvs/mvs_format.h"
 #include "private/openmvs/rotation.h"
 
@@ -316,7 +317,7 @@ void write_mvs(const fs::path& path, const Scene& scene, const fs::path& working
   if (scene.region)
     mvs.box = {scene.region->rotation, scene.region->centre - scene.region->half_extent,
                scene.region->centre + scene.region->half_extent};
-  write_atomically(path, format_mvs(mvs));
+  write_atomically(path, format_mvs(mvs, count_scene(scene).file_bytes));
 }
 
 }  // namespace axial::io

@@ -180,10 +180,9 @@ std::uint64_t MvsCounts::reading_bytes() const {
   return scene_bytes() + records + std::max(file_bytes, 2 * images * sizeof(SceneImage));
 }
 
-// Counts the records of the scene and the bytes of the file, which exist twice while their buffer
-// grows.
+// Counts the records of the scene and the bytes of the file.
 std::uint64_t MvsCounts::writing_bytes() const {
-  return scene_bytes() + 3 * file_bytes;
+  return scene_bytes() + file_bytes;
 }
 
 }  // namespace axial::io

@@ -241,8 +241,9 @@ MvsFile parse_mvs(std::string_view bytes, const std::string& file) {
   return read_body(in, version);
 }
 
-std::string format_mvs(const MvsFile& mvs) {
+std::string format_mvs(const MvsFile& mvs, std::size_t room) {
   ByteWriter out;
+  out.reserve(room);
   out.text("MVSI");
   out.write(kMvsVersion);
   out.write(std::uint32_t{0});
@@ -262,7 +263,7 @@ std::string format_mvs(const MvsFile& mvs) {
   write_matrix(out, mvs.box.rotation);
   write_vector(out, mvs.box.min);
   write_vector(out, mvs.box.max);
-  return out.bytes();
+  return out.take();
 }
 
 }  // namespace axial::io
