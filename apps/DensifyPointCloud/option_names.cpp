@@ -10,6 +10,7 @@ constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
                                     {"bit_depth", "--bit-depth"},
                                     {"camera is flat_port", "--camera-model is flatport"},
                                     {"fusion.min_views", "--number-views-fuse"},
+                                    {"fusion_tiles", "--fusion-tiles"},
                                     {"housing", "--housing"},
                                     {"ignore_mask_label", "--ignore-mask-label"},
                                     {"make_maps false", "--fusion-mode -1"},
@@ -21,6 +22,7 @@ constexpr SettingName kOptions[] = {{"allow_missing", "--allow-missing"},
                                     {"pinhole_export", "--pinhole-export"},
                                     {"refractive", "--refractive"},
                                     {"report", "--report-file"},
+                                    {"tile", "--tile"},
                                     {"working_folder", "--working-folder"}};
 
 }  // namespace

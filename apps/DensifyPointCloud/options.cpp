@@ -11,6 +11,7 @@
 #include "dense_config.h"
 #include "io/images/bit_depth.h"
 #include "option_names.h"
+#include "tile_option.h"
 #include "without_effect.h"
 
 namespace axial::apps {
@@ -22,7 +23,7 @@ namespace {
 struct Raw {
   std::string input, output, housing, mask_path;
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
-  std::string report;
+  std::string report, tile;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -105,7 +106,13 @@ void declare_fusion(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("roi-border", &settings.roi_border,
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
       .add_with_default("crop-to-roi", &settings.crop_to_roi,
-                        "crop the cloud to the region of interest");
+                        "crop the cloud to the region of interest")
+      .add_with_default("fusion-tiles", &settings.fusion_tiles,
+                        "fuse in this number of tiles, one after the other; tiles that exist "
+                        "already (see --tile) are used")
+      .add("tile", &raw.tile,
+           "I/N: make only tile I of N from complete depth maps, write it to "
+           "<output>.tileI-N.ply and quit; a run with --fusion-tiles N joins the tiles");
 }
 
 void declare_points(OptionList& list, Raw& raw, Settings& settings) {
@@ -271,6 +278,7 @@ void convert(const Raw& raw, Options& options) {
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
   settings.name_of = option_of;
+  take_tiles(raw.tile, options);
 }
 
 ProgramOptions described_program() {

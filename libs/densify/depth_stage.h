@@ -3,6 +3,8 @@
 // stopped continues where it ended.
 #pragma once
 
+#include <string>
+
 #include "densify/existing_maps.h"
 #include "densify/image_store.h"
 #include "densify/memory_plan.h"
@@ -15,6 +17,10 @@ namespace axial::densify {
 // Project::views. The file need not exist.
 std::filesystem::path depth_map_path(const Project& project, const Settings& settings,
                                      std::size_t image);
+
+// The text `made_from` (io/openmvs/dmap.h) of the final depth maps that a run with these settings
+// makes.
+std::string final_made_from(const Project& project, const Settings& settings);
 
 // Makes the final depth map of every reference image (Project::references) and writes it to
 // depth_map_path(). The stages are, in this order: photometric matching,
