@@ -14,7 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "densify/floor_test.h"
+#include "densify/floor_fixture.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
 #include "support/error_of.h"

@@ -11,7 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "densify/densify.h"
-#include "densify/floor_test.h"
+#include "densify/floor_fixture.h"
 #include "densify/stage_bytes.h"
 #include "densify/tile_files.h"
 #include "io/ply/ply.h"
