@@ -201,7 +201,7 @@ TEST_P(FuseTiles, AMapSeesTheBoxesThatHoldItsPoints) {
   const DepthMap map = noisy_fixture(model()).maps[2];
   const std::vector<Eigen::Vector3d> points = points_of(map);
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> uniform(-0.8, 0.8), size(0.001, 0.2);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5), size(0.001, 0.2);
   std::vector<Tile> boxes(300);
   const Eigen::Matrix3d rotation = random_rotation(random);
   for (std::size_t i = 0; i < boxes.size(); ++i) {  // every second one near the surface
