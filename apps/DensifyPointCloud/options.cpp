@@ -6,13 +6,13 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/not_built.h"
-#include "base/parse_number.h"
-#include "base/split.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
+#include "fraction.h"
 #include "io/images/bit_depth.h"
 #include "option_names.h"
+#include "tile_option.h"
 #include "without_effect.h"
 
 namespace axial::apps {
@@ -24,7 +24,7 @@ namespace {
 struct Raw {
   std::string input, output, housing, mask_path;
   std::string point_cloud, neighbour_lists, neighbour_lists_output, dense_config, pinhole_export;
-  std::string report, part, plan;
+  std::string report, part, plan, tile;
   std::string camera_model = "auto", projection = "exact", warp = "affine", precision = "float";
   int fusion_mode = 0, estimate_roi = 2, tower_mode = 0;
 };
@@ -122,7 +122,13 @@ void declare_fusion(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("roi-border", &settings.roi_border,
                         "above 0 multiplies the region's size, below 0 adds to it [scene units]")
       .add_with_default("crop-to-roi", &settings.crop_to_roi,
-                        "crop the cloud to the region of interest");
+                        "crop the cloud to the region of interest")
+      .add_with_default("fusion-tiles", &settings.fusion_tiles,
+                        "fuse in this number of tiles, one after the other; tiles that exist "
+                        "already (see --tile) are used")
+      .add("tile", &raw.tile,
+           "I/N: make only tile I of N from complete depth maps, write it to "
+           "<output>.tileI-N.ply and quit; a run with --fusion-tiles N joins the tiles");
 }
 
 void declare_points(OptionList& list, Raw& raw, Settings& settings) {
@@ -281,13 +287,10 @@ void check_purpose(const Settings& settings) {
 
 void take_part(const std::string& part, Settings& settings) {
   if (part.empty()) return;
-  const std::vector<std::string_view> words = split(part, '/');
-  const auto number = [](std::string_view word) {
-    return parse_number<std::size_t>(word).value_or(0);
-  };
-  if (words.size() == 2) settings.part = number(words[0]), settings.parts = number(words[1]);
-  if (settings.part == 0 || settings.part > settings.parts || settings.parts > 1000000)
-    fail("--part {}: must be I/N with I from 1 to N, and N up to 1000000", part);
+  constexpr std::size_t kMostParts = 1000000;
+  const Fraction fraction = parse_fraction("part", part, kMostParts);
+  settings.part = fraction.part;
+  settings.parts = fraction.count;
   if (settings.until.empty()) fail("--part {}: needs --until", part);
 }
 
@@ -313,6 +316,7 @@ void convert(const Raw& raw, Options& options) {
   settings.pictures = pictures_of(common.verbosity);
   settings.max_threads = common.max_threads;
   settings.name_of = option_of;
+  take_tiles(raw.tile, options);
 }
 
 ProgramOptions described_program() {

@@ -71,6 +71,8 @@ void warn_of_options_without_effect(const Options& options) {
   if (!settings.make_maps)
     for (const Names& names : {kMatching, kMapSize})
       warn_of(options, names, "with --fusion-mode -1, which uses depth maps unchanged");
+  if (settings.tile > 0)
+    warn_of(options, {"remove-dmaps", "report-file"}, "with --tile, which makes no whole cloud");
   if (!settings.fuse)
     warn_of(options, kFusion, "with --fusion-mode 1, which makes only depth maps");
 }

@@ -28,12 +28,11 @@ void keep_views(PointCloud& cloud, const std::vector<std::size_t>& kept) {
   if (!cloud.view_weights.empty()) cloud.view_weights.resize(end);
 }
 
-}  // namespace
-
-std::size_t crop(PointCloud& cloud, const OrientedBox& region) {
+template <class Box>
+std::size_t keep_inside(PointCloud& cloud, const Box& box) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (region.contains(cloud.positions[i].cast<double>())) kept.push_back(i);
+    if (box.contains(cloud.positions[i].cast<double>())) kept.push_back(i);
   }
   const std::size_t removed = cloud.size() - kept.size();
   keep_views(cloud, kept);
@@ -43,6 +42,16 @@ std::size_t crop(PointCloud& cloud, const OrientedBox& region) {
   keep(cloud.errors, kept);
   keep(cloud.confidences, kept);
   return removed;
+}
+
+}  // namespace
+
+std::size_t crop(PointCloud& cloud, const OrientedBox& region) {
+  return keep_inside(cloud, region);
+}
+
+std::size_t crop(PointCloud& cloud, const Tile& tile) {
+  return keep_inside(cloud, tile);
 }
 
 }  // namespace axial::cloud

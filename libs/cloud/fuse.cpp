@@ -3,14 +3,20 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/error.h"
+#include "cloud/crop.h"
 #include "cloud/fusion_map.h"
 #include "cloud/map_store.h"
 #include "cloud/view_fusion.h"
 
 namespace axial::cloud {
 namespace {
+
+bool is_processed(const std::optional<FusionPart>& part, std::size_t view) {
+  return !part || part->seen_by.empty() || part->seen_by[view];
+}
 
 // The data of a view that are kept when its map is evicted.
 struct Slot {
@@ -92,6 +98,7 @@ void Fusion::make_slots(const Scene& scene, std::span<const FusionView> views) {
 
 void Fusion::make_order(std::span<const FusionView> views) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!is_processed(options_.part, i)) continue;
     if (slots_[i].neighbours.size() + 1 >= fewest_) order_.push_back(i);
   }
   std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
@@ -135,9 +142,13 @@ void Fusion::fuse_view(std::size_t reference, const MapStore& store, const Cloud
   ViewFusion fusion(views);
   for (std::size_t pixel = 0; pixel < store.map(reference).pixels();) {
     pixel = fusion.collect(pixel);
+    if (options_.part) fusion.keep_collected_in(options_.part->reach);
     fusion.compare(options_);
     fusion.accept(min_views_);
-    if (fusion.size() > 0) sink(fusion.points(options_));
+    if (fusion.size() == 0) continue;
+    PointCloud points = fusion.points(options_);
+    if (options_.part) crop(points, options_.part->tile);
+    if (points.size() > 0) sink(std::move(points));
   }
 }
 
@@ -173,6 +184,19 @@ PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
       scene, views, providers, options, [&](const PointCloud& portion) { append(cloud, portion); },
       progress);
   return cloud;
+}
+
+std::size_t views_needed(std::span<const FusionView> views, const FusionPart& part) {
+  std::unordered_set<std::uint32_t> with_view, needed;
+  for (const FusionView& view : views) with_view.insert(view.image);
+  const std::optional<FusionPart> of_part(part);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!is_processed(of_part, i)) continue;
+    needed.insert(views[i].image);
+    for (const std::uint32_t neighbour : views[i].neighbours)
+      if (with_view.contains(neighbour)) needed.insert(neighbour);
+  }
+  return needed.size();
 }
 
 std::uint64_t bytes_needed(const FusionSize& size) {

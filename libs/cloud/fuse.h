@@ -7,10 +7,12 @@
 #include <limits>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/progress.h"
+#include "cloud/tiles.h"
 #include "scene/depth_map.h"
 #include "scene/point_cloud.h"
 #include "scene/scene.h"
@@ -42,6 +44,16 @@ struct FusionProviders {
   std::function<cv::Mat3b(std::size_t image)> load_color;
 };
 
+// A part of space to which fuse() is restricted (see fuse()).
+struct FusionPart {
+  Tile tile;   // the points whose positions lie in this box are the result
+  Tile reach;  // only pixels whose points lie in this box are processed; larger than `tile`
+  // One entry for each FusionView: false if its map has no point in `reach`. Such a view is not
+  // processed, and its map is loaded only as a neighbour. Empty: all views are processed. The cloud
+  // does not depend on entries that are true without need.
+  std::vector<bool> seen_by;
+};
+
 // Settings of fuse(), whose comment explains the tests.
 struct FuseOptions {
   // The number of images that must agree on a point. The image whose pixel gives the point counts
@@ -57,7 +69,8 @@ struct FuseOptions {
   double depth_threshold = 0.005;
   double normal_threshold = 40.0 * std::numbers::pi / 180.0;  // largest angle that agrees [rad]
   bool normals = true;                                        // fill PointCloud::normals
-  bool errors = false;  // fill PointCloud::errors and confidences (point_error.h)
+  bool errors = false;             // fill PointCloud::errors and confidences (point_error.h)
+  std::optional<FusionPart> part;  // empty: all of space
 
   // Limits of memory (see bytes_needed()). The cloud does not depend on them.
   // max_maps: the number of maps in memory at the same time. A view and its neighbours are always
@@ -102,6 +115,12 @@ using CloudSink = std::function<void(PointCloud portion)>;
 //   weights. After this, the supports count as used. The pixels of neighbours that see through the
 //   point are discarded, which means that they count as used.
 //
+// With FuseOptions::part, pixels whose points lie outside `reach` are not processed, but they can
+// still support the points of other pixels. Of the points, those in `tile` are passed to `sink`.
+// Whether a pixel is still unused depends on the points before it, which are near. So the points in
+// a tile are those of the whole cloud, except for few differences near its borders. They become
+// fewer the farther `reach` extends beyond `tile`.
+//
 // So each pixel of a depth map supports at most one point. Positions, weights and views (sorted by
 // image) are always filled. A map without normals gets normals from its depths
 // (estimate_map_normals). A pixel without a normal passes every normal test. The cloud is identical
@@ -118,10 +137,14 @@ PointCloud fuse(const Scene& scene, std::span<const FusionView> views,
                 const FusionProviders& providers, const FuseOptions& options = {},
                 const ProgressSink& progress = {});
 
+// The number of views whose pixels fuse() marks as used when it fuses the part: the processed views
+// and their neighbours. FusionSize::views of the part. Precondition: the images of `views` differ.
+std::size_t views_needed(std::span<const FusionView> views, const FusionPart& part);
+
 // The sizes on which the memory of fuse() depends.
 struct FusionSize {
   std::uint64_t pixels = 0;  // number of pixels of the largest map
-  std::uint64_t views = 0;   // number of FusionViews
+  std::uint64_t views = 0;   // number of FusionViews; of a part: views_needed()
   std::uint64_t maps = 0;    // number of maps in memory at the same time (FuseOptions::max_maps)
   bool colors = false;       // whether FusionProviders::load_color is given
 };

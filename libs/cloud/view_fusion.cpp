@@ -78,6 +78,18 @@ std::size_t ViewFusion::collect(std::size_t pixel) {
   return pixel;
 }
 
+void ViewFusion::keep_collected_in(const Tile& box) {
+  auto& [pixels, points] = where_[0];
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!box.contains(points[i].cast<double>())) continue;
+    pixels[kept] = pixels[i];
+    points[kept++] = points[i];
+  }
+  pixels.resize(kept);
+  points.resize(kept);
+}
+
 void ViewFusion::compare(const FuseOptions& options) {
   if (options.errors && cameras_.empty())
     for (const WorkingView& view : views_) cameras_.emplace_back(view.map->camera, view.map->pose);

@@ -7,6 +7,7 @@
 
 #include "cloud/fusion_map.h"
 #include "cloud/point_error.h"
+#include "cloud/tiles.h"
 #include "cloud/two_views.h"
 
 namespace axial::cloud {
@@ -30,6 +31,9 @@ class ViewFusion {
   // from the pixel with the number `pixel` (y * width + x) on. Returns the number of the pixel at
   // which the next step begins. If no pixel is left, this is the number of pixels of the view.
   std::size_t collect(std::size_t pixel);
+
+  // Drops the collected pixels whose points lie outside `box`. To be called after collect().
+  void keep_collected_in(const Tile& box);
 
   // Compares the collected pixels with the maps of all neighbours. Finds the collected pixels for
   // which two views are enough (two_views.h).

@@ -16,6 +16,8 @@
 #include "densify/pinhole_export.h"
 #include "densify/pinhole_folder.h"
 #include "densify/project.h"
+#include "densify/tile_files.h"
+#include "densify/tile_stage.h"
 #include "densify/work_plan.h"
 #include "io/openmvs/mvs.h"
 #include "io/ply/ply.h"
@@ -45,7 +47,9 @@ Report write_lists(const Settings& settings, const SceneObserver& observer) {
 
 ExistingMaps checked_maps(Project& project, const Settings& settings) {
   ExistingMaps existing = find_existing_maps(project, settings);
-  if (settings.make_maps)
+  if (settings.make_maps && settings.tile > 0)
+    require_final_maps(project, settings, existing);
+  else if (settings.make_maps)
     check_overwriting(project, settings, existing);
   else
     keep_images_with_maps(project, settings, existing);
@@ -109,12 +113,23 @@ Report write_plan(const Settings& settings, const SceneObserver& observer) {
   return {Result::plan, {}};
 }
 
+// Depth maps and images were checked when the maps were made.
+Report make_tile(const Project& project, const Settings& settings, const MemoryPlan& plan,
+                 const ExistingMaps& existing) {
+  map_large_blocks();
+  ImageStore images(project, settings, plan.cached_images);
+  const CloudCounts counts = write_tile({project, settings, plan, existing, images});
+  return {Result::tile, tile_file(settings, settings.tile), counts.points,
+          project.references.size(), true};
+}
+
 Report reconstruct(const Settings& settings, const SceneObserver& observer) {
   Project project = load_project(settings, observer);
   const ExistingMaps existing = checked_maps(project, settings);
   const MemoryPlan plan = plan_memory(project, settings);
   check_outputs(project, settings);
   check_pinhole_export(project, settings);
+  if (settings.tile > 0) return make_tile(project, settings, plan, existing);
 
   const fs::path ply = fs::path(settings.output).replace_extension(".ply");
   const std::size_t points = make_cloud(project, settings, plan, existing, ply);

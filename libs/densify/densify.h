@@ -14,6 +14,7 @@ namespace axial::densify {
 enum class Result {
   dense_cloud,   // depth maps, and the cloud fused from them
   sparse_cloud,  // depth maps; the cloud consists of the scene's points (Settings::fuse is false)
+  tile,          // one tile of the cloud (Settings::tile)
   point_export,  // see cloud_exports.h
   neighbour_lists,  // see neighbour_lists.h
   stage,            // depth maps of the stage Settings::until, of all images or of a part
@@ -42,9 +43,13 @@ struct Report {
 //   number of threads and any max_memory.
 // * Inputs are never changed. An output file appears under its name only when it is complete.
 // * Memory stays below max_memory, and does not grow with the number of images, with three
-//   exceptions: the scene, one bit per pixel in fusion, and a cloud whose colours or normals are
-//   estimated from the whole cloud (estimate_colors or estimate_normals is 1). Such a cloud is
-//   kept in memory in addition to max_memory.
+//   exceptions: the scene, one bit per pixel in fusion (of the views of a tile), and a cloud whose
+//   colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is
+//   1). Such a cloud is kept in memory in addition to max_memory.
+// * With Settings::tile the run makes only one tile of the cloud, and with Settings::fusion_tiles
+// the
+//   cloud from all tiles. A tile needs complete depth maps. Its points are those of the cloud in
+//   one piece, except for few near the borders of the tile (fusion_tiles.h).
 // * Progress, results and warnings are logged (base/log.h). `observer`, unless it is empty, is
 //   called once, before views are selected. It is not called for a point export.
 // * Call densify() before other threads start, and make only one run at a time. The reason: the

@@ -172,6 +172,11 @@ fs::path depth_map_path(const Project& project, const Settings& settings, std::s
   return settings.working_folder / fmt::format("depth{:04}.dmap", project.views[image].id);
 }
 
+std::string final_made_from(const Project& project, const Settings& settings) {
+  ImageStore unused(project, settings, 0);
+  return project.fingerprint + " " + MapMaker(project, settings, unused).stages().back().name;
+}
+
 void make_depth_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
                      const ExistingMaps& existing, ImageStore& images) {
   const MapMaker maker(project, settings, images);

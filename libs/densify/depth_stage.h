@@ -28,6 +28,10 @@ std::size_t stages_to_make(const Settings& settings);
 std::filesystem::path depth_map_path(const Project& project, const Settings& settings,
                                      std::size_t image);
 
+// The text `made_from` (io/openmvs/dmap.h) of the final depth maps that a run with these settings
+// makes.
+std::string final_made_from(const Project& project, const Settings& settings);
+
 // Makes the final depth map of every reference image (Project::references) and writes it to
 // depth_map_path(). If Settings::until is given, ends after this stage. If Settings::parts is above
 // 0, makes only the maps of this stage, and only of the images Project::part (run_part() in

@@ -64,7 +64,8 @@ std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
 }  // namespace
 
 std::vector<std::string> contents_of_views(const Project& project, const Settings& settings) {
-  const bool uses_kept = !settings.until.empty() || !settings.plan.empty();
+  const bool is_part = settings.parts > 0 || settings.tile > 0;
+  const bool uses_kept = is_part || !settings.until.empty() || !settings.plan.empty();
   const fs::path file = settings.working_folder / kFile;
   const nlohmann::json kept = uses_kept ? kept_contents(file) : nlohmann::json::object();
   std::vector<std::string> prints(project.views.size()), states(project.views.size());
@@ -80,7 +81,7 @@ std::vector<std::string> contents_of_views(const Project& project, const Setting
     const std::lock_guard lock(mutex);
     progress(++done, prints.size());
   });
-  if (!uses_kept || settings.parts > 0) return prints;
+  if (!uses_kept || is_part) return prints;
   nlohmann::json contents = nlohmann::json::object();
   for (std::size_t i = 0; i < prints.size(); ++i)
     if (!states[i].empty()) contents[states[i]] = prints[i];

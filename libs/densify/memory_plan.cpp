@@ -70,6 +70,8 @@ MemoryPlan share_out(const StageBytes& bytes, const ListLengths& lists, std::uin
 
   const auto fuse = [&](std::size_t loads) { return fusing(bytes, lists.fused, loads); };
   plan.fusion_loads = most(std::min(threads, lists.fused), room - kept, fuse);
+  plan.least_fused_maps = lists.fused;
+  plan.marked_views = lists.marked;
   plan.exports = most(threads, room, [&](std::size_t k) { return k * bytes.exported; });
   plan.fused_maps = enlarged(lists.fused, bytes.fused, room - kept - fuse(plan.fusion_loads));
   return plan;

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/same_file.h"
 #include "densify/depth_stage.h"
+#include "densify/tile_files.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/housing.h"
 
@@ -19,7 +20,10 @@ fs::path cloud_file(const Settings& settings) {
 
 // The housing is not among these files: it is not written if it is the file that was read.
 std::vector<fs::path> cloud_outputs(const Settings& settings) {
-  return {settings.output, cloud_file(settings), io::lenses_beside(settings.output)};
+  std::vector<fs::path> files = tile_outputs(settings);
+  files.insert(files.end(),
+               {settings.output, cloud_file(settings), io::lenses_beside(settings.output)});
+  return files;
 }
 
 std::vector<fs::path> depth_outputs(const Project& project, const Settings& settings) {

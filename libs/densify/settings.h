@@ -25,6 +25,8 @@ enum class CameraChoice { automatic, pinhole, flat_port };
 // Selects the depth maps of which pictures are written. The pictures (.png) lie beside the maps.
 enum class Pictures { none, final_maps, maps_of_every_stage };
 
+inline constexpr std::size_t kMostTiles = 1000;
+
 // Bits of Settings::postprocess. Each bit switches on a filter for depth maps (depth/filters.h):
 // remove_speckles(), fill_gaps() and adjust_with_neighbours(), in this order.
 inline constexpr unsigned kSpeckles = 1, kGaps = 2, kAdjust = 4;
@@ -76,8 +78,15 @@ struct Settings {
   // densify() ignores the fields `normals`, max_maps and max_loads. estimate_normals replaces
   // `normals`, and the memory plan replaces the other two.
   cloud::FuseOptions fusion;
-  bool make_maps = true;          // false: existing maps in the working folder are used unchanged
-  bool fuse = true;               // false: the sparse points become the cloud
+  bool make_maps = true;  // false: existing maps in the working folder are used unchanged
+  bool fuse = true;       // false: the sparse points become the cloud
+  // The number of tiles in which the maps are fused, one after the other (fusion_tiles.h), from 1
+  // to kMostTiles. 1: the maps are fused in one piece. Precondition: 1 and no `tile`, or `fuse` is
+  // true and neither estimate_colors nor estimate_normals is 1, because 1 needs the whole cloud.
+  std::size_t fusion_tiles = 1;
+  // From 1 to fusion_tiles: the run only makes this tile, from depth maps that are complete. 0: all
+  // tiles and the cloud. Precondition: 0, or the run makes no export.
+  std::size_t tile = 0;
   bool overwrite_dmaps = false;   // true: maps of other programs may be overwritten
   unsigned estimate_colors = 2;   // 0: no, 1: from the nearest view, 2: from all views of a point
   unsigned estimate_normals = 2;  // 0: no, 1: from the cloud, 2: from the depth maps

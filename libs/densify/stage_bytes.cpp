@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "cloud/fuse.h"
+#include "densify/fusion_tiles.h"
 #include "densify/image_store.h"
 #include "densify/pinhole_export.h"
 #include "depth/filters.h"
@@ -23,6 +24,9 @@ ListLengths longest_lists(const Project& project, const Settings& settings) {
     lists.fused = std::max(lists.fused, 1 + project.neighbours[image].size());
   }
   lists.fused = std::min(lists.fused, lists.references);
+  lists.marked = settings.fuse && settings.fusion_tiles > 1
+                     ? most_views_of_a_tile(project, settings)
+                     : lists.references;
   if (settings.postprocess & kAdjust)
     lists.adjusted = std::min(lists.fused, 1 + depth::AdjustOptions().max_neighbours);
   return lists;
@@ -53,7 +57,7 @@ StageBytes bytes_of_stages(const Project& project, const Settings& settings,
   if (lists.adjusted > 0)
     bytes.adjust = depth::bytes_needed(depth::AdjustSize{pixels, lists.adjusted - 1});
   bytes.fused = cloud::bytes_needed({.pixels = pixels, .maps = 1, .colors = colors});
-  bytes.taken = cloud::bytes_needed({.pixels = pixels, .views = lists.references});
+  bytes.taken = cloud::bytes_needed({.pixels = pixels, .views = lists.marked});
   return bytes;
 }
 

@@ -10,13 +10,16 @@
 
 namespace axial::densify {
 
-// Numbers of images. `references`: the number of images that get depth maps. Each other number is
-// the largest number of images that a stage needs for one reference, including the reference.
+// Numbers of images. `references`: the number of images that get depth maps. Each of the next three
+// is the largest number of images that a stage needs for one reference, including the reference.
 struct ListLengths {
   std::size_t references = 0;
   std::size_t matched = 0;   // the reference and its source views
   std::size_t adjusted = 0;  // the reference and its neighbours in the adjust filter; 0: no filter
   std::size_t fused = 0;     // the reference and its neighbours in fusion
+  // The views whose pixels fusion marks as used: all references, or those that a tile needs
+  // (most_views_of_a_tile() in fusion_tiles.h).
+  std::size_t marked = 0;
 };
 
 // Returns the numbers for the images and filters of a run. Precondition: views are selected, and
@@ -35,7 +38,7 @@ struct StageBytes {
   std::uint64_t match = 0;        // matching of one reference, with the resulting map
   std::uint64_t adjust = 0;       // the adjust filter of one reference; 0: no filter
   std::uint64_t fused = 0;        // one map in fusion, with its image if the cloud has colours
-  std::uint64_t taken = 0;        // fusion: one bit per pixel of all references
+  std::uint64_t taken = 0;        // fusion: one bit per pixel of ListLengths::marked views
   std::uint64_t exported = 0;     // pinhole export: while one image is resampled; 0: no export
 };
 

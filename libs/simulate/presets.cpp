@@ -175,8 +175,8 @@ void check_submerged(const Preset& preset, const TriangleMesh& mesh) {
 }
 
 Preset make_preset(const PresetOptions& options) {
-  if (options.views < 0 || options.views > 200)
-    fail("number of views is {}: must be between 0 (the preset's own) and 200", options.views);
+  if (options.views < 0 || options.views > 400)
+    fail("number of views is {}: must be between 0 (the preset's own) and 400", options.views);
   check_factor("scale", options.scale);
   check_factor("relief", options.relief);
   check_factor("coarseness", options.coarseness);

@@ -19,6 +19,7 @@ import quality  # noqa: E402, F401
 import meshes  # noqa: E402, F401
 import whole_programs  # noqa: E402, F401
 import memory  # noqa: E402, F401
+import tiles  # noqa: E402, F401
 
 
 def source_state():

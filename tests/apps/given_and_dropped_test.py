@@ -191,6 +191,7 @@ class NoEffect(ProgramTest):
                 (("--fusion-mode", "1", "--estimate-colors", "1", "--remove-dmaps", "1"),
                  "--estimate-colors, --remove-dmaps"),
                 (("--fusion-mode", "-1", "--iters", "4"), "--iters"),
+                (("--tile", "1/2", "--remove-dmaps", "1"), "--remove-dmaps"),
                 (("--fusion-mode", "-1", "--number-views", "2"),
                  "--resolution-level, --min-resolution, --number-views"),
                 (("--projection", "line-search"), "--projection"),

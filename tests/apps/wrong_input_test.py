@@ -330,6 +330,43 @@ class Densify(ProgramTest):
         self.refuses_scene("--number-views-fuse -1", "--number-views-fuse", "-1")
         self.refuses_scene("housing file not found", "--refractive", "1")
 
+    def test_tiles(self):
+        for tiles in ("0", "-1", "1001", "x"):
+            self.refuses_scene("fusion-tiles", "--fusion-tiles", tiles)
+        for tile in ("x", "2", "/", "1/", "/4", "1/4/5", "a/4", "-1/4", "0/4", "3/2", "1/0",
+                     "1/1001", " 1/2"):
+            self.refuses_scene(f"--tile {tile}: ", "--tile", tile)
+        self.refuses_scene("--tile 2/4: contradicts --fusion-tiles 3", "--tile", "2/4",
+                           "--fusion-tiles", "3")
+        for tiles in (("--tile", "2/4"), ("--fusion-tiles", "4")):
+            said = " ".join(tiles)
+            self.refuses_scene(f"{said}: needs fusion", *tiles, "--fusion-mode", "1")
+            self.refuses_scene(f"{said}: needs fusion", *tiles, "--estimate-scale", "1")
+            for option in ("--estimate-colors", "--estimate-normals"):
+                self.refuses_scene(f"{said}: contradicts {option} 1", *tiles, option, "1")
+        self.refuses_scene("--tile 1/2: contradicts --pinhole-export", "--tile", "1/2",
+                           "--pinhole-export", self.path("pinholes"))
+        self.refuses_scene("depth map does not exist, and --tile makes no depth maps", "--tile",
+                           "1/2")
+
+    def test_tiles_of_several_runs_are_joined(self):
+        here = (*DENSIFY, "-i", self.scene, "-w", self.path("work"), "--resolution-level", "0",
+                "--number-views-fuse", "2")
+        cloud = self.path("work", "scene_dense.ply")
+        self.succeeds(*here, "--fusion-tiles", "3")
+        expected = read(cloud)
+        self.assertGreater(cloud_size(expected), 100)
+        os.remove(cloud)
+        before = files_below(self.folder)
+        for tile in ("3/3", "1/3", "2/3"):
+            self.succeeds(*here, "--tile", tile)
+        self.assertEqual(files_below(self.folder) - before,
+                         {f"work/scene_dense.tile{i}-3.ply{end}" for i in (1, 2, 3)
+                          for end in ("", ".json")})
+        self.succeeds(*here, "--fusion-tiles", "3")
+        self.assertEqual(read(cloud), expected)
+        self.assertEqual(files_below(self.folder) - before, {"work/scene_dense.ply"})
+
 
 class OtherPrograms(ProgramTest):
     def test_simulator(self):

@@ -173,6 +173,41 @@ TEST_F(PlyTest, NamesTheCloudThatCannotBeStreamed) {
   EXPECT_THAT(error_of([&] { writer.add(three_points()); }), HasSubstr("0 normals for 3 points"));
 }
 
+TEST_F(PlyTest, AppendsTheBytesOfOtherClouds) {
+  const fs::path part = folder_ / "part.ply", empty = folder_ / "empty.ply";
+  const PlyPlacement world{{{534000, 3378500, -12.0625}}, true};
+  for (const int portions : {0, 2}) {
+    CloudWriter writer(portions == 0 ? empty : part, kWithColorsAndViews, world);
+    for (int i = 0; i < portions; ++i) writer.add(three_points());
+    writer.finish();
+  }
+  CloudWriter expected(file_, kWithColorsAndViews, world);
+  for (int i = 0; i < 5; ++i) expected.add(three_points());
+  expected.finish();
+  const std::string bytes = read_file(file_);
+  CloudWriter writer(file_, kWithColorsAndViews, world);
+  writer.add_file(part, 6);
+  writer.add(three_points());
+  writer.add_file(empty, 0);
+  writer.add_file(part, 6);
+  EXPECT_EQ(writer.size(), 15u);
+  writer.finish();
+  EXPECT_EQ(read_file(file_), bytes);
+}
+
+TEST_F(PlyTest, RefusesToAppendCloudsOfOtherKinds) {
+  const fs::path part = folder_ / "part.ply";
+  write_cloud_ply(part, three_points());
+  const auto refusal = [&](const CloudLayout& layout, const fs::path& added, std::size_t points) {
+    CloudWriter writer(file_, layout);
+    return error_of([&] { writer.add_file(added, points); });
+  };
+  CloudWriter(file_, kWithColorsAndViews).add_file(part, 3);
+  EXPECT_THAT(refusal(kWithColorsAndViews, part, 4), HasSubstr("part.ply: is not a cloud of 4"));
+  EXPECT_THAT(refusal({true, false, true, false}, part, 3), HasSubstr("part.ply: is not a cloud"));
+  EXPECT_THAT(refusal(kWithColorsAndViews, folder_ / "none.ply", 3), HasSubstr("none.ply"));
+}
+
 const LocalFrame kFar{{534000, 3378500, -12.0625}};
 
 TEST_F(PlyTest, SaysWhereLocalPositionsCountFrom) {

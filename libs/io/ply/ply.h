@@ -78,6 +78,11 @@ class CloudWriter {
   // format counts views in a byte), or if the file cannot be written.
   void add(const PointCloud& portion);
 
+  // Appends all points of a file of `points` points, which a CloudWriter with the same layout and
+  // placement wrote. The bytes are copied as they are. Error that names the file if it cannot be
+  // read or if its header is another one.
+  void add_file(const std::filesystem::path& written, std::size_t points);
+
   std::size_t size() const;  // number of points added so far
 
   // Writes the number of points into the header and renames the temporary file. Call it once, after

@@ -155,6 +155,22 @@ void CloudWriter::add(const PointCloud& portion) {
   file_->points += portion.size();
 }
 
+void CloudWriter::add_file(const std::filesystem::path& written, std::size_t points) {
+  const std::string header = cloud_header(file_->layout, file_->placement, points);
+  std::string bytes(std::max<std::size_t>(header.size(), std::size_t{1} << 20), '\0');
+  std::ifstream in(written, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(header.size()));
+  if (!in || bytes.compare(0, header.size(), header) != 0)
+    fail("{}: is not a cloud of {} points with the properties of {}", written.string(), points,
+         file_->name());
+  while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0) {
+    file_->stream.write(bytes.data(), in.gcount());
+    file_->require_good();
+  }
+  if (in.bad()) fail("{}: cannot be read", written.string());
+  file_->points += points;
+}
+
 void CloudWriter::finish() {
   file_->stream.seekp(0);
   file_->write(cloud_header(file_->layout, file_->placement, file_->points));

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tiles: boxes that divide space, so that fuse() can make a cloud part by part.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "scene/depth_map.h"
+
+namespace axial::cloud {
+
+// A half-open box: the points x [world] with low <= rotation * x < high in each component. The
+// default is all of space.
+struct Tile {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rows: the box axes in the world
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(-kInfinity);
+  Eigen::Vector3d high = Eigen::Vector3d::Constant(kInfinity);
+
+  // False for NaN.
+  bool contains(const Eigen::Vector3d& x) const {
+    const Eigen::Vector3d along = rotation * x;
+    return (along.array() >= low.array()).all() && (along.array() < high.array()).all();
+  }
+};
+
+// The tile with each side moved outwards by `margin` [world units, 0 or more].
+Tile grown(const Tile& tile, double margin);
+
+// Divides space into `count` tiles with about equal numbers of `points` [world]. Each place belongs
+// to exactly one tile: outer tiles reach to infinity. The tiles have the axes `rotation` (its
+// rows). A box is divided across the axis along which the middle nine tenths of its points extend
+// farthest, in proportion to the numbers of tiles on both sides. The two parts are divided in turn;
+// the tiles of the lower part come first. Without equal coordinates, the numbers of points of any
+// two tiles differ by at most 2. A tile may be empty if there are fewer
+// points than tiles, or if points have equal coordinates. Precondition: `count` is at least 1, and
+// the points are finite.
+std::vector<Tile> make_tiles(std::span<const Eigen::Vector3f> points, std::size_t count,
+                             const Eigen::Matrix3d& rotation);
+
+// Returns for each box of `boxes` whether the map has a point in it. The answer may be true for a
+// box that the map's points only pass closely: a small block of pixels counts with the box around
+// its points. Precondition: all boxes have the same rotation.
+std::vector<bool> boxes_seen(const DepthMap& map, std::span<const Tile> boxes);
+
+}  // namespace axial::cloud
