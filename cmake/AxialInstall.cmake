@@ -13,6 +13,8 @@ endforeach()
 # The package of these scripts, which they look for in this folder of the prefix.
 install(DIRECTORY apps/pipeline/axial_pipeline DESTINATION share/axialmvs COMPONENT programs
   FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+install(FILES apps/pipeline/Snakefile DESTINATION share/axialmvs COMPONENT programs)
+install(DIRECTORY apps/pipeline/profiles DESTINATION share/axialmvs COMPONENT programs)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs
   PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE)
@@ -75,4 +77,5 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The scripts run python3 and colmap.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, colmap")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, slurm-client")  # for axial-reconstruct --cluster
 include(CPack)

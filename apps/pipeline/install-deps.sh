@@ -13,8 +13,10 @@ packages=(
   # to test
   clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libceres-dev libbenchmark-dev
   clang libclang-rt-dev
+  # to test the pipeline on a cluster
+  slurmctld slurmd slurm-client munge
   # to run the pipeline
-  colmap python3
+  colmap python3 snakemake
 )
 
 missing=()

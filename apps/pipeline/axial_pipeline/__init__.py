@@ -8,5 +8,7 @@ demo           a simulated scene reconstructed in three ways, compared with the 
 colmap, lens   COLMAP's commands, its models, and the lens that it starts with
 programs       commands of AxialMVS's programs
 running        running commands, with logs
+cluster, jobs  reconstruct as a workflow of jobs, for the Snakefile beside the package
+one_step       what one job of the workflow does
 steps          steps that are not repeated when a killed run is started again
 """

@@ -8,7 +8,8 @@ poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and Tex
 cloud into a textured mesh. The command of every step is printed and can be typed by
 hand. A killed run that is started again with the same options continues with the step that was
 killed; with other options, it continues with the first step that differs. A second run in
-the same folder is refused until the first run ends.
+the same folder is refused until the first run ends. With --cluster, a workflow of Snakemake runs the
+same commands, and several nodes of a cluster compute the depth maps (docs/cluster.md).
 """
 
 import argparse
@@ -18,7 +19,7 @@ import os
 import pathlib
 import shlex
 
-from . import colmap, files, lens, positions
+from . import cluster, colmap, files, lens, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
 from .steps import Step, run_all
@@ -58,6 +59,11 @@ def options(script_folder):
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it")
+    parser.add_argument("--cluster", choices=["slurm", "local"], default="",
+                        help="run the steps as a workflow of Snakemake, with the depth maps in several "
+                        "jobs: on a cluster with Slurm, or on this machine (docs/cluster.md)")
+    parser.add_argument("--snakemake", default="", help="more options for snakemake with --cluster, "
+                        "in one word")
     parser.add_argument("--programs", default=programs,
                         help="folder of the programs (default: %(default)s)")
     return parser.parse_args()
@@ -90,12 +96,16 @@ def check(given):
     for program in PROGRAMS:
         if not (pathlib.Path(given.programs) / program).is_file():
             raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
-    for name in MORE_OPTIONS:
+    for name in (*MORE_OPTIONS, "snakemake"):
         words_of(name, given)
+    if given.snakemake and not given.cluster:
+        raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
     given.output = str(pathlib.Path(given.output).resolve())
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
+    if given.cluster:
+        cluster.check(given)
 
 
 def take_largest(models):
@@ -225,8 +235,10 @@ def reconstruct(given):
     check(given)
     out = pathlib.Path(given.output)
     out.mkdir(parents=True, exist_ok=True)
-    with only_run_in(out):
-        seconds = run_all(list(steps(given, out)), out)
+    with only_run_in(out) as lock:
+        todo = list(steps(given, out))
+        seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
+                   else run_all(todo, out))
         files.write(out / "report.md", report(out, seconds))
     print(f"Cloud: {out / 'scene_dense.ply'}   {mesh_of(given, out)}Report: {out / 'report.md'}")
 

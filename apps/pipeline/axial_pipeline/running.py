@@ -18,9 +18,10 @@ PR_SET_PDEATHSIG = 1  # of <sys/prctl.h>
 LINES_SHOWN = 20  # of the log of a command that failed
 
 
-def die_with(parent):
-    """To be called in a child process: the kernel kills the child when its parent ends."""
-    LIBC.prctl(PR_SET_PDEATHSIG, ctypes.c_ulong(signal.SIGKILL))
+def die_with(parent, by=signal.SIGKILL):
+    """To be called in a child process: the kernel sends the signal `by` to the child when its parent
+    ends."""
+    LIBC.prctl(PR_SET_PDEATHSIG, ctypes.c_ulong(by))
     if os.getppid() != parent:  # the parent ended before prctl(), which then has no effect
         os._exit(1)
 

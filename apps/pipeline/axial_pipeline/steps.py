@@ -61,8 +61,23 @@ class Records:
         files.clear(self.folder / f"{step.name}.done.json")
 
 
-def perform(step, chain, records, logs):
-    """Runs a step that is not done. Returns its time in seconds."""
+def chain_to(name, todo):
+    """The commands and inputs of all steps of `todo` up to the one with this name."""
+    chain = []
+    for step in todo:
+        chain += [step.command, step.fingerprint()]
+        if step.name == name:
+            break
+    return chain
+
+
+def is_done(step, chain, records):
+    return records.read(step, "done").get("chain") == chain and step.makes.exists()
+
+
+def perform(step, chain, records, logs, limits=()):
+    """Runs a step that is not done. Returns its time in seconds. `limits`: words that the command
+    gets in addition, which never change its result."""
     changed = records.read(step, "begun").get("chain") != chain
     for path in [*step.anew, *(step.changed if changed else [])]:
         files.clear(path)
@@ -70,7 +85,7 @@ def perform(step, chain, records, logs):
     begin = time.monotonic()
     logs.mkdir(exist_ok=True)
     step.before()
-    logged(step.command, logs / f"{step.name}.log", step.name)
+    logged([*step.command, *limits], logs / f"{step.name}.log", step.name)
     step.after()
     seconds = round(time.monotonic() - begin, 1)
     records.write(step, "done", {"chain": chain, "seconds": seconds})
@@ -83,10 +98,9 @@ def run_all(todo, out):
     records, chain, seconds = Records(out / "steps"), [], {}
     for number, step in enumerate(todo):
         chain = [*chain, step.command, step.fingerprint()]
-        done = records.read(step, "done")
         headline = f"[{number + 1}/{len(todo)}] {step.name}"
-        if done.get("chain") == chain and step.makes.exists():
-            seconds[step.name] = done["seconds"]
+        if is_done(step, chain, records):
+            seconds[step.name] = records.read(step, "done")["seconds"]
             print(f"{headline}: done before", flush=True)
             continue
         for later in todo[number:]:

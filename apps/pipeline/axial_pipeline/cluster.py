@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the steps of `reconstruct` as a workflow of Snakemake, on a cluster with Slurm or on this
+machine."""
+
+import getpass
+import json
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+
+from . import files, jobs
+from .failure import Failure
+from .running import die_with, ending
+from .steps import Records, chain_to, is_done
+
+
+def check(given):
+    """Checks what can be known before the workflow starts."""
+    needed = {"local": ["snakemake"], "slurm": ["snakemake", "sbatch"]}[given.cluster]
+    for program in needed:
+        if not shutil.which(program):
+            raise Failure(f"--cluster {given.cluster}: {program} is not installed (docs/cluster.md)")
+    if given.cluster == "slurm" and shlex.quote(given.output) != given.output:
+        raise Failure(f"--output {given.output}: with --cluster slurm, a path has only letters, "
+                      "digits and /._-+@%:,=")
+
+
+def forget_what_changed(todo, out):
+    """Removes the records of the first step that is not done and of all later steps, and of depth
+    maps that another command made."""
+    records, chain = Records(out / "steps"), []
+    for number, step in enumerate(todo):
+        chain = [*chain, step.command, step.fingerprint()]
+        if not is_done(step, chain, records):
+            for later in todo[number:]:
+                records.forget(later)
+            break
+    chain = chain_to("densify", todo)
+    for record in [out / jobs.done("plan"), *out.glob(jobs.done("depth-*"))]:
+        if record.exists() and json.loads(record.read_text()).get("chain") != chain:
+            files.clear(record)
+
+
+def largest_node(given):
+    """Processors and memory [MB] of this machine, or of the largest node of Slurm."""
+    if given.cluster == "local":
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >> 20
+        return {"cpus": len(os.sched_getaffinity(0)), "memory_mb": memory}
+    listed = subprocess.run(["sinfo", "--noheader", "--format", "%c %m"], capture_output=True, text=True)
+    # A group of different nodes is shown with the smallest number and a plus sign.
+    nodes = [[int(word.rstrip("+")) for word in line.split()] for line in listed.stdout.splitlines()]
+    if listed.returncode != 0 or not nodes:
+        raise Failure(f"--cluster slurm: sinfo shows no nodes: {listed.stderr.strip()}")
+    return {"cpus": max(cpus for cpus, _ in nodes), "memory_mb": max(memory for _, memory in nodes)}
+
+
+def command(given, out, node):
+    here = jobs.PACKAGE.parent
+    # Jobs on this machine share its memory.
+    local = ["--resources", f"mem_mb={node['memory_mb']}"] if given.cluster == "local" else []
+    return ["snakemake", "--snakefile", here / "Snakefile", "--profile",
+            here / "profiles" / given.cluster, "--configfile", out / jobs.OPTIONS, *local,
+            *shlex.split(given.snakemake)]
+
+
+def run_to_its_end(words, given, out, lock):
+    """Runs snakemake in the folder `out`. It inherits the file `lock`. If something kills this
+    process, the kernel interrupts snakemake, which cancels its jobs on a cluster. For jobs on this
+    machine, it kills snakemake, and the jobs end with it."""
+    parent, by = os.getpid(), signal.SIGINT if given.cluster == "slurm" else signal.SIGKILL
+    process = subprocess.Popen(
+        [str(word) for word in words], cwd=out, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()],
+        env={"USER": getpass.getuser(), **os.environ},  # snakemake needs USER
+        preexec_fn=lambda: die_with(parent, by))
+    try:
+        code = process.wait()
+    except KeyboardInterrupt:  # snakemake has got the signal, too
+        process.wait()
+        raise
+    if code != 0:
+        raise Failure(f"snakemake: {ending(code)}; the outputs of the steps are in {out / 'logs'}; "
+                      "the same command continues from here")
+
+
+def run_all(todo, given, out, lock):
+    """Runs the steps that are not done, like steps.run_all(). `lock`: the open file that refuses other
+    runs in the folder `out`. The time of the step "densify" includes
+    the jobs of the depth maps, one after another."""
+    records, node = Records(out / "steps"), largest_node(given)
+    forget_what_changed(todo, out)
+    config = {"given": vars(given), "folder": os.getcwd(), "images": len(os.listdir(given.images)),
+              "node": node}
+    files.write(out / jobs.OPTIONS, json.dumps(config))
+    run_to_its_end(command(given, out, node), given, out, lock)
+    seconds = {step.name: records.read(step, "done")["seconds"] for step in todo}
+    of_parts = [json.loads(record.read_text())["seconds"] for record in out.glob(jobs.done("depth-*"))]
+    seconds["densify"] = round(seconds["densify"] + sum(of_parts), 1)
+    return seconds

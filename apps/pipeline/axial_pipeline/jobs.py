@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The jobs of the workflow apps/pipeline/Snakefile: the steps of `reconstruct`, and jobs that compute
+the depth maps of a part of the images. A job of Slurm is one call of one_step.py."""
+
+import argparse
+import hashlib
+import json
+import math
+import pathlib
+import re
+import shlex
+import sys
+
+from .steps import Step, chain_to
+
+PACKAGE = pathlib.Path(__file__).resolve().parent
+OPTIONS = pathlib.Path("steps") / "options.json"  # below the folder of the output files
+PLAN = pathlib.Path("steps") / "plan.json"
+WHOLE = "whole"  # in the place of a part, for all images
+MOST_CPUS = 16  # of a job
+
+# What the job of a step asks for at first: megabytes, megabytes an image, minutes, minutes an image.
+# The plan of DensifyPointCloud replaces these numbers for the step "densify".
+NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (4000, 4, 60, 1),
+         "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
+         "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
+         "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5),
+         "evaluate": (8000, 0, 60, 0)}
+
+
+def done(name):
+    """The record that a step is done, relative to the folder of the output files."""
+    return f"steps/{name}.done.json"
+
+
+class Job:
+    """What a rule says about its jobs. `name`: with the names of wildcards in braces. `needs`: the
+    records of other jobs. `node`: the largest machine, whose processors and memory no job exceeds.
+    `asked`: a function of
+    the wildcards that returns megabytes and minutes; every further attempt asks for twice as much."""
+
+    def __init__(self, out, name, node, needs, asked):
+        self.needs = needs
+        self.threads = min(MOST_CPUS, node["cpus"])
+        # A run that was killed may have left jobs in the queue. The dependency "singleton" lets a job
+        # wait for the end of jobs of the same name.
+        run = hashlib.sha256(str(out).encode()).hexdigest()[:8]
+
+        def command(wildcards):
+            words = ["env", f"PYTHONPATH={PACKAGE.parent}", sys.executable, "-B", "-m",
+                     "axial_pipeline.one_step", out / OPTIONS, name.format(**wildcards)]
+            return shlex.join(map(str, words))
+
+        def memory(wildcards, attempt):
+            return min(math.ceil(asked(wildcards)[0] * 2 ** (attempt - 1)), node["memory_mb"])
+
+        def minutes(wildcards, attempt):
+            return math.ceil(asked(wildcards)[1] * 2 ** (attempt - 1))
+
+        def slurm_extra(wildcards):
+            return f"--job-name {name.format(**wildcards)}-{run} --dependency singleton"
+
+        self.command = command
+        self.resources = {"mem_mb": memory, "runtime": minutes, "slurm_extra": slurm_extra}
+
+
+class Survey:
+    """All jobs of a run. `config`: what cluster.py wrote to OPTIONS. `steps`: reconstruct.steps."""
+
+    def __init__(self, config, steps):
+        given = argparse.Namespace(**config["given"])
+        self.out = pathlib.Path(given.output)
+        self.steps = list(steps(given, self.out))
+        self.names = [step.name for step in self.steps]
+        self.images, self.node = config["images"], config["node"]
+
+    def job(self, name):
+        number = self.names.index(name)
+        before = [done(self.names[number - 1])] if number else []
+        return Job(self.out, name, self.node, before, lambda wildcards: self.asked(name))
+
+    @property
+    def plan(self):
+        return Job(self.out, "plan", self.node, [done("import")],
+                   lambda wildcards: self.asked("plan"))
+
+    @property
+    def depth(self):
+        return Job(self.out, "depth-{stage}-{part}", self.node, [],
+                   lambda wildcards: self.asked_for_depth(wildcards.stage))
+
+    def asked(self, name):
+        memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
+        if name == "densify" and (self.out / PLAN).exists():
+            return self.with_margin(self.planned()["fusion"])
+        return (memory + memory_of_image * self.images, minutes + minutes_of_image * self.images)
+
+    def planned(self):
+        return json.loads((self.out / PLAN).read_text())
+
+    def asked_for_depth(self, stage):
+        return self.with_margin(self.planned()["per_part"][stage])
+
+    def with_margin(self, work):
+        """Megabytes and minutes to ask for. Processors differ in speed, and a job that is stopped at
+        its limit begins anew."""
+        minutes = work["cpu_seconds"] / self.planned()["threads"] / 60
+        return 1.2 * work["memory_mb"] + 200, 10 + 4 * minutes
+
+    def parts(self, stage):
+        count = self.planned()["parts"]
+        return [f"depth-{stage}-{part}of{count}" for part in range(1, count + 1)]
+
+    def before_maps(self, stage, part):
+        """The jobs whose maps a job of the stage needs. After the first stage, a job without a part
+        checks whether the maps agree. Pass None for what comes after the last stage."""
+        stages = self.planned()["stages"]
+        number = stages.index(stage) if stage else len(stages)
+        if part == WHOLE:
+            return self.parts(stage)
+        if number == 0:
+            return ["plan"]
+        return [f"depth-{stages[0]}-{WHOLE}"] if number == 1 else self.parts(stages[number - 1])
+
+    def step(self, name):
+        """The step of this name, and its chain. The steps of the depth maps have the chain of the
+        step "densify"."""
+        if name in self.names:
+            return self.steps[self.names.index(name)], chain_to(name, self.steps)
+        densify = self.steps[self.names.index("densify")]
+        more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
+        return (Step(name, [*densify.command, *more], makes=self.out, reads=densify.reads),
+                chain_to("densify", self.steps))
+
+
+def part_options(name):
+    stage, part = re.fullmatch(r"depth-(\w+)-(\w+)", name).groups()
+    return ["--until", stage, *([] if part == WHOLE else ["--part", part.replace("of", "/")])]

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`reconstruct --cluster`: the workflow gives the bytes of `reconstruct` alone, on this machine and on
+two nodes of a Slurm cluster, also if it is killed or a node dies."""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import small_slurm
+from programs import BIN, main, run
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
+RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
+           "scene_textured.glb", "scene_textured.ply")
+DENSIFY = "--resolution-level 0 --min-resolution 100 --geometric-iters 1 --plan-parts 2"
+
+# COLMAP's models differ from run to run. This stand-in gives every run the same model.
+COLMAP = """#!/bin/sh
+[ "$2" = --help ] && exit
+case $1 in
+  feature_extractor) touch "$3" ;;
+  mapper) cp -r "{model}" "$7/0" ;;
+esac
+"""
+
+# Fails like a program that needs more memory than the first job of its step has.
+HUNGRY = """#!/bin/sh
+for word; do
+  [ "$before" = --max-memory ] && [ "$word" -lt 10000 ] && exit 1
+  before=$word
+done
+exec "{program}" "$@"
+"""
+
+
+def words_of(file):
+    return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+
+
+def thinned(model, target, every):
+    """Writes a COLMAP text model with one of `every` points of `model`, and their observations."""
+    target.mkdir()
+    shutil.copy(model / "cameras.txt", target)
+    points = words_of(model / "points3D.txt")[::every]
+    kept, images, index = {point[0] for point in points}, words_of(model / "images.txt"), {}
+    lines = []
+    for head, seen in zip(images[::2], images[1::2]):
+        observations = [seen[start:start + 3] for start in range(0, len(seen), 3)]
+        new = [(old, words) for old, words in enumerate(observations) if words[2] in kept]
+        index.update({(head[0], str(old)): str(number) for number, (old, _) in enumerate(new)})
+        lines += [" ".join(head), " ".join(" ".join(words) for _, words in new)]
+    (target / "images.txt").write_text("\n".join(lines) + "\n")
+    tracks = [[word for image, old in zip(point[8::2], point[9::2])
+               for word in (image, index[image, old])] for point in points]
+    (target / "points3D.txt").write_text("".join(
+        " ".join(point[:8] + track) + "\n" for point, track in zip(points, tracks)))
+
+
+def put_script(path, text):
+    path.write_text(text)
+    path.chmod(0o755)
+
+
+class Survey(unittest.TestCase):
+    """A survey of 60 small views, and the results of `reconstruct` alone."""
+
+    @classmethod
+    def setUpClass(cls):
+        keeper = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(keeper.cleanup)
+        cls.folder = pathlib.Path(keeper.name).resolve()
+        scene = cls.folder / "scene"
+        made = run("SimulateUnderwater", "--preset", "survey", "--views", 60, "--width", 160, "--height",
+                   120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o", scene)
+        assert made.returncode == 0, made.stderr
+        thinned(scene / "sparse", cls.folder / "model", 60)
+        cls.programs = cls.folder / "bin"
+        cls.programs.mkdir()
+        for program in pathlib.Path(BIN).resolve().iterdir():
+            (cls.programs / program.name).symlink_to(program)
+        (cls.programs / "TextureMesh").unlink()
+        put_script(cls.programs / "TextureMesh",
+                   HUNGRY.format(program=pathlib.Path(BIN).resolve() / "TextureMesh"))
+        (cls.folder / "colmap").mkdir()
+        put_script(cls.folder / "colmap" / "colmap", COLMAP.format(model=cls.folder / "model"))
+        cls.environment = {**os.environ, "PATH": f"{cls.folder / 'colmap'}:{os.environ['PATH']}"}
+        cls.reconstruct("alone")
+
+    @classmethod
+    def start(cls, out, *more):
+        scene = cls.folder / "scene"
+        return subprocess.Popen(
+            [sys.executable, str(SCRIPT), "--images", str(scene / "water"), "--lens",
+             str(scene / "sparse" / "cameras.txt"), "--housing", str(scene / "housing.json"),
+             "-o", out, "--refine-poses=--poses known", f"--densify={DENSIFY}", "--programs",
+             str(cls.programs), *more], cwd=cls.folder, env=cls.environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    @classmethod
+    def reconstruct(cls, out, *more):
+        process = cls.start(out, *more)
+        said = process.communicate(timeout=600)[0]
+        assert process.returncode == 0, said
+        return said
+
+    def steps_done(self, out):
+        return {file.name.removesuffix(".done.json")
+                for file in (self.folder / out / "steps").glob("*.done.json")}
+
+    def check(self, out, results=RESULTS):
+        for name in results:
+            self.assertEqual((self.folder / out / name).read_bytes(),
+                             (self.folder / "alone" / name).read_bytes(), name)
+        parts = {f"depth-{stage}-{part}of2" for stage in ("photometric", "geometric1")
+                 for part in (1, 2)}
+        self.assertLessEqual(parts | {"depth-photometric-whole"}, self.steps_done(out))
+
+
+@unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
+class OnThisMachine(Survey):
+    def wait_for_part(self, process, out):
+        """Waits until a job of the depth maps has begun and is not done."""
+        steps = self.folder / out / "steps"
+        end = time.monotonic() + 120
+        while not list(steps.glob("depth-*.begun.json")):
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+
+    def test_gives_the_same_bytes_after_it_was_killed(self):
+        process = self.start("out", "--cluster", "local")
+        self.wait_for_part(process, "out")
+        process.kill()
+        process.communicate(timeout=30)  # returns when all processes have closed their output
+        before = self.steps_done("out")
+        self.assertIn("plan", before)
+        self.assertNotIn("densify", before)
+        # TextureMesh fails, because jobs on this machine are not repeated.
+        process = self.start("out", "--cluster", "local")
+        said = process.communicate(timeout=600)[0]
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("reconstruct: texture: texture: exit code 1, its output is in", said)
+        self.assertIn("reconstruct: snakemake: exit code 1; ", said)
+        self.assertNotIn("rule refine:", said)
+        said = self.reconstruct("out", "--cluster", "local", "--snakemake=--set-resources "
+                                "texture:mem_mb=20000 --resources mem_mb=20000")
+        self.assertNotIn("rule densify:", said)
+        self.check("out")
+        # Alone, nothing is left to do.
+        self.assertEqual(self.reconstruct("out").count("done before"), 9)
+        self.assertNotIn("\nrule ", self.reconstruct("out", "--cluster", "local"))
+
+
+@unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
+class OnTwoNodes(Survey):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.cluster = small_slurm.Cluster()
+        cls.addClassCleanup(cls.cluster.stop)
+        cls.cluster.start()
+        cls.environment["SLURM_CONF"] = cls.cluster.environment["SLURM_CONF"]
+
+    OPTIONS = ("--cluster", "slurm", "--snakemake=--max-status-checks-per-second 1")
+
+    def node_of_part(self):
+        """A job of the depth maps that runs, and its node."""
+        for line in self.cluster.ask("squeue", "-h", "-t", "R", "-o", "%A %N %j").splitlines():
+            job, node, name = line.split()
+            if name.startswith("depth-photometric-1of2"):
+                return job, node
+        return None
+
+    def test_gives_the_same_bytes_also_if_a_node_dies(self):
+        said = self.reconstruct("out", *self.OPTIONS)
+        self.check("out")
+        self.assertIn("Trying to restart job", said)  # TextureMesh, with twice the memory
+        for node in small_slurm.NODES:
+            self.assertRegex(self.cluster.log("slurmctld"), f"( on |NodeList=){node}\\b")
+        out = self.folder / "out"
+        for file in [*out.glob("*.dmap*"), *out.glob("steps/plan.*"), *out.glob("steps/depth-*"),
+                     *out.glob("steps/densify.*"), *out.glob("scene_dense*")]:
+            file.unlink()
+        process = self.start("out", *self.OPTIONS, "--until", "cloud")
+        self.cluster.wait_for(self.node_of_part, 120)
+        job, node = self.node_of_part()
+        self.cluster.kill(node)
+        self.assertNotIn("depth-photometric-1of2", self.steps_done("out"))
+        said = process.communicate(timeout=300)[0]
+        self.assertEqual(process.returncode, 0, said)
+        self.assertRegex(self.cluster.log("slurmctld"),
+                         f"requeue job JobId={job} due to failure of node {node}")
+        self.check("out", RESULTS[:2])
+
+
+if __name__ == "__main__":
+    main()
