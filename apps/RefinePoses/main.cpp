@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -159,6 +160,24 @@ LocalFrame set_known(Options& options, const pose::Bundle& bundle, const LocalFr
   return adjust.positions.empty() ? frame_of_model : enter_local_frame(adjust.positions);
 }
 
+// Writes lines of progress to the log.
+class ProgressLines {
+ public:
+  void log(const std::string& line) {
+    last_ = Clock::now();
+    log_info("{}", line);
+  }
+  // Writes the line only if the last one is two seconds old, so that small models do not fill the
+  // log.
+  void log_if_due(const std::string& line) {
+    if (Clock::now() - last_ >= std::chrono::seconds(2)) log(line);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
 // The bundle before refining, and the report of refining.
 struct Refined {
   pose::Bundle before;
@@ -170,8 +189,10 @@ Refined refine(const Options& options, pose::ColmapBundle& refined) {
   log_info("Starts with points at a median distance of {:.3g} m",
            pose::median_distance(refined.bundle));
   pose::Bundle before = refined.bundle;
-  pose::RefineReport report = pose::refine(refined.bundle, options.refine,
-                                           [](const std::string& line) { log_info("{}", line); });
+  ProgressLines lines;
+  pose::RefineReport report = pose::refine(
+      refined.bundle, options.refine, [&](const std::string& line) { lines.log(line); },
+      [&](const std::string& line) { lines.log_if_due(line); });
   return {std::move(before), std::move(report)};
 }
 
@@ -216,13 +237,18 @@ void write(const Options& options, const pose::ColmapBundle& refined, const io::
            const LocalFrame& frame, const io::Housing& housing, const Results& results) {
   io::ColmapModel result = to_model(refined, model);
   io::leave(frame, result);
+  // With fewer images, the parts of the work take less than a second.
+  const bool is_long = refined.bundle.images.size() >= results.options.many_images;
+  const auto log_if_long = [&](const std::string& line) {
+    if (is_long) log_info("{}", line);
+  };
   const pose::Uncertainty known = write_results(
       options.output,
       [&](const fs::path& folder) { write_model(options, folder, result, housing); }, results,
       [&] {
         log_info("Refined model in {}", options.output.string());
         result = {};
-        return pose::uncertainty(refined.bundle, results.options);
+        return pose::uncertainty(refined.bundle, results.options, log_if_long);
       });
   for (const std::string& line : uncertainty_lines(results, known)) log_info("{}", line);
   if (const auto freed = pose::number_that_does_not_fit(refined.bundle, results.options))

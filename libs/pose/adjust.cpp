@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pose/adjust.h"
 
+#include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 
 #include "base/error.h"
@@ -8,6 +9,30 @@
 
 namespace axial::pose {
 namespace {
+
+// Reports the iterations. Ends the adjustment when an iteration gains less than `least_gain`.
+class Iterations : public ceres::IterationCallback {
+ public:
+  Iterations(const AdjustSink& sink, double least_gain) : sink_(sink), least_gain_(least_gain) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (sink_) sink_({iteration.iteration, iteration.cost});
+    const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
+                      iteration.cost_change < least_gain_;
+    return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const AdjustSink& sink_;
+  double least_gain_;
+};
+
+// The damping of the solver falls by a factor of three with each iteration. From the solver's own
+// initial value, a survey of many images needs ten iterations until the damping no longer hinders
+// the bending of the whole block, which reprojection errors determine weakly. Many images determine
+// all other directions well, so the first step may be long. If a step raises the cost, the solver
+// rejects it and damps more.
+constexpr double kLongSteps = 1e9;
 
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
   ceres::Solver::Options options;
@@ -42,13 +67,19 @@ const Unknowns& AdjustOptions::unknowns(const BundleCamera& camera) const {
   return *this;
 }
 
-AdjustReport adjust(Bundle& bundle, const AdjustOptions& options) {
+AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink) {
   AdjustProblem adjusted(bundle, options);
+  ceres::Solver::Options solver = solver_options(adjusted, options.max_iterations);
+  const bool many = !options.poses_known && adjusted.pose_count() >= options.many_images;
+  if (many) solver.initial_trust_region_radius = kLongSteps;
+  Iterations iterations(sink, many ? options.least_gain : 0);
+  solver.callbacks.push_back(&iterations);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(adjusted, options.max_iterations), &adjusted.problem(), &summary);
+  ceres::Solve(solver, &adjusted.problem(), &summary);
   if (!summary.IsSolutionUsable()) fail("bundle adjustment: {}", summary.message);
   adjusted.write_back(bundle);
-  return {summary.termination_type == ceres::CONVERGENCE,
+  return {summary.termination_type == ceres::CONVERGENCE ||
+              summary.termination_type == ceres::USER_SUCCESS,
           static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
 }
 

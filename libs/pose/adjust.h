@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pose/bundle.h"
@@ -56,7 +58,23 @@ struct AdjustOptions : Unknowns {
   double pixel_sigma = 1;    // standard deviation of the x and of the y of an observation [px]
   double loss_sigmas = 2;    // Huber loss: errors above this times pixel_sigma count linearly
   int max_iterations = 100;  // of the solver
+
+  // If at least `many_images` poses are adjusted, adjust() starts with steps that are hardly
+  // damped, and ends when an iteration lowers half the cost by less than `least_gain`. A step of
+  // one standard deviation along any direction lowers half the cost by 0.5. The default therefore
+  // corresponds to a step of 0.014 standard deviations.
+  std::size_t many_images = 500;
+  double least_gain = 1e-4;
 };
+
+// The state of an adjustment after an iteration of the solver.
+struct AdjustIteration {
+  int number = 0;   // 0: the evaluation of the start
+  double cost = 0;  // half the cost of adjust()
+};
+
+// Receives the state after each iteration, in the thread of the caller.
+using AdjustSink = std::function<void(const AdjustIteration&)>;
 
 // How the solver ended.
 struct AdjustReport {
@@ -79,11 +97,15 @@ struct AdjustReport {
 // solver runs in one thread, because sums over several threads would depend on the order of the
 // threads.
 //
+// The solver factorises the normal equations with the points eliminated. Its memory and the time of
+// an iteration depend on the pairs of images with common points. AdjustOptions::many_images says
+// how bundles of many images are solved in fewer iterations. `sink` may be empty.
+//
 // Throws an Error if a number of a port is free for a camera in air, if a known length, a standard
 // deviation of known values or `pixel_sigma` is not positive, if a known distance names a point
 // that the bundle does not have, if the bundle has no observations, or if the solver fails. After
 // an Error, the bundle is unchanged. Precondition: all indices are in their range.
-AdjustReport adjust(Bundle& bundle, const AdjustOptions& options);
+AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const AdjustSink& sink = {});
 
 // Estimates the standard deviation of the observations [px] from their reprojection errors. Let N
 // be the number of observations, S the sum of their squared errors, and U the number of unknowns: 6
@@ -109,7 +131,8 @@ struct Uncertainty {
 // Returns the first-order standard deviations of the result of adjust(), from the normal equations
 // with the points eliminated. Precondition: adjust() was called for `bundle` with the same
 // `options`. The observations are weighted with their observed standard deviation and not with
-// `options.pixel_sigma`.
-Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options);
+// `options.pixel_sigma`. `progress` gets one line of text at the start of each part of the work.
+Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
+                        const std::function<void(const std::string&)>& progress = {});
 
 }  // namespace axial::pose

@@ -194,6 +194,13 @@ std::vector<double*> AdjustProblem::camera_blocks() {
   return blocks;
 }
 
+std::size_t AdjustProblem::pose_count() const {
+  return static_cast<std::size_t>(std::ranges::count_if(poses_, [&](const PoseNumbers& pose) {
+    return problem_->HasParameterBlock(pose.data()) &&
+           !problem_->IsParameterBlockConstant(pose.data());
+  }));
+}
+
 std::vector<double*> AdjustProblem::point_blocks() {
   std::vector<double*> blocks;
   if (options_.points_known) return blocks;

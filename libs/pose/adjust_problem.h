@@ -32,6 +32,9 @@ class AdjustProblem {
   std::vector<double*> camera_blocks();  // poses, changes of cameras, points with a known distance
   std::vector<double*> point_blocks();   // all other points
 
+  // The number of poses that the solver changes.
+  std::size_t pose_count() const;
+
   // The index of the first image for which is_observed() is true; 0 if there is none. adjust() says
   // when its pose is constant.
   std::size_t anchor() const;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace axial::pose {
 namespace {
@@ -42,13 +43,14 @@ std::vector<std::size_t> observations_by_image(const Bundle& bundle) {
 
 std::vector<double> reprojection_errors(const Bundle& bundle) {
   const std::vector<PhotographCamera> cameras = cameras_now(bundle);
-  std::vector<double> errors;
-  errors.reserve(bundle.observations.size());
-  for (const Observation& observation : bundle.observations) {
+  std::vector<double> errors(bundle.observations.size());
+  const auto set_error = [&](std::size_t i) {
+    const Observation& observation = bundle.observations[i];
     const BundleImage& image = bundle.images[observation.image];
-    errors.push_back(error_of(cameras[image.camera], image.pose,
-                              bundle.points[observation.point].position, observation));
-  }
+    errors[i] = error_of(cameras[image.camera], image.pose,
+                         bundle.points[observation.point].position, observation);
+  };
+  parallel_for(errors.size(), set_error, kPointGrain);
   return errors;
 }
 

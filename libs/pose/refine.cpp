@@ -14,6 +14,8 @@
 namespace axial::pose {
 namespace {
 
+// Half a standard deviation in one direction. The last adjustment removes what is left.
+constexpr double kGainOfRounds = 0.1;
 constexpr std::size_t kTrialPoints = 1500;  // enough to distinguish scales
 // Median distances of the scene [m] that are tried: from close-ups to wide surveys.
 constexpr std::array<double, 7> kTrialDistances{0.25, 0.5, 1, 2, 4, 8, 16};
@@ -97,6 +99,13 @@ double best_scale(const Bundle& bundle) {
   return best;
 }
 
+AdjustSink iteration_lines(const std::string& title, const TextSink& sink) {
+  if (!sink) return {};
+  return [title, &sink](const AdjustIteration& iteration) {
+    sink(fmt::format("{}: iteration {}, cost {:.8g}", title, iteration.number, iteration.cost));
+  };
+}
+
 }  // namespace
 
 double median_distance(const Bundle& bundle) {
@@ -124,8 +133,8 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options) {
   triangulate(bundle);
 }
 
-RefineReport refine(Bundle& bundle, const RefineOptions& options,
-                    const std::function<void(const std::string&)>& progress) {
+RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress,
+                    const TextSink& iterations) {
   RefineReport report;
   report.observations_before = bundle.observations.size();
   report.points_before = bundle.points.size();
@@ -138,8 +147,10 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
   TrackLimits limits = options.tracks;
   limits.max_error *= 4;
   adjusting.loss_sigmas *= 4;
+  adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
   for (int round = 0; round < options.rounds; ++round) {
-    report.last = adjust(bundle, adjusting);
+    report.last =
+        adjust(bundle, adjusting, iteration_lines(fmt::format("round {}", round + 1), iterations));
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
@@ -154,7 +165,8 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options,
     adjusting.loss_sigmas = options.adjust.loss_sigmas;
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
-  report.last = adjust(bundle, adjusting);
+  adjusting.least_gain = options.adjust.least_gain;
+  report.last = adjust(bundle, adjusting, iteration_lines("last adjustment", iterations));
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);

@@ -11,6 +11,9 @@
 
 namespace axial::pose {
 
+// Receives lines of text.
+using TextSink = std::function<void(const std::string&)>;
+
 struct RefineOptions {
   AdjustOptions adjust;
   TrackLimits tracks;
@@ -52,11 +55,14 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // once more. The first round uses `options.adjust.pixel_sigma`, and four times the limits
 // `options.adjust.loss_sigmas` and `options.tracks.max_error`. Later rounds use the limits
 // themselves, and observed_pixel_sigma() of the round before. The first round also drops repeated
-// observations (drop_repeated()). `progress` gets one line of text for each round. For the standard
-// deviations of the result, call uncertainty() with the refined bundle and `options.adjust`. Throws
-// an Error if no observation is left, or if adjust() fails.
-RefineReport refine(Bundle& bundle, const RefineOptions& options,
-                    const std::function<void(const std::string&)>& progress = {});
+// observations (drop_repeated()). `progress` gets one line of text for each round, and
+// `iterations` one line for each iteration of the solver. With AdjustOptions::many_images or more
+// poses, the rounds before the last adjustment end at an AdjustOptions::least_gain of 0.1 or of
+// `options.adjust` if that is larger: this is enough to find observations that do not fit. For the
+// standard deviations of the result, call uncertainty() with the refined bundle and
+// `options.adjust`. Throws an Error if no observation is left, or if adjust() fails.
+RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
+                    const TextSink& iterations = {});
 
 // The median, over all observations, of the distance [m] from the camera centre to the point.
 // Throws an Error if the bundle has no observations.

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "refractive/nearest_point.h"
 
 namespace axial::pose {
@@ -18,14 +19,14 @@ using Ray = refractive::AxialRay<double>;
 // image of no direction gets NaN.
 std::vector<Ray> world_rays(const Bundle& bundle) {
   const std::vector<PhotographCamera> cameras = cameras_now(bundle);
-  std::vector<Ray> rays;
-  rays.reserve(bundle.observations.size());
-  for (const Observation& observation : bundle.observations) {
+  std::vector<Ray> rays(bundle.observations.size());
+  const auto set_ray = [&](std::size_t i) {
+    const Observation& observation = bundle.observations[i];
     const BundleImage& image = bundle.images[observation.image];
     const Ray ray = cameras[image.camera].ray(observation.pixel);
-    rays.push_back(
-        {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction});
-  }
+    rays[i] = {image.pose.to_world(ray.origin), image.pose.rotation.transpose() * ray.direction};
+  };
+  parallel_for(rays.size(), set_ray, kPointGrain);
   return rays;
 }
 
@@ -113,13 +114,13 @@ std::optional<Eigen::Vector3d> triangulate(std::span<const Ray> rays) {
 void triangulate(Bundle& bundle) {
   const std::vector<Ray> rays = world_rays(bundle);
   const auto lists = observations_by_point(bundle);
-  std::vector<Ray> own;
-  for (std::size_t i = 0; i < lists.size(); ++i) {
-    own.clear();
+  const auto place = [&](std::size_t i) {
+    std::vector<Ray> own;
     for (const std::size_t observation : lists[i])
       if (rays[observation].direction.allFinite()) own.push_back(rays[observation]);
     if (const auto point = triangulate(own)) bundle.points[i].position = *point;
-  }
+  };
+  parallel_for(lists.size(), place, kPointGrain);
 }
 
 std::size_t drop_repeated(Bundle& bundle) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <ceres/crs_matrix.h>
+#include <fmt/format.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -110,7 +111,8 @@ class Covariance {
 // The normal equations at the solution, and the columns of each parameter block.
 class Normal {
  public:
-  Normal(const Bundle& bundle, const AdjustOptions& options)
+  Normal(const Bundle& bundle, const AdjustOptions& options,
+         const std::function<void(const std::string&)>& progress)
       : problem_(bundle, options), bundle_(bundle), options_(options) {
     std::vector<double*> blocks = problem_.camera_blocks();
     for (const double* block : blocks) {
@@ -119,8 +121,12 @@ class Normal {
     }
     for (double* block : problem_.point_blocks()) blocks.push_back(block);
     if (camera_columns_ == 0) return;
-    const Sparse derivatives = jacobian(problem_.problem(), blocks);
-    covariance_.emplace(reduced_normal_matrix(derivatives, camera_columns_));
+    if (progress) progress("standard deviations: normal equations");
+    const Sparse normal =
+        reduced_normal_matrix(jacobian(problem_.problem(), blocks), camera_columns_);
+    if (progress)
+      progress(fmt::format("standard deviations: factorization of {} equations", camera_columns_));
+    covariance_.emplace(normal);
   }
 
   HousingChange<double> sigmas_of_camera(std::size_t camera) {
@@ -187,12 +193,13 @@ double observed_pixel_sigma(const Bundle& bundle, const AdjustOptions& options) 
   return std::max(kLeast, root_mean_square(errors) * std::sqrt(residuals / (2 * free)));
 }
 
-Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options) {
+Uncertainty uncertainty(const Bundle& bundle, const AdjustOptions& options,
+                        const std::function<void(const std::string&)>& progress) {
   Uncertainty result;
   result.pixel_sigma = observed_pixel_sigma(bundle, options);
   AdjustOptions weighed = options;
   weighed.pixel_sigma = result.pixel_sigma;
-  Normal normal(bundle, weighed);
+  Normal normal(bundle, weighed, progress);
   for (std::size_t camera = 0; camera < bundle.cameras.size(); ++camera)
     result.camera_sigmas.push_back(normal.sigmas_of_camera(camera));
   if (!options.poses_known) result.scale_sigma = normal.sigma_of_scale();

@@ -321,6 +321,39 @@ TEST(Adjust, FindsTheCentreOfADome) {
     EXPECT_LT(std::abs(now.centre(k) - port.centre(k)), 3 * found.camera_sigmas[0](k)) << k;
 }
 
+// Both paths must find the one minimum. The second ends when an iteration lowers half the cost by
+// less than 1e-4. Huber's loss makes the solver converge linearly, by a factor of at least two in
+// the last iterations, so less than 2e-4 is left: sqrt(2 x 2e-4) = 0.02 standard deviations.
+TEST(Adjust, FindsTheSameMinimumOfManyImages) {
+  const Bundle truth = survey(camera_behind(flat_port(3)), {.noise = 0.5});
+  AdjustOptions options;
+  options.pixel_sigma = 0.5;
+  Bundle few = truth, many = truth;
+  disturb(few, 0.5 * kDegree, 0.01, 3);
+  disturb(many, 0.5 * kDegree, 0.01, 3);
+  const AdjustReport usual = adjust(few, options);
+  const double sigma = uncertainty(few, options).scale_sigma;
+  options.many_images = 0;
+  const AdjustReport report = adjust(many, options);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LT(report.iterations, usual.iterations);
+  EXPECT_NEAR(report.final_cost, usual.final_cost, 2e-4);
+  EXPECT_NEAR(pose_errors(many, few).scale, 1, 0.02 * sigma);
+  EXPECT_LT(pose_errors(many, few).centre_rms, 0.02 * pose_errors(few, truth).centre_rms);
+}
+
+TEST(Adjust, ReportsEveryIteration) {
+  Bundle bundle = survey(camera_behind(flat_port(3)), {.images = 6, .points = 60, .noise = 0.5});
+  disturb(bundle, 0.5 * kDegree, 0.01, 3);
+  std::vector<AdjustIteration> said;
+  const AdjustReport report =
+      adjust(bundle, {}, [&](const AdjustIteration& iteration) { said.push_back(iteration); });
+  ASSERT_GT(said.size(), 2u);
+  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(said[i].number, static_cast<int>(i));
+  EXPECT_EQ(said.front().cost, report.initial_cost);
+  EXPECT_NEAR(said.back().cost, report.final_cost, 1e-9 * report.final_cost);
+}
+
 // One pixel is moved by 7 px, far more than the noise: its error is the last of its image.
 TEST(ReprojectionErrors, ByImageAreInTheOrderOfTheObservations) {
   constexpr std::size_t kMoved = 5, kUnseen = 3;
