@@ -148,6 +148,8 @@ void check_factor(const char* name, double value) {
   if (!(value >= 0.01 && value <= 100)) fail("{} is {}: must be between 0.01 and 100", name, value);
 }
 
+constexpr int kMostViews = 10000;
+
 }  // namespace
 
 Port port_of_view(const Preset& preset, const View& view) {
@@ -175,8 +177,9 @@ void check_submerged(const Preset& preset, const TriangleMesh& mesh) {
 }
 
 Preset make_preset(const PresetOptions& options) {
-  if (options.views < 0 || options.views > 400)
-    fail("number of views is {}: must be between 0 (the preset's own) and 400", options.views);
+  if (options.views < 0 || options.views > kMostViews)
+    fail("number of views is {}: must be between 0 (the preset's own) and {}", options.views,
+         kMostViews);
   check_factor("scale", options.scale);
   check_factor("relief", options.relief);
   check_factor("coarseness", options.coarseness);

@@ -57,7 +57,7 @@ struct Preset {
 //   that most of the ground is seen by exactly two views.
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
-// another name, for a number of views outside [0, 400], for a scale, relief or coarseness outside
+// another name, for a number of views outside [0, 10000], for a scale, relief or coarseness outside
 // [0.01, 100], and for a width, height or field of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 

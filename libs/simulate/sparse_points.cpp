@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <optional>
 
 #include "base/parallel.h"
@@ -10,6 +12,8 @@
 
 namespace axial::simulate {
 namespace {
+
+constexpr std::ptrdiff_t kMostTested = 400;
 
 std::optional<Eigen::Vector2d> observe(const RayScene& scene, const Lens& lens, const View& view,
                                        const Eigen::Vector3d& point) {
@@ -28,6 +32,24 @@ std::optional<Eigen::Vector2d> observe(const RayScene& scene, const Lens& lens, 
   return pixel;
 }
 
+// The views, by index, that are tested for the points of `view`: the kMostTested nearest, in
+// ascending order.
+std::vector<std::size_t> views_near(std::span<const View> views, const View& view) {
+  std::vector<std::size_t> near(views.size());
+  std::iota(near.begin(), near.end(), std::size_t{0});
+  if (std::ssize(near) <= kMostTested) return near;
+  std::vector<double> distances;
+  for (const View& other : views) distances.push_back((other.centre - view.centre).squaredNorm());
+  const auto nearer = [&](std::size_t a, std::size_t b) {
+    return distances[a] != distances[b] ? distances[a] < distances[b] : a < b;
+  };
+  const auto end = near.begin() + kMostTested;
+  std::nth_element(near.begin(), end, near.end(), nearer);
+  near.erase(end, near.end());
+  std::ranges::sort(near);
+  return near;
+}
+
 }  // namespace
 
 std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader, const Lens& lens,
@@ -37,6 +59,8 @@ std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader
   const auto columns = static_cast<std::size_t>(std::max(1.0, lens.width / spacing));
   const auto rows = static_cast<std::size_t>(std::max(1.0, lens.height / spacing));
   std::vector<SparsePoint> points(views.size() * rows * columns);
+  std::vector<std::vector<std::size_t>> tested(views.size());
+  parallel_for(views.size(), [&](std::size_t k) { tested[k] = views_near(views, views[k]); });
   parallel_for(points.size(), [&](std::size_t i) {
     const std::size_t cell = i % (rows * columns);
     const View& view = views[i / (rows * columns)];
@@ -48,7 +72,7 @@ std::vector<SparsePoint> true_points(const RayScene& scene, const Shader& shader
     SparsePoint& point = points[i];
     point.position = ray.start + hit->distance * ray.direction;
     point.color = shader({point.position, *hit, hit->distance / lens.focal});
-    for (std::size_t k = 0; k < views.size(); ++k)
+    for (const std::size_t k : tested[i / (rows * columns)])
       if (const auto pixel = observe(scene, lens, views[k], point.position))
         point.observations.push_back({k, *pixel});
   });
