@@ -65,8 +65,12 @@ void warn_of_options_without_effect(const Options& options) {
     return;
   }
   if (settings.parts > 0) warn_of(options, {"report-file"}, "with --part, which checks nothing");
-  if (!settings.until.empty()) warn_of(options, kFusion, "with --until, which makes no cloud");
-  if (!settings.plan.empty()) warn_of(options, {"report-file"}, "with --plan");
+  if (!settings.until.empty()) {
+    warn_of(options, kFusion, "with --until, which makes no cloud");
+    warn_of(options, {"fusion-tiles"}, "with --until, which makes no cloud");
+  }
+  if (!settings.plan.empty())
+    warn_of(options, {"report-file", "overwrite-dmaps", "remove-dmaps"}, "with --plan");
   if (settings.plan.empty()) warn_of(options, {"plan-parts"}, "without --plan");
   if (!settings.make_maps)
     for (const Names& names : {kMatching, kMapSize})

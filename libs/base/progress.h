@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <string>
+#include <utility>
 
 namespace axial {
 
@@ -19,5 +21,24 @@ using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
 // logs the line "<title> 10/10 (100%, 40.0s)". Progress has the log level debug, and the end of the
 // stage has the level info. The sink writes nothing at a level that the log does not write.
 ProgressSink console_progress(const std::string& title);
+
+// Counts the items that several threads finish, and calls a sink from one thread at a time.
+class ProgressCounter {
+ public:
+  // `total`: the number of all items. `sink` may be empty.
+  ProgressCounter(ProgressSink sink, std::size_t total) : sink_(std::move(sink)), total_(total) {}
+
+  // Adds one finished item. Thread-safe.
+  void add() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (sink_) sink_(done_, total_);
+  }
+
+ private:
+  ProgressSink sink_;
+  std::size_t total_, done_ = 0;
+  std::mutex mutex_;
+};
 
 }  // namespace axial

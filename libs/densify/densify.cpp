@@ -66,10 +66,11 @@ std::size_t write_sparse_cloud(const Project& project, const Settings& settings,
 // Makes or uses the depth maps of the run's images.
 void prepare_maps(const Project& project, const Settings& settings, const MemoryPlan& plan,
                   const ExistingMaps& existing, ImageStore& images) {
-  if (settings.parts > 0)
-    images.check_part(plan.decodes);
-  else
+  // The first stage reads the images of its part. Later stages need not check them again.
+  if (settings.parts == 0)
     images.check_all(plan.decodes);
+  else if (stages_to_make(settings) == 1)
+    images.check_part(plan.decodes);
   if (settings.make_maps)
     make_depth_maps(project, settings, plan, existing, images);
   else
@@ -143,6 +144,8 @@ Report reconstruct(const Settings& settings, const SceneObserver& observer) {
         "interest exclude all points",
         settings.fusion.min_views, settings.name_of("fusion.min_views"));
   export_pinholes(project, settings, plan, existing, ply);
+  for (const fs::path& file : settings.fuse ? tile_outputs(settings) : std::vector<fs::path>())
+    fs::remove(file);
   if (settings.remove_dmaps && settings.fuse) remove_depth_maps(project, settings);
   return {settings.fuse ? Result::dense_cloud : Result::sparse_cloud, ply, points,
           project.references.size(), all_pinholes(project)};

@@ -3,7 +3,6 @@
 
 #include <sys/stat.h>
 
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -69,17 +68,14 @@ std::vector<std::string> contents_of_views(const Project& project, const Setting
   const fs::path file = settings.working_folder / kFile;
   const nlohmann::json kept = uses_kept ? kept_contents(file) : nlohmann::json::object();
   std::vector<std::string> prints(project.views.size()), states(project.views.size());
-  const ProgressSink progress = console_progress("Fingerprints of images");
-  std::mutex mutex;
-  std::size_t done = 0;
+  ProgressCounter counter(console_progress("Fingerprints of images"), prints.size());
   parallel_for(prints.size(), [&](std::size_t i) {
     if (project.scene.images[i].calibrated) {
       const std::vector<fs::path> files = files_of(project, i);
       states[i] = uses_kept ? state_of(files) : std::string();
       prints[i] = kept_or_read(kept, states[i], files);
     }
-    const std::lock_guard lock(mutex);
-    progress(++done, prints.size());
+    counter.add();
   });
   if (!uses_kept || is_part) return prints;
   nlohmann::json contents = nlohmann::json::object();

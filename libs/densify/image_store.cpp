@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "densify/image_store.h"
 
-#include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <vector>
@@ -95,15 +94,12 @@ void ImageStore::check_part(std::size_t at_once) {
 
 void ImageStore::check(std::span<const std::size_t> images, std::size_t at_once) {
   const std::size_t count = images.size();
-  const ProgressSink progress = console_progress("Read images");
-  std::mutex reporting;
+  ProgressCounter counter(console_progress("Read images"), count);
   FirstError error;
-  std::size_t done = 0;
   for_each_in_flight(count, at_once, [&](std::size_t i) {
     const std::size_t image = images[count - 1 - i];
     error.run(image, [&] { get(image); });
-    const std::lock_guard lock(reporting);
-    progress(++done, count);
+    counter.add();
   });
   error.rethrow();
 }

@@ -65,7 +65,8 @@ class ImageStore {
   // read in reverse order, so that the images that are needed first stay in the cache.
   void check_all(std::size_t at_once);
 
-  // As check_all(), but reads only the images Project::part and their sources.
+  // As check_all(), but reads only the images Project::part and their sources, and does not warn
+  // about masks.
   void check_part(std::size_t at_once);
 
  private:

@@ -2,10 +2,11 @@
 #include "densify/map_stages.h"
 
 #include <algorithm>
-#include <mutex>
+#include <set>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/first_error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -34,7 +35,10 @@ class Runner {
   void run() const {
     const std::size_t first = first_incomplete_stage();
     const std::size_t end = std::min(run_.most_stages, stages_.size());
-    if (first >= end) log_info("All {} depth maps exist already", run_.images.size());
+    if (first == end) log_info("All {} depth maps exist already", run_.images.size());
+    if (first > end)
+      log_info("All {} depth maps exist already, of the later stage {}", run_.images.size(),
+               stages_[first - 1].name);
     for (std::size_t s = 0; s + 1 < first; ++s) remove_stage(s);
     if (first > 0) check(first - 1);
     for (std::size_t s = first; s < end; ++s) {
@@ -50,8 +54,7 @@ class Runner {
   }
 
   void run_part(std::size_t stage) const {
-    for (const std::size_t image : run_.images)
-      if (!finished(stage, image)) require_previous(stage, image);
+    if (stage > 0) require_previous(stage);
     if (stages_[stage].whole_maps) map_large_blocks();
     run_stage(stage);
     const bool drawn = run_.pictures == Pictures::maps_of_every_stage || is_last(stage);
@@ -79,22 +82,41 @@ class Runner {
     return io::dmap_made_from(path(stage, image)) == made_from(stage);
   }
 
-  // Error unless the maps that the stage needs for an image are there.
-  void require_previous(std::size_t stage, std::size_t image) const {
-    if (stage == 0) return;
-    for (const std::size_t needed : stages_[stage].needs(image))
-      if (!finished(stage - 1, needed))
-        fail(
-            "{}: is missing, or was made from other input or settings: first make the stage {} of "
-            "all parts",
-            path(stage - 1, needed).string(), stages_[stage - 1].name);
+  // Error unless the maps that the stage needs for the missing maps are there. Each map is read
+  // once.
+  void require_previous(std::size_t stage) const {
+    std::set<std::size_t> needed;
+    for (const std::size_t image : missing_of(stage))
+      for (const std::size_t other : stages_[stage].needs(image)) needed.insert(other);
+    const std::vector<std::size_t> images(needed.begin(), needed.end());
+    FirstError error;
+    for_each_in_flight(images.size(), run_.in_flight, [&](std::size_t i) {
+      error.run(i, [&] {
+        if (!finished(stage - 1, images[i]))
+          fail(
+              "{}: is missing, or was made from other input or settings: first make the stage {} "
+              "of all parts",
+              path(stage - 1, images[i]).string(), stages_[stage - 1].name);
+      });
+    });
+    error.rethrow();
+  }
+
+  // The images whose maps of the stage are not finished.
+  std::vector<std::size_t> missing_of(std::size_t stage) const {
+    std::vector<char> there(run_.images.size());
+    for_each_in_flight(there.size(), run_.in_flight,
+                       [&](std::size_t i) { there[i] = finished(stage, run_.images[i]); });
+    std::vector<std::size_t> missing;
+    for (std::size_t i = 0; i < there.size(); ++i)
+      if (!there[i]) missing.push_back(run_.images[i]);
+    return missing;
   }
 
   std::size_t first_incomplete_stage() const {
     for (std::size_t s = stages_.size(); s > 0; --s) {
-      bool complete = true;
-      for (const std::size_t image : run_.images) complete &= finished(s - 1, image);
-      if (complete) return s;
+      const auto there = [&](std::size_t image) { return finished(s - 1, image); };
+      if (std::ranges::all_of(run_.images, there)) return s;
     }
     return 0;
   }
@@ -118,19 +140,14 @@ class Runner {
   }
 
   void make_maps(std::size_t stage, PreviousMaps& previous) const {
-    std::vector<std::size_t> missing;
-    for (const std::size_t image : run_.images)
-      if (!finished(stage, image)) missing.push_back(image);
+    const std::vector<std::size_t> missing = missing_of(stage);
     if (const std::size_t reused = run_.images.size() - missing.size(); reused > 0)
       log_info("{}: {} maps existed already", stages_[stage].title, reused);
-    const ProgressSink progress = console_progress(stages_[stage].title);
-    std::mutex mutex;
-    std::size_t done = 0;
+    ProgressCounter counter(console_progress(stages_[stage].title), missing.size());
     for_each_in_flight(missing.size(), run_.in_flight, [&](std::size_t i) {
       const std::size_t image = missing[i];
       io::write_dmap(path(stage, image), stages_[stage].make(image, previous), made_from(stage));
-      const std::lock_guard lock(mutex);
-      progress(++done, missing.size());
+      counter.add();
     });
   }
 

@@ -77,8 +77,10 @@ void check_outputs(const Settings& settings) {
                          settings.name_of("neighbour_lists_output"));
   require_writable(settings.output);
   require_writable(cloud_file(settings));
-  if (!settings.plan.empty())
+  if (!settings.plan.empty()) {
     require_not_an_input(settings.plan, scene_files(settings), settings.name_of("plan"));
+    require_writable(settings.plan);
+  }
   if (!settings.report.empty()) {
     require_not_an_input(settings.report, scene_files(settings), settings.name_of("report"));
     require_writable(settings.report);

@@ -2,6 +2,7 @@
 #include "densify/scene_memory.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
 #include "densify/memory_limit.h"
@@ -37,6 +38,32 @@ std::uint64_t kept_of(const io::MvsCounts& counts, const Settings& settings) {
   return counts.scene_bytes() + side_files(settings) + kept_of_images(counts.images);
 }
 
+// The peak while the file of the scene is read and before its views are scored. Empty if the file
+// cannot be counted.
+std::optional<std::uint64_t> bytes_to_read(const Settings& settings) {
+  auto counts = io::count_mvs(settings.input);
+  if (!counts) return {};
+  std::uint64_t reading = counts->reading_bytes();
+  if (!settings.point_cloud.empty())
+    if (const auto cloud = io::count_point_cloud(settings.point_cloud, *counts)) {
+      reading = std::max(reading, cloud->reading_bytes);
+      if (!only_exports(settings)) counts = cloud->scene;
+    }
+  const ScoringMemory scoring =
+      scoring_memory({counts->images, counts->points, counts->observations, 0});
+  const std::uint64_t kept = kept_of(*counts, settings);
+  return std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()});
+}
+
+// The peak while views are scored, with `size.neighbours` neighbours.
+std::uint64_t bytes_to_score(const io::MvsCounts& counts, const ScoringSize& size,
+                             const Settings& settings) {
+  const ScoringMemory scoring = scoring_memory(size);
+  io::MvsCounts written = counts;
+  written.set_view_scores(size.neighbours);
+  return kept_of(counts, settings) + scoring.kept + std::max(scoring.work, written.writing_bytes());
+}
+
 // `bytes`: the peak while the scene is read and its views are scored.
 void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
   const std::uint64_t cap = memory_limit(settings), least = bytes + kProgramBytes;
@@ -51,35 +78,25 @@ void require_memory_for_scene(std::uint64_t bytes, const Settings& settings) {
 }  // namespace
 
 void require_memory_to_read(const Settings& settings) {
-  auto counts = io::count_mvs(settings.input);
-  if (!counts) return;
-  std::uint64_t reading = counts->reading_bytes();
-  if (!settings.point_cloud.empty())
-    if (const auto cloud = io::count_point_cloud(settings.point_cloud, *counts)) {
-      reading = std::max(reading, cloud->reading_bytes);
-      if (!only_exports(settings)) counts = cloud->scene;
-    }
-  const ScoringMemory scoring =
-      scoring_memory({counts->images, counts->points, counts->observations, 0});
-  const std::uint64_t kept = kept_of(*counts, settings);
-  require_memory_for_scene(
-      std::max({reading, kept + scoring.work + scoring.kept, kept + counts->writing_bytes()}),
-      settings);
+  if (const auto bytes = bytes_to_read(settings)) require_memory_for_scene(*bytes, settings);
 }
 
 void require_memory_to_score(const Scene& scene, const Settings& settings) {
   ScoringSize size = scoring_size(scene, settings.selection);
   const io::MvsCounts counts = io::count_scene(scene);
-  const auto needed = [&] {
-    const ScoringMemory scoring = scoring_memory(size);
-    io::MvsCounts written = counts;
-    written.set_view_scores(size.neighbours);
-    return kept_of(counts, settings) + scoring.kept +
-           std::max(scoring.work, written.writing_bytes());
-  };
-  if (needed() + kProgramBytes > memory_limit(settings))
+  if (bytes_to_score(counts, size, settings) + kProgramBytes > memory_limit(settings))
     size.neighbours = count_neighbours(scene, settings.selection);
-  require_memory_for_scene(needed(), settings);
+  require_memory_for_scene(bytes_to_score(counts, size, settings), settings);
+}
+
+std::uint64_t least_memory_to_prepare(const Scene& scene, const Settings& settings) {
+  ScoringSize size = scoring_size(scene, settings.selection);
+  size.neighbours = 0;
+  for (const SceneImage& image : scene.images) size.neighbours += image.neighbours.size();
+  io::MvsCounts counts = io::count_scene(scene);
+  counts.set_view_scores(0);  // before scoring
+  return kProgramBytes +
+         std::max(bytes_to_score(counts, size, settings), bytes_to_read(settings).value_or(0));
 }
 
 }  // namespace axial::densify

@@ -23,4 +23,7 @@ void require_memory_to_read(const Settings& settings);
 // not exist.
 void require_memory_to_score(const Scene& scene, const Settings& settings);
 
+// The least memory [bytes] with which both checks pass. `scene`: with the neighbours of its images.
+std::uint64_t least_memory_to_prepare(const Scene& scene, const Settings& settings);
+
 }  // namespace axial::densify

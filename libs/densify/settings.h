@@ -75,8 +75,8 @@ struct Settings {
   int geometric_iterations = 2;  // passes of refine_depth_map() (depth/patch_match.h), 0 or more
   unsigned postprocess = kSpeckles | kGaps;  // sum of the bits above; 0: no filter
 
-  // densify() ignores the fields `normals`, max_maps and max_loads. estimate_normals replaces
-  // `normals`, and the memory plan replaces the other two.
+  // densify() ignores the fields `normals`, `part`, max_maps and max_loads. estimate_normals
+  // replaces `normals`, the tiles replace `part`, and the memory plan replaces the other two.
   cloud::FuseOptions fusion;
   bool make_maps = true;  // false: existing maps in the working folder are used unchanged
   bool fuse = true;       // false: the sparse points become the cloud

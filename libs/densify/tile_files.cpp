@@ -51,7 +51,7 @@ std::vector<fs::path> tile_outputs(const Settings& settings) {
   };
   if (settings.tile > 0)
     add(settings.tile);
-  else if (settings.fusion_tiles > 1)
+  else
     for (std::size_t tile = 1; tile <= settings.fusion_tiles; ++tile) add(tile);
   return files;
 }

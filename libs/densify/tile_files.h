@@ -18,8 +18,8 @@ namespace axial::densify {
 // output. Its side file has ".json" added to the name.
 std::filesystem::path tile_file(const Settings& settings, std::size_t tile);
 
-// The clouds and side files of the tiles that a run may write: of Settings::tile, or of all tiles
-// if it is 0 and there are more than one.
+// The clouds and side files of the tiles that a run may write or use: of Settings::tile, or of all
+// tiles if it is 0.
 std::vector<std::filesystem::path> tile_outputs(const Settings& settings);
 
 // Writes the side file of the cloud `ply`, which is complete. `made_from`: a text that identifies

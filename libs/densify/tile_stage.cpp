@@ -80,6 +80,12 @@ class TileRun {
     return counts;
   }
 
+  // Error if a tile needs more memory than the plan has.
+  void require_memory() const {
+    for (std::size_t tile = 1; tile <= parts_.size(); ++tile)
+      most_maps(tile, cloud::views_needed(views_, parts_[tile - 1]));
+  }
+
  private:
   // Finds the views that see each tile, and fingerprints of the maps.
   void look_at_maps() {
@@ -181,6 +187,7 @@ CloudCounts write_tile(const FusionRun& run) {
 
 CloudCounts write_tiles(const FusionRun& run, const fs::path& ply) {
   const TileRun tiles(run);
+  tiles.require_memory();
   io::CloudWriter writer(ply, layout_of(run.settings), placement_of(run.project, run.settings));
   CloudCounts all;
   const std::size_t count = run.settings.fusion_tiles;
@@ -190,7 +197,6 @@ CloudCounts write_tiles(const FusionRun& run, const fs::path& ply) {
     all.add(counts);
   }
   writer.finish();
-  for (std::size_t tile = 1; tile <= count; ++tile) remove_tile(tile_file(run.settings, tile));
   return all;
 }
 

@@ -19,8 +19,8 @@ void require_final_maps(const Project& project, const Settings& settings,
 CloudCounts write_tile(const FusionRun& run);
 
 // Makes the tiles whose files are missing or were made from other depth maps or settings. Then
-// writes the points of all tiles, in the order of the tiles, to the cloud `ply`, and removes the
-// files of the tiles. So the cloud has the same bytes whether this run or others made the tiles.
+// writes the points of all tiles, in the order of the tiles, to the cloud `ply`. The files of the
+// tiles stay. So the cloud has the same bytes whether this run or others made the tiles.
 // Returns the numbers of points.
 //
 // Both functions first read every depth map once, to find the views that see each tile. They throw

@@ -10,6 +10,7 @@
 #include "densify/depth_stage.h"
 #include "densify/memory_limit.h"
 #include "densify/memory_plan.h"
+#include "densify/scene_memory.h"
 #include "densify/stage_bytes.h"
 #include "io/bytes/json.h"
 
@@ -77,7 +78,8 @@ WorkPlan plan_work(const Project& project, const Settings& settings) {
   plan.parts = number_of_parts(settings, plan.images, *std::ranges::max_element(seconds));
   // The plan of a run would be the same with more memory: all threads have work.
   const std::uint64_t memory =
-      bytes.scene + kProgramBytes + least_bytes(bytes, lists, plan.threads);
+      std::max(bytes.scene + kProgramBytes + least_bytes(bytes, lists, plan.threads),
+               least_memory_to_prepare(project.scene, settings));
   const double share =
       std::ceil(static_cast<double>(plan.images) / static_cast<double>(plan.parts)) /
       static_cast<double>(plan.images);

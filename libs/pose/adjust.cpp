@@ -10,7 +10,15 @@
 namespace axial::pose {
 namespace {
 
-// Reports the iterations. Ends the adjustment when an iteration gains less than `least_gain`.
+// The damping of the solver falls by a factor of three with each iteration. From the solver's own
+// initial value, a survey of many images needs ten iterations until the damping no longer hinders
+// the bending of the whole block, which reprojection errors determine weakly. Many images determine
+// all other directions well, so the first step may be long. If a step raises the cost, the solver
+// rejects it and damps more.
+constexpr double kLongSteps = 1e9;
+
+// Reports the iterations. Ends the adjustment when an iteration with little damping gains less than
+// `least_gain`. The gain of a strongly damped step tells nothing about the distance to the minimum.
 class Iterations : public ceres::IterationCallback {
  public:
   Iterations(const AdjustSink& sink, double least_gain) : sink_(sink), least_gain_(least_gain) {}
@@ -18,7 +26,8 @@ class Iterations : public ceres::IterationCallback {
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (sink_) sink_({iteration.iteration, iteration.cost});
     const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
-                      iteration.cost_change < least_gain_;
+                      iteration.cost_change < least_gain_ &&
+                      iteration.trust_region_radius > kLongSteps / 1000;
     return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
@@ -26,13 +35,6 @@ class Iterations : public ceres::IterationCallback {
   const AdjustSink& sink_;
   double least_gain_;
 };
-
-// The damping of the solver falls by a factor of three with each iteration. From the solver's own
-// initial value, a survey of many images needs ten iterations until the damping no longer hinders
-// the bending of the whole block, which reprojection errors determine weakly. Many images determine
-// all other directions well, so the first step may be long. If a step raises the cost, the solver
-// rejects it and damps more.
-constexpr double kLongSteps = 1e9;
 
 ceres::Solver::Options solver_options(AdjustProblem& adjusted, int max_iterations) {
   ceres::Solver::Options options;

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <bitset>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <span>
 #include <unordered_map>
@@ -300,33 +299,15 @@ ViewPreparation prepare_image(Scene& scene, std::size_t index, const Observation
   return result;
 }
 
-// Counts the work on images in thirds: projecting their points takes about half as long as
-// comparing them. Calls the sink from one thread at a time.
-class Counter {
- public:
-  Counter(const ProgressSink& sink, std::size_t images) : sink_(sink), images_(images) {}
-
-  void add(std::size_t thirds) {
-    const std::lock_guard lock(mutex_);
-    thirds_ += thirds;
-    if (sink_) sink_(thirds_ / 3, images_);
-  }
-
- private:
-  const ProgressSink& sink_;
-  std::size_t images_, thirds_ = 0;
-  std::mutex mutex_;
-};
-
 // Fills all observations. Observations lie in memory by point: going through them by image would
 // wait for memory at each of them.
-void observe_all(const Scene& scene, Observations& observations, Counter& counter) {
+void observe_all(const Scene& scene, Observations& observations, ProgressCounter& counter) {
   const std::vector<CameraVariant<double>> cameras = cameras_of(scene);
   const std::size_t portions = scene.images.size(), points = scene.points.size();
   parallel_for(portions, [&](std::size_t i) {
     for (std::size_t p = points * i / portions; p < points * (i + 1) / portions; ++p)
       observe_point(scene, cameras, p, observations);
-    counter.add(1);
+    counter.add();
   });
 }
 
@@ -389,7 +370,12 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionO
                                               const ProgressSink& progress) {
   Observations observations = collect(scene);
   const std::size_t count = scene.images.size();
-  Counter counter(progress, count);
+  // Projecting the points takes about half as long as comparing the images: images count in thirds.
+  ProgressCounter counter(
+      [&](std::size_t thirds, std::size_t) {
+        if (progress) progress(thirds / 3, count);
+      },
+      3 * count);
   observe_all(scene, observations, counter);
 
   const auto calibrated =
@@ -399,7 +385,7 @@ std::vector<ViewPreparation> score_neighbours(Scene& scene, const ViewSelectionO
   std::vector<ViewPreparation> result(count);
   parallel_for(count, [&](std::size_t i) {
     result[i] = prepare_image(scene, i, observations, enough_views, options);
-    counter.add(2);
+    for (int thirds = 0; thirds < 2; ++thirds) counter.add();
   });
   return result;
 }

@@ -95,8 +95,9 @@ class EndToEnd(SceneTest):
         self.assertEqual(len(json.loads(read(self.path("parts", "depth_inputs.json")))["contents"]), 4)
         self.refuses(".photometric.dmap: is missing", *run, "--until", "geometric1", "--part", "1/3")
         for stage in [*plan["stages"][:-1], "maps"]:
+            memory = plan["per_part"]["adjusted" if stage == "maps" else stage]["max_memory_mb"]
             for part in (2, 3, 1):
-                self.succeeds(*run, "--until", stage, "--part", f"{part}/3")
+                self.succeeds(*run, "--until", stage, "--part", f"{part}/3", "--max-memory", memory)
         self.assertIn("All 4 depth maps exist already", self.succeeds(*run).stdout)
         self.assertEqual({name: content for name, content in self.outputs("parts").items()
                           if name not in ("plan.json", "depth_inputs.json")}, self.outputs("whole"))

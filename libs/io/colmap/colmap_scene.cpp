@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
 #include <set>
 #include <unordered_map>
 
@@ -251,16 +250,14 @@ Scene import_colmap_scene(const ColmapModel& model, const ColmapImport& import,
       all_straight ? std::vector<fs::path>(resampled.size()) : masks_to_undistort(scene, resampled);
   FirstError error;
   std::vector<char> fits_jpeg(scene.images.size());
-  std::mutex mutex;
-  std::size_t checked = 0;
+  ProgressCounter checked(checking_images, scene.images.size());
   parallel_for(scene.images.size(), [&](std::size_t i) {
     const SceneImage& image = scene.images[i];
     error.run(i, [&] {
       fits_jpeg[i] = check_image(image.path, image.camera);
       check_mask(masks[i], image.camera);
     });
-    const std::lock_guard lock(mutex);
-    if (checking_images) checking_images(++checked, scene.images.size());
+    checked.add();
   });
   error.rethrow();
   if (!all_straight) undistort(model, import, resampled, masks, fits_jpeg, undistorting, scene);

@@ -70,8 +70,8 @@ struct MvsFile {
 // too few or too many bytes.
 MvsFile parse_mvs(std::string_view bytes, const std::string& file);
 
-// Returns the bytes of a file of version 7. `room`: the expected number of bytes. With more bytes, the
-// memory grows while the bytes are collected.
+// Returns the bytes of a file of version 7. `room`: the expected number of bytes. With more bytes,
+// the memory grows while the bytes are collected.
 std::string format_mvs(const MvsFile& mvs, std::size_t room = 0);
 
 }  // namespace axial::io
