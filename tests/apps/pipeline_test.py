@@ -179,7 +179,18 @@ class Positions(InFolder):
                            ("# name x y z", None), ("", None), ("a.jpg 1 2 3 # 4 5 6", "a.jpg"),
                            ('"#lost.jpg" 1 2 3', "#lost.jpg"), ('"q" 1.jpg 1 2 3', '"q" 1.jpg'),
                            ('"q ""r""" 1 2 3 # x', 'q "r"'), ("lost 2.jpg 1 2 3", "lost 2.jpg")):
-            self.assertEqual(positions.name_in(line, images.__contains__), name, line)
+            entry = positions.entry_in(line, images.__contains__)
+            self.assertEqual(entry, name and (name, (1, 2, 3)), line)
+
+    def test_positions_are_those_of_the_known_names(self):
+        file = self.write("positions.txt", "\ufeffa.jpg 1 -2.5 3e2\n# b.jpg 1 1 1\n"
+                          'lost.jpg 1 2 3\n"c d.jpg" 4 5 6 # 7 8 9\n')
+        self.assertEqual(positions.read(file, {"a.jpg", "b.jpg", "c d.jpg"}.__contains__),
+                         {"a.jpg": (1, -2.5, 300), "c d.jpg": (4, 5, 6)})
+        for line in ("b.jpg", "b.jpg 1 2", "b.jpg 1 2 nan", '"b.jpg" 1 2', '"b.jpg" 1 2 3 4'):
+            self.write("positions.txt", f"a.jpg 1 2 3\n{line}\n")
+            with self.assertRaisesRegex(Failure, "positions.txt:2: must be NAME X Y Z"):
+                positions.read(file, {"a.jpg", "b.jpg"}.__contains__)
 
     def test_names_of_no_photograph_are_told(self):
         for name in ("a.jpg", "b.jpg", "c.jpg"):

@@ -39,7 +39,7 @@ def camera_centres(images):
 # program reads. If there is a pipe `pipe-NAME`, the program opens it and sleeps, so that the pipe
 # closes when the program ends. With `child-pipe-NAME`, a child of the program does so.
 STAND_IN = """#!/bin/sh
-[ "$2" = --help ] && exit
+[ "$2" = --help ] && { echo "--SpatialMatching.is_gps "; exit; }
 name=${0##*/}
 echo "$name $*" >> commands
 if [ -p "pipe-$name" ]; then exec > "pipe-$name"; echo begun; exec sleep 60; fi
@@ -175,6 +175,30 @@ class WithStandIns(unittest.TestCase):
             self.assertEqual(done_before(), kept, option)
         positions.write_text(positions.read_text() + "\n")
         self.assertEqual(done_before(), 3)
+        options += ["--matcher", "spatial"]
+        self.assertEqual(done_before(), 1)
+        command = (self.folder / "commands").read_text().splitlines()[-8]
+        self.assertIn(f"colmap spatial_matcher --database_path {self.folder}/out/database.db "
+                      "--SpatialMatching.is_gps 0", command)
+        positions.write_text(positions.read_text() + "\n")
+        self.assertEqual(done_before(), 1)
+        options += ["--matcher", "vocabulary", "--vocabulary", "lens"]
+        self.assertEqual(done_before(), 1)
+        self.assertEqual(done_before(), 9)
+
+    def test_a_matcher_without_its_input_is_refused_at_once(self):
+        for options, said in (
+                (["spatial"], "--matcher spatial: none of the photographs in "
+                 f"{self.folder / 'images'} have a GPS position (latitude, longitude and altitude); "
+                 "give --scale-from positions:FILE or choose another --matcher"),
+                (["vocabulary"], "--matcher vocabulary: needs --vocabulary FILE, a vocabulary tree "
+                 "for COLMAP (docs/underwater-guide.md)"),
+                (["sequential", "--vocabulary", "lens"],
+                 "--vocabulary lens: is only for --matcher vocabulary")):
+            ended = self.ended("--matcher", *options)
+            self.assertEqual((ended.returncode, ended.stdout, ended.stderr),
+                             (1, "", f"reconstruct: {said}\n"))
+        self.assertFalse((self.folder / "out").exists())
 
 
 @unittest.skipUnless(shutil.which("colmap"), "COLMAP is not installed")

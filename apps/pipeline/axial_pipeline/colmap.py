@@ -17,13 +17,23 @@ def check_installed():
         raise Failure("colmap is not installed")
 
 
+def help_of(command):
+    shown = subprocess.run(["colmap", command, "--help"], capture_output=True, text=True)
+    return shown.stdout + shown.stderr
+
+
+def has_option(command, option):
+    """Whether the installed version of COLMAP knows this option of a command."""
+    return f"--{option} " in help_of(command)
+
+
 def on_the_cpu(command, families, threads=None):
     """The options that keep a command of COLMAP off the graphics card and, if `threads` is given,
     limit its threads. `families`: the option names' first parts in all versions of COLMAP. Returns
     no options if the installed version knows none of them."""
-    known = subprocess.run(["colmap", command, "--help"], capture_output=True, text=True)
+    known = help_of(command)
     for family in families:
-        if f"--{family}.use_gpu " in known.stdout + known.stderr:
+        if f"--{family}.use_gpu " in known:
             limit = [] if threads is None else [f"--{family}.num_threads", threads]
             return [f"--{family}.use_gpu", 0, *limit]
     return []
@@ -38,10 +48,12 @@ def features(database, images, camera_model, parameters=None, threads=None):
             *on_the_cpu("feature_extractor", EXTRACTION, threads)]
 
 
-def matches(database, matcher, threads=None):
-    """Matches features. `matcher`: "exhaustive" for all pairs of images, or "sequential"."""
-    command = f"{matcher}_matcher"
-    return ["colmap", command, "--database_path", database, *on_the_cpu(command, MATCHING, threads)]
+def matches(database, matcher, threads=None, more=()):
+    """Matches features. `matcher`: "exhaustive" for all pairs of images, "sequential", "spatial" or
+    "vocabulary". `more`: further options of the matcher."""
+    command = "vocab_tree_matcher" if matcher == "vocabulary" else f"{matcher}_matcher"
+    return ["colmap", command, "--database_path", database, *more,
+            *on_the_cpu(command, MATCHING, threads)]
 
 
 def mapper(database, images, models, refine=None, threads=None):

@@ -19,7 +19,7 @@ import os
 import pathlib
 import shlex
 
-from . import cluster, colmap, files, lens, positions
+from . import cluster, colmap, files, lens, matching, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
 from .steps import Step, run_all
@@ -46,8 +46,11 @@ def options(script_folder):
                         help="known lengths or positions [m], as for RefinePoses")
     parser.add_argument("--refine", default="",
                         help="further unknowns, as for RefinePoses")
-    parser.add_argument("--matcher", choices=["exhaustive", "sequential"], default="exhaustive",
-                        help="pairs of images that COLMAP matches (default: %(default)s)")
+    parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
+                        help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
+                        "in space, or images that look alike (default: %(default)s)")
+    parser.add_argument("--vocabulary", default="",
+                        help="vocabulary tree for COLMAP, for --matcher vocabulary")
     parser.add_argument("--lens-model", default="OPENCV",
                         help="lens model that COLMAP calibrates; it absorbs the refraction "
                         "(default: %(default)s)")
@@ -101,6 +104,7 @@ def check(given):
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
+    matching.check(given)
     given.output = str(pathlib.Path(given.output).resolve())
     if pathlib.Path(given.output).is_relative_to(given.images):
         raise Failure(f"--output {given.output}: lies in the folder of the images")
@@ -124,9 +128,7 @@ def colmap_steps(given, out):
     start = lens.start_under_water(given.lens, given.lens_model)
     yield Step("features", colmap.features(features, given.images, given.lens_model, start),
                makes=features, reads=[given.images], changed=colmap.database_files(features))
-    yield Step("matches", colmap.matches(database, given.matcher), makes=database,
-               changed=colmap.database_files(database),
-               before=lambda: files.copy_once(features, database))
+    yield matching.step(given, features, database)
     yield Step("poses", colmap.mapper(database, given.images, models), makes=models / "best",
                anew=[models], before=models.mkdir, after=lambda: take_largest(models))
 

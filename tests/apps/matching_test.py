@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pairs that `reconstruct --matcher` lets COLMAP match: options, GPS positions of photographs, and
+the positions in COLMAP's database."""
+
+import argparse
+import contextlib
+import itertools
+import os
+import pathlib
+import shutil
+import sqlite3
+import struct
+import subprocess
+import tempfile
+import unittest
+import unittest.mock
+
+from pipeline_folder import InFolder
+from programs import main, run
+
+from axial_pipeline import colmap, gps, matching
+from axial_pipeline.failure import Failure
+
+# The table of COLMAP 3.8.
+IMAGES = """CREATE TABLE images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    name TEXT NOT NULL UNIQUE, camera_id INTEGER NOT NULL, prior_qw REAL, prior_qx REAL, prior_qy REAL,
+    prior_qz REAL, prior_tx REAL, prior_ty REAL, prior_tz REAL)"""
+ALL = (2, 4, 6)  # tags of latitude, longitude and altitude
+
+
+def exif(tags=ALL, order="<", seconds=3):
+    """Exif data in which the GPS table has these tags. Latitude and longitude are 1 degree, 2 minutes
+    and `seconds`; the altitude is 1 m."""
+    entries = [(tag, 5, 1 if tag == 6 else 3) for tag in tags]
+    values = 26 + 2 + 12 * len(entries) + 4
+    tables = struct.pack(f"{order}HHHIII", 1, 0x8825, 4, 1, 26, 0)
+    tables += struct.pack(f"{order}H", len(entries))
+    for number, entry in enumerate(entries):
+        tables += struct.pack(f"{order}HHII", *entry, values + 24 * number)
+    tables += bytes(4) + struct.pack(f"{order}6I", 1, 1, 2, 1, seconds, 1) * len(entries)
+    return {"<": b"II*\0\x08\0\0\0", ">": b"MM\0*\0\0\0\x08"}[order] + tables
+
+
+def jpeg(photograph=b"\xff\xd8\xff\xd9", **options):
+    """A JPEG file with Exif data before the rest of `photograph`."""
+    segment = b"Exif\0\0" + exif(**options)
+    return (photograph[:2] + b"\xff\xe1" + struct.pack(">H", len(segment) + 2) + segment
+            + photograph[2:])
+
+
+def rows(database, query):
+    with contextlib.closing(sqlite3.connect(database)) as connection:
+        return connection.execute(query).fetchall()
+
+
+def pairs(database):
+    """The pairs of image names that COLMAP compared."""
+    names = dict(rows(database, "SELECT image_id, name FROM images"))
+    return {tuple(sorted((names[pair // 2147483647], names[pair % 2147483647])))
+            for pair, in rows(database, "SELECT pair_id FROM two_view_geometries")}
+
+
+class Matching(InFolder):
+    """With a stand-in for COLMAP that knows all options."""
+
+    def setUp(self):
+        super().setUp()
+        self.knows("--SiftMatching.use_gpu --SpatialMatching.is_gps ")
+        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
+        path.start()
+        self.addCleanup(path.stop)
+        for name in "abc":
+            self.write(f"images/{name}.jpg", jpeg())
+        self.positions = self.write("positions.txt", "a.jpg 5e5 0 0\nb.jpg 5e5 1 0\nc.jpg 5e5 3 -2\n")
+
+    def knows(self, options):
+        self.put_script("colmap", f"echo '{options}'")
+
+    def given(self, matcher, scale_from="", vocabulary=""):
+        return argparse.Namespace(matcher=matcher, scale_from=scale_from, vocabulary=vocabulary,
+                                  images=str(self.folder / "images"))
+
+    def with_positions(self):
+        return self.given("spatial", f"positions:{self.positions}")
+
+    def failure_of(self, given):
+        with self.assertRaises(Failure) as caught:
+            matching.check(given)
+        self.assertNotIn("\n", str(caught.exception))
+        return str(caught.exception)
+
+    def database(self, names="abc", prior=None):
+        path = self.folder / "features.db"
+        path.unlink(missing_ok=True)
+        with contextlib.closing(sqlite3.connect(path)) as connection, connection:
+            connection.execute(IMAGES)
+            connection.executemany("INSERT INTO images (name, camera_id, prior_tx, prior_ty, prior_tz) "
+                                   "VALUES (?, 1, ?, ?, ?)", [(f"{name}.jpg", *(prior or [None] * 3))
+                                                              for name in names])
+        return path
+
+    def step(self, given):
+        return matching.step(given, self.folder / "features.db", self.folder / "database.db")
+
+    def prepared(self, given):
+        """What the step says before COLMAP matches, and the positions in the database by name."""
+        said = self.said_by(self.step(given).before)
+        found = rows(self.folder / "database.db", "SELECT name, prior_tx, prior_ty, prior_tz FROM images")
+        return said, {name: position for name, *position in found}
+
+    def test_every_matcher_has_its_command(self):
+        tree = str(self.write("tree.bin", "tree"))
+        neighbours = ["--SpatialMatching.max_num_neighbors", "31", "--SpatialMatching.max_distance",
+                      "1000000"]
+        for given, command, more, reads in (
+                (self.given("exhaustive"), "exhaustive", [], []),
+                (self.given("exhaustive", f"positions:{self.positions}"), "exhaustive", [], []),
+                (self.given("sequential"), "sequential", [], []),
+                (self.given("spatial"), "spatial", neighbours, []),
+                (self.with_positions(), "spatial", ["--SpatialMatching.is_gps", "0",
+                                                    "--SpatialMatching.ignore_z", "0", *neighbours],
+                 [self.positions]),
+                (self.given("vocabulary", vocabulary=tree), "vocab_tree",
+                 ["--VocabTreeMatching.vocab_tree_path", tree], [pathlib.Path(tree)])):
+            matching.check(given)
+            step = self.step(given)
+            self.assertEqual(step.command, ["colmap", f"{command}_matcher", "--database_path",
+                                            str(self.folder / "database.db"), *more,
+                                            "--SiftMatching.use_gpu", "0"])
+            self.assertEqual(step.reads, reads)
+
+    def test_positions_are_written_with_their_differences(self):
+        self.database("abcd", (1, 2, 3))
+        for _ in range(2):  # as after a kill
+            said, found = self.prepared(self.with_positions())
+            self.assertEqual(found, {"a.jpg": [1, 1, 3], "b.jpg": [1, 2, 3], "c.jpg": [1, 4, 1],
+                                     "d.jpg": [0, 0, 0]})
+            self.assertEqual(said, "    1 of 4 photographs have no position and are not matched\n")
+
+    def test_gps_positions_stay(self):
+        self.database(prior=(54.5, 10, 0))
+        self.assertEqual(self.prepared(self.given("spatial")),
+                         ("", {f"{name}.jpg": [54.5, 10, 0] for name in "abc"}))
+
+    def test_other_matchers_change_nothing(self):
+        self.database()
+        for matcher in ("exhaustive", "sequential", "vocabulary"):
+            said, found = self.prepared(self.given(matcher, f"positions:{self.positions}"))
+            self.assertEqual((said, found["a.jpg"]), ("", [None] * 3))
+
+    def test_features_without_positions_are_a_failure(self):
+        self.database()
+        with self.assertRaisesRegex(Failure, "--matcher spatial: none of the photographs in .* have"):
+            self.step(self.given("spatial")).before()
+        self.database("xyz")
+        (self.folder / "database.db").unlink()
+        with self.assertRaisesRegex(Failure, "positions.txt names 0 photographs as in"):
+            self.step(self.with_positions()).before()
+
+    def test_a_newer_table_is_left_alone(self):
+        with contextlib.closing(sqlite3.connect(self.folder / "features.db")) as connection, connection:
+            connection.execute("CREATE TABLE images (image_id INTEGER, name TEXT)")
+        self.assertEqual(self.said_by(self.step(self.given("spatial")).before), "")
+
+    def test_photographs_without_gps_are_refused(self):
+        images = self.folder / "images"
+        for name in "ab":
+            self.write(f"images/{name}.jpg", jpeg(tags=[2, 4]))
+        end = ("a GPS position (latitude, longitude and altitude); give --scale-from positions:FILE or "
+               "choose another --matcher")
+        self.assertEqual(self.failure_of(self.given("spatial", "images:a.jpg,b.jpg,1")),
+                         f"--matcher spatial: 1 of the photographs in {images} has {end}")
+        (images / "c.jpg").unlink()
+        self.assertEqual(self.failure_of(self.given("spatial")),
+                         f"--matcher spatial: none of the photographs in {images} have {end}")
+        self.write("images/dive 2/d.jpg", jpeg())
+        self.write("images/dive 2/e.jpg", jpeg())
+        matching.check(self.given("spatial"))
+
+    def test_wrong_options_are_refused(self):
+        for given, said in (
+                (self.given("vocabulary"), "--matcher vocabulary: needs --vocabulary FILE, a vocabulary "
+                 "tree for COLMAP (docs/underwater-guide.md)"),
+                (self.given("vocabulary", vocabulary="none"), "--vocabulary none: file not found"),
+                (self.given("vocabulary", vocabulary=str(self.folder)),
+                 f"--vocabulary {self.folder}: file not found"),
+                (self.given("spatial", vocabulary="none"),
+                 "--vocabulary none: is only for --matcher vocabulary")):
+            self.assertEqual(self.failure_of(given), said)
+        self.knows("--SiftMatching.use_gpu ")
+        self.assertIn("--matcher spatial: this version of COLMAP takes no positions",
+                      self.failure_of(self.with_positions()))
+        matching.check(self.given("spatial"))
+        self.write("positions.txt", "a.jpg 1 2 3\nb.jpg 1 2\n")
+        self.assertEqual(self.failure_of(self.with_positions()),
+                         f"{self.positions}:2: must be NAME X Y Z with finite numbers")
+
+
+class Gps(InFolder):
+    def test_only_a_whole_position_counts(self):
+        for order in "<>":
+            for count in range(4):
+                for tags in itertools.combinations(ALL, count):
+                    file = self.write("a.jpg", jpeg(tags=tags, order=order))
+                    self.assertEqual(gps.has_gps(file), tags == ALL, (order, tags))
+
+    def test_forms_of_files(self):
+        for content, expected in ((exif(), True), (exif(order=">"), True), (exif([2]), False),
+                                  (b"\x89PNG\r\n\x1a\n" + b"\0\0\0\1eXIf" + exif(), True),
+                                  (b"\x89PNG\r\n\x1a\n", False), (b"", False), (b"text", False)):
+            self.assertEqual(gps.has_gps(self.write("file", content)), expected)
+        self.assertFalse(gps.has_gps(self.folder / "none"))
+
+    def test_broken_data_have_no_position(self):
+        """Every file that ends within the tables has none. Every file with one wrong byte is read
+        without an error."""
+        whole = jpeg()
+        for end in range(len(whole) - 2 - 3 * 24 - 4):
+            self.assertFalse(gps.has_gps(self.write("a.jpg", whole[:end])), end)
+        for at in range(len(whole)):
+            gps.has_gps(self.write("a.jpg", whole[:at] + b"\xff" + whole[at + 1:]))
+
+
+@unittest.skipUnless(shutil.which("colmap") and
+                     colmap.has_option("spatial_matcher", "SpatialMatching.is_gps"),
+                     "COLMAP is not installed or does not take positions as COLMAP 3.8 does")
+class WithColmap(InFolder):
+    """COLMAP pairs photographs by the positions that it is given."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="axial_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.scene = pathlib.Path(folder.name) / "scene"
+        made = run("SimulateUnderwater", "--preset", "transect", "--views", 8, "--width", 160, "--height",
+                   120, "--coarseness", 4, "--samples", 1, "--truth", 0, "--medium", "water", "-o",
+                   cls.scene)
+        assert made.returncode == 0, made.stderr
+
+    def matched(self, images, scale_from=""):
+        """The pairs that COLMAP compares with two neighbours of each photograph."""
+        given = argparse.Namespace(matcher="spatial", scale_from=scale_from, vocabulary="",
+                                   images=str(images))
+        features, database = self.folder / "features.db", self.folder / "database.db"
+        with unittest.mock.patch.object(matching, "NEIGHBOURS", 2):
+            matching.check(given)
+            step = matching.step(given, features, database)
+        self.called(colmap.features(features, images, "PINHOLE"))
+        self.said = self.said_by(step.before)
+        self.called(step.command)
+        return pairs(database)
+
+    def called(self, command):
+        ended = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+
+    def neighbours(self, places):
+        """The pairs of each place on a line with its two nearest places."""
+        return {tuple(sorted((name, other))) for name in places for other in sorted(
+            (other for other in places if other != name),
+            key=lambda other: abs(places[other] - places[name]))[:2]}
+
+    def test_positions_of_a_file_choose_the_pairs(self):
+        """The places, at uneven distances along the depth, differ from those of the views. One
+        photograph has no place."""
+        images = self.scene / "water"
+        names = sorted(path.name for path in images.iterdir())
+        places = {name: (3 * number % 7) ** 1.5 for number, name in enumerate(names[1:])}
+        file = self.write("positions.txt", "".join(f"{name} 500000 5000000 {place}\n"
+                                                   for name, place in places.items()))
+        self.assertEqual(self.matched(images, f"positions:{file}"), self.neighbours(places))
+        self.assertIn("1 of 8 photographs have no position", self.said)
+
+    def test_gps_positions_choose_the_pairs(self):
+        photographs = sorted((self.scene / "water").iterdir())
+        places = {path.name: (3 * number % 7) ** 2 for number, path in enumerate(photographs[1:])}
+        for path in photographs:
+            self.write(f"images/{path.name}", jpeg(path.read_bytes(), seconds=places[path.name])
+                       if path.name in places else path.read_bytes())
+        self.assertEqual(self.matched(self.folder / "images"), self.neighbours(places))
+        self.assertIn("1 of 8 photographs have no position", self.said)
+
+
+if __name__ == "__main__":
+    main()
