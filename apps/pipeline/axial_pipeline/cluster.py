@@ -65,6 +65,19 @@ def command(given, out, node):
             *shlex.split(given.snakemake)]
 
 
+def cancel_jobs(out):
+    """Cancels the jobs of Slurm of a run in the folder `out`. While snakemake asks for the states of
+    its jobs, an interruption lets it end without cancelling them."""
+    listed = subprocess.run(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"],
+                            capture_output=True, text=True)
+    jobs_left = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
+    numbers = [number for number, name in jobs_left if name.endswith(f"-{jobs.code_of(out)}")]
+    if numbers:
+        subprocess.run(["scancel", *numbers])
+    if listed.returncode != 0:
+        print(f"squeue: {listed.stderr.strip()}: jobs may be left in the queue", flush=True)
+
+
 def run_to_its_end(words, given, out, lock):
     """Runs snakemake in the folder `out`. It inherits the file `lock`. If something kills this
     process, the kernel interrupts snakemake, which cancels its jobs on a cluster. For jobs on this
@@ -77,7 +90,11 @@ def run_to_its_end(words, given, out, lock):
     try:
         code = process.wait()
     except KeyboardInterrupt:  # snakemake has got the signal, too
-        process.wait()
+        try:
+            process.wait()
+        finally:
+            if given.cluster == "slurm":
+                cancel_jobs(out)
         raise
     if code != 0:
         raise Failure(f"snakemake: {ending(code)}; the outputs of the steps are in {out / 'logs'}; "

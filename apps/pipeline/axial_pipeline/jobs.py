@@ -28,6 +28,11 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "evaluate": (8000, 0, 60, 0)}
 
 
+def code_of(out):
+    """The last part of the names that Slurm's jobs of a run in the folder `out` have."""
+    return hashlib.sha256(str(out).encode()).hexdigest()[:8]
+
+
 def done(name):
     """The record that a step is done, relative to the folder of the output files."""
     return f"steps/{name}.done.json"
@@ -44,7 +49,7 @@ class Job:
         self.threads = min(MOST_CPUS, node["cpus"])
         # A run that was killed may have left jobs in the queue. The dependency "singleton" lets a job
         # wait for the end of jobs of the same name.
-        run = hashlib.sha256(str(out).encode()).hexdigest()[:8]
+        run = code_of(out)
 
         def command(wildcards):
             words = ["env", f"PYTHONPATH={PACKAGE.parent}", sys.executable, "-B", "-m",
