@@ -44,7 +44,8 @@ def forget_what_changed(todo, out):
 
 
 def largest_node(given):
-    """Processors and memory [MB] of this machine, or of the largest node of Slurm."""
+    """Processors and memory [MB] of this machine, or of the node of Slurm with the most memory among
+    those that have as many processors as a job can use."""
     if given.cluster == "local":
         memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >> 20
         return {"cpus": len(os.sched_getaffinity(0)), "memory_mb": memory}
@@ -53,7 +54,9 @@ def largest_node(given):
     nodes = [[int(word.rstrip("+")) for word in line.split()] for line in listed.stdout.splitlines()]
     if listed.returncode != 0 or not nodes:
         raise Failure(f"--cluster slurm: sinfo shows no nodes: {listed.stderr.strip()}")
-    return {"cpus": max(cpus for cpus, _ in nodes), "memory_mb": max(memory for _, memory in nodes)}
+    enough = min(jobs.MOST_CPUS, max(cpus for cpus, _ in nodes))
+    memory, cpus = max((memory, cpus) for cpus, memory in nodes if cpus >= enough)
+    return {"cpus": cpus, "memory_mb": memory}
 
 
 def command(given, out, node):
