@@ -2,13 +2,14 @@
 """What `reconstruct --cluster` asks Slurm for, with stand-ins for Slurm's commands."""
 
 import argparse
+import json
 import os
 import unittest.mock
 
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs
+from axial_pipeline import cluster, jobs, reconstruct
 
 
 class SlurmCommands(InFolder):
@@ -38,6 +39,34 @@ class SlurmCommands(InFolder):
                                      ("4 16000\n8+ 8000", 8, 8000)):
             self.put_script("sinfo", f"echo '{listed}'")
             self.assertEqual(cluster.largest_node(given), {"cpus": cpus, "memory_mb": memory})
+
+
+class Jobs(InFolder):
+    def survey(self, images=2, **more):
+        """The jobs of a run with stand-ins for COLMAP and for the plan."""
+        self.put_script("colmap", "exit 0")
+        lens = self.write("cameras.txt", "1 PINHOLE 640 480 500 500 320 240\n")
+        plan = {"parts": 3, "stages": ["photometric", "geometric1"], "threads": 16,
+                "per_part": {stage: {"cpu_seconds": 9600, "memory_mb": 1000}
+                             for stage in ("photometric", "geometric1")}}
+        self.write(jobs.PLAN, json.dumps(plan))
+        given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
+                 "scale_from": "", "refine": "", "matcher": "exhaustive", "lens_model": "OPENCV",
+                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
+                 "until": "cloud", "truth": "", "programs": "bin", **more}
+        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
+            return jobs.Survey({"given": given, "images": images,
+                                "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct.steps)
+
+    def test_only_fusion_exports(self):
+        for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):
+            survey = self.survey(densify=f"--iters 2 {export} --fusion-tiles 4")
+            for name, more in (("plan", ["--plan", str(self.folder / jobs.PLAN)]),
+                               ("depth-geometric1-2of3", ["--until", "geometric1", "--part", "2/3"])):
+                words = survey.step(name)[0].command
+                self.assertEqual(words[words.index("--iters"):],
+                                 ["--iters", "2", "--fusion-tiles", "4", *more])
+            self.assertIn(export, " ".join(survey.step("densify")[0].command))
 
 
 if __name__ == "__main__":

@@ -134,8 +134,23 @@ class Survey:
             return self.steps[self.names.index(name)], chain_to(name, self.steps)
         densify = self.steps[self.names.index("densify")]
         more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
-        return (Step(name, [*densify.command, *more], makes=self.out, reads=densify.reads),
+        return (Step(name, [*without_export(densify.command), *more], makes=self.out,
+                     reads=densify.reads),
                 chain_to("densify", self.steps))
+
+
+def without_export(command):
+    """The words of `command` without --pinhole-export, also in its shorter forms: this option needs
+    the cloud, which only the step "densify" makes."""
+    kept, words = [], iter(command)
+    for word in words:
+        option, equals, _ = word.partition("=")
+        if option.startswith("--pi") and "--pinhole-export".startswith(option):
+            if not equals:
+                next(words, None)  # the folder
+        else:
+            kept.append(word)
+    return kept
 
 
 def part_options(name):
