@@ -68,6 +68,15 @@ class Jobs(InFolder):
                                  ["--iters", "2", "--fusion-tiles", "4", *more])
             self.assertIn(export, " ".join(survey.step("densify")[0].command))
 
+    def minutes(self, name, **options):
+        job = self.survey(**options).job(name)
+        return [job.resources["runtime"](None, attempt) for attempt in (1, 2)]
+
+    def test_time_of_matching_grows_with_the_pairs(self):
+        # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes
+        self.assertEqual(self.minutes("matches", images=1000), [997, 1994])
+        self.assertEqual(self.minutes("matches", images=1000, matcher="sequential"), [1060, 2120])
+
 
 if __name__ == "__main__":
     main()

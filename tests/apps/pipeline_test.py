@@ -286,6 +286,11 @@ class Files(InFolder):
         self.assertEqual(target.read_text(), "new")
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"source", "target"})
 
+    def test_files_in_subfolders_are_counted(self):
+        for name in ("a", "one/b", "one/two/c", "one/two/d"):
+            self.write(name, "")
+        self.assertEqual(files.count(str(self.folder)), 4)
+
     def test_whatever_is_there_is_cleared(self):
         self.write("folder/file", "")
         for path in ("folder", "folder"):

@@ -110,7 +110,7 @@ def run_all(todo, given, out, lock):
     the jobs of the depth maps, one after another."""
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
-    config = {"given": vars(given), "folder": os.getcwd(), "images": len(os.listdir(given.images)),
+    config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),
               "node": node}
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)

@@ -26,6 +26,7 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5),
          "evaluate": (8000, 0, 60, 0)}
+PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
 
 
 def code_of(out):
@@ -78,6 +79,7 @@ class Survey:
         self.steps = list(steps(given, self.out))
         self.names = [step.name for step in self.steps]
         self.images, self.node = config["images"], config["node"]
+        self.matcher = given.matcher
 
     def job(self, name):
         number = self.names.index(name)
@@ -98,7 +100,12 @@ class Survey:
         memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
         if name == "densify" and (self.out / PLAN).exists():
             return self.with_margin(self.planned()["fusion"])
-        return (memory + memory_of_image * self.images, minutes + minutes_of_image * self.images)
+        more_minutes = minutes_of_image * self.images
+        if name == "matches" and self.matcher == "exhaustive":
+            pairs = self.images * (self.images - 1) / 2
+            # Twice, because processors differ in speed.
+            more_minutes = 2 * PAIR_CPU_SECONDS * pairs / min(MOST_CPUS, self.node["cpus"]) / 60
+        return memory + memory_of_image * self.images, minutes + more_minutes
 
     def planned(self):
         return json.loads((self.out / PLAN).read_text())
