@@ -77,6 +77,15 @@ class Jobs(InFolder):
         self.assertEqual(self.minutes("matches", images=1000), [997, 1994])
         self.assertEqual(self.minutes("matches", images=1000, matcher="sequential"), [1060, 2120])
 
+    def test_time_of_the_check_of_all_maps_grows_with_the_images(self):
+        def minutes(part, images):
+            wildcards = argparse.Namespace(stage="photometric", part=part)
+            return self.survey(images).depth.resources["runtime"](wildcards, 1)
+
+        # 10 minutes, and four times 9600 s on 16 processors
+        self.assertEqual([minutes("1of3", images) for images in (300, 3000)], [50, 50])
+        self.assertEqual([minutes("whole", images) for images in (300, 3000)], [51, 60])
+
 
 if __name__ == "__main__":
     main()

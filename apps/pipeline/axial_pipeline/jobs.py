@@ -27,6 +27,7 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5),
          "evaluate": (8000, 0, 60, 0)}
 PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
+SECONDS_TO_READ = 0.2  # an image and its depth map
 
 
 def code_of(out):
@@ -94,7 +95,7 @@ class Survey:
     @property
     def depth(self):
         return Job(self.out, "depth-{stage}-{part}", self.node, [],
-                   lambda wildcards: self.asked_for_depth(wildcards.stage))
+                   lambda wildcards: self.asked_for_depth(wildcards.stage, wildcards.part))
 
     def asked(self, name):
         memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
@@ -110,8 +111,11 @@ class Survey:
     def planned(self):
         return json.loads((self.out / PLAN).read_text())
 
-    def asked_for_depth(self, stage):
-        return self.with_margin(self.planned()["per_part"][stage])
+    def asked_for_depth(self, stage, part):
+        memory, minutes = self.with_margin(self.planned()["per_part"][stage])
+        if part == WHOLE:
+            minutes += SECONDS_TO_READ * self.images / 60
+        return memory, minutes
 
     def with_margin(self, work):
         """Megabytes and minutes to ask for. Processors differ in speed, and a job that is stopped at
