@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, reconstruct
+from axial_pipeline import cluster, jobs, reconstruct, steps
 
 
 class SlurmCommands(InFolder):
@@ -85,6 +85,18 @@ class Jobs(InFolder):
         # 10 minutes, and four times 9600 s on 16 processors
         self.assertEqual([minutes("1of3", images) for images in (300, 3000)], [50, 50])
         self.assertEqual([minutes("whole", images) for images in (300, 3000)], [51, 60])
+
+    def test_records_of_other_depth_maps_are_removed(self):
+        todo = self.survey().steps
+        chain = {"chain": steps.digest(steps.chain_to("densify", todo)), "seconds": 1}
+        records = {"plan": json.dumps(chain), "depth-photometric-1of3": json.dumps(chain),
+                   "depth-photometric-2of3": '{"chain": ', "depth-photometric-3of3": "",
+                   "depth-photometric-whole": json.dumps({**chain, "chain": "other"})}
+        for name, record in records.items():
+            self.write(jobs.done(name), record)
+        cluster.forget_what_changed(todo, self.folder)
+        self.assertEqual({path.name for path in (self.folder / "steps").glob("*.done.json")},
+                         {"plan.done.json", "depth-photometric-1of3.done.json"})
 
 
 if __name__ == "__main__":

@@ -249,6 +249,19 @@ class Steps(InFolder):
         self.write("read", "changed")
         self.assertEqual(self.run_all("b"), [])
 
+    def test_damaged_records_are_no_records(self):
+        for damaged in ("", "{", "[]"):
+            self.run_all("a")
+            self.write("steps/first.done.json", damaged)
+            self.assertEqual(self.run_all("a"), [])
+
+    def test_records_do_not_grow_with_the_inputs(self):
+        for number in range(1000):
+            self.write(f"read/{number}", "")
+        self.run_all("a")
+        for name in ("first.begun", "first.done", "second.begun", "second.done"):
+            self.assertLess((self.folder / "steps" / f"{name}.json").stat().st_size, 200)
+
     def test_a_step_that_failed_is_repeated(self):
         broken = [self.steps("a")[0],
                   steps.Step("second", ["sh", "-c", "exit 1"], self.folder / "second")]

@@ -13,7 +13,7 @@ import subprocess
 from . import files, jobs
 from .failure import Failure
 from .running import die_with, ending
-from .steps import Records, chain_to, is_done
+from .steps import Records, chain_to, digest, is_done, read_record
 
 
 def check(given):
@@ -37,9 +37,9 @@ def forget_what_changed(todo, out):
             for later in todo[number:]:
                 records.forget(later)
             break
-    chain = chain_to("densify", todo)
+    chain = digest(chain_to("densify", todo))
     for record in [out / jobs.done("plan"), *out.glob(jobs.done("depth-*"))]:
-        if record.exists() and json.loads(record.read_text()).get("chain") != chain:
+        if read_record(record).get("chain") != chain:
             files.clear(record)
 
 
@@ -115,6 +115,6 @@ def run_all(todo, given, out, lock):
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)
     seconds = {step.name: records.read(step, "done")["seconds"] for step in todo}
-    of_parts = [json.loads(record.read_text())["seconds"] for record in out.glob(jobs.done("depth-*"))]
+    of_parts = [read_record(record)["seconds"] for record in out.glob(jobs.done("depth-*"))]
     seconds["densify"] = round(seconds["densify"] + sum(of_parts), 1)
     return seconds
