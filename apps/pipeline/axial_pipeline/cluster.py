@@ -106,8 +106,8 @@ def run_to_its_end(words, given, out, lock):
 
 def run_all(todo, given, out, lock):
     """Runs the steps that are not done, like steps.run_all(). `lock`: the open file that refuses other
-    runs in the folder `out`. The time of the step "densify" includes
-    the jobs of the depth maps, one after another."""
+    runs in the folder `out`. The time of the step "densify" includes the jobs of the depth maps, one
+    after another."""
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
     config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),

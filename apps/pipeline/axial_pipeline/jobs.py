@@ -43,8 +43,8 @@ def done(name):
 class Job:
     """What a rule says about its jobs. `name`: with the names of wildcards in braces. `needs`: the
     records of other jobs. `node`: the largest machine, whose processors and memory no job exceeds.
-    `asked`: a function of
-    the wildcards that returns megabytes and minutes; every further attempt asks for twice as much."""
+    `asked`: a function of the wildcards that returns megabytes and minutes; every further attempt
+    asks for twice as much."""
 
     def __init__(self, out, name, node, needs, asked):
         self.needs = needs
