@@ -182,6 +182,7 @@ void make_depth_maps(const Project& project, const Settings& settings, const Mem
   const MapMaker maker(project, settings, images);
   StageRun run;
   run.images = project.part;
+  run.all_images = project.references;
   run.final_file = [&](std::size_t image) { return depth_map_path(project, settings, image); };
   run.fingerprint = project.fingerprint;
   run.existing = existing;

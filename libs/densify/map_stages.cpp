@@ -54,6 +54,7 @@ class Runner {
   }
 
   void run_part(std::size_t stage) const {
+    if (is_superseded(stage)) return;
     if (stage > 0) require_previous(stage);
     if (stages_[stage].whole_maps) map_large_blocks();
     run_stage(stage);
@@ -80,6 +81,20 @@ class Runner {
       return run_.existing[image].origin == io::DmapOrigin::ours &&
              run_.existing[image].made_from == made_from(stage);
     return io::dmap_made_from(path(stage, image)) == made_from(stage);
+  }
+
+  // Whether a later stage is complete. In a first run, the first file that is looked up is missing.
+  bool is_superseded(std::size_t stage) const {
+    for (std::size_t later = stage + 1; later < stages_.size(); ++later) {
+      const auto there = [&](std::size_t image) {
+        return io::dmap_made_from(path(later, image)) == made_from(later);
+      };
+      if (run_.all_images.empty() || !std::ranges::all_of(run_.all_images, there)) continue;
+      log_info("All {} depth maps exist already, of the later stage {}", run_.all_images.size(),
+               stages_[later].name);
+      return true;
+    }
+    return false;
   }
 
   // Error unless the maps that the stage needs for the missing maps are there. Each map is read

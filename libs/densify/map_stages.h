@@ -79,6 +79,8 @@ struct StageRun {
   // the call comes before the run makes a map, and `read_map` reads the maps of the latest complete
   // stage. `first_stage`: whether `read_map` reads maps of the first stage. Empty: no check.
   std::function<void(bool first_stage, const ReadMap& read_map)> check;
+  // For run_part(): the images of all parts.
+  std::span<const std::size_t> all_images = {};
   // The number of stages to run, if it is less than the number of all stages.
   std::size_t most_stages = std::numeric_limits<std::size_t>::max();
 };
@@ -104,8 +106,10 @@ void run_stages(std::span<const Stage> stages, const StageRun& run);
 // Makes the maps of the stage stages[stage] for the images `run.images`, which are a part of all
 // images. Other runs make the maps of the other images and of the other stages. No file is removed
 // and `run.check` is not called, because the run does not know whether other runs have ended. Maps
-// of the stage that exist are not made again. Throws an Error, before it makes a map, if
-// a map that the stage needs is missing or has another fingerprint. The error names the file.
+// of the stage that exist are not made again. Nothing is made if the maps of a later stage exist
+// for all of `run.all_images`, because a whole run has removed the maps of earlier stages then.
+// Throws an Error, before it makes a map, if a map that the stage needs is missing or has another
+// fingerprint. The error names the file.
 void run_part(std::span<const Stage> stages, std::size_t stage, const StageRun& run);
 
 }  // namespace axial::densify

@@ -29,6 +29,14 @@ case $1 in
 esac
 """
 
+# Never ends if it is to make a part of the maps.
+SLOW = """#!/bin/sh
+for word; do
+  [ "$word" = --part ] && exec sleep 600
+done
+exec "{program}" "$@"
+"""
+
 # Fails like a program that needs more memory than the first job of its step has.
 HUNGRY = """#!/bin/sh
 for word; do
@@ -93,14 +101,14 @@ class Survey(unittest.TestCase):
         cls.reconstruct("alone")
 
     @classmethod
-    def start(cls, out, *more):
+    def start(cls, out, *more, **process):
         scene = cls.folder / "scene"
         return subprocess.Popen(
             [sys.executable, str(SCRIPT), "--images", str(scene / "water"), "--lens",
              str(scene / "sparse" / "cameras.txt"), "--housing", str(scene / "housing.json"),
              "-o", out, "--refine-poses=--poses known", f"--densify={DENSIFY}", "--programs",
              str(cls.programs), *more], cwd=cls.folder, env=cls.environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **process)
 
     @classmethod
     def reconstruct(cls, out, *more):
@@ -156,6 +164,20 @@ class OnThisMachine(Survey):
         self.assertEqual(self.reconstruct("out").count("done before"), 9)
         self.assertNotIn("\nrule ", self.reconstruct("out", "--cluster", "local"))
 
+    def test_uses_complete_depth_maps_for_other_options_of_the_fusion(self):
+        """A run alone has removed the maps of all stages but the last."""
+        twice = f"--densify={DENSIFY.replace('iters 1', 'iters 2')}"
+        other = f"{twice} --number-views-fuse 2"
+        self.reconstruct("twice", "--until", "cloud", twice)
+        before = (self.folder / "twice" / "depth0001.dmap").stat().st_mtime_ns
+        self.reconstruct("twice", "--until", "cloud", other, "--cluster", "local")
+        self.assertEqual((self.folder / "twice" / "depth0001.dmap").stat().st_mtime_ns, before)
+        self.reconstruct("expected", "--until", "cloud", other)
+        for out in ("twice", "expected"):
+            self.assertEqual(list((self.folder / out).glob("depth*.*.dmap")), [])
+        self.assertEqual((self.folder / "twice" / "scene_dense.ply").read_bytes(),
+                         (self.folder / "expected" / "scene_dense.ply").read_bytes())
+
 
 @unittest.skipIf(small_slurm.reason_to_skip(), small_slurm.reason_to_skip())
 class OnTwoNodes(Survey):
@@ -176,6 +198,25 @@ class OnTwoNodes(Survey):
             if name.startswith("depth-photometric-1of2"):
                 return job, node
         return None
+
+    def test_an_interrupted_run_leaves_no_jobs(self):
+        """With eight jobs that never end, snakemake asks for their states most of the time. While it
+        asks, it cancels nothing itself."""
+        programs = self.folder / "slow"
+        shutil.copytree(self.programs, programs, symlinks=True)
+        (programs / "DensifyPointCloud").unlink()
+        put_script(programs / "DensifyPointCloud",
+                   SLOW.format(program=pathlib.Path(BIN).resolve() / "DensifyPointCloud"))
+        process = self.start("interrupted", *self.OPTIONS, f"--densify={DENSIFY[:-1]}8", "--programs",
+                             str(programs), start_new_session=True)
+        self.cluster.wait_for(lambda: self.cluster.ask("squeue", "-h", "-o", "%j").count("of8-") == 8, 120)
+        time.sleep(4)  # until snakemake asks for the states of all of them
+        os.killpg(process.pid, signal.SIGINT)  # like Ctrl-C
+        said = process.communicate(timeout=120)[0]
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("reconstruct: stopped; the same command continues from here", said)
+        left = set(self.cluster.ask("squeue", "--noheader", "--format", "%T").split())
+        self.assertLessEqual(left, {"COMPLETING"})
 
     def test_gives_the_same_bytes_also_if_a_node_dies(self):
         said = self.reconstruct("out", *self.OPTIONS)

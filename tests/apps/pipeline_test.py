@@ -260,6 +260,19 @@ class Steps(InFolder):
         self.write("read", "changed")
         self.assertEqual(self.run_all("b"), [])
 
+    def test_damaged_records_are_no_records(self):
+        for damaged in ("", "{", "[]"):
+            self.run_all("a")
+            self.write("steps/first.done.json", damaged)
+            self.assertEqual(self.run_all("a"), [])
+
+    def test_records_do_not_grow_with_the_inputs(self):
+        for number in range(1000):
+            self.write(f"read/{number}", "")
+        self.run_all("a")
+        for name in ("first.begun", "first.done", "second.begun", "second.done"):
+            self.assertLess((self.folder / "steps" / f"{name}.json").stat().st_size, 200)
+
     def test_a_step_that_failed_is_repeated(self):
         broken = [self.steps("a")[0],
                   steps.Step("second", ["sh", "-c", "exit 1"], self.folder / "second")]
@@ -296,6 +309,11 @@ class Files(InFolder):
         files.copy_once(source, target)
         self.assertEqual(target.read_text(), "new")
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"source", "target"})
+
+    def test_files_in_subfolders_are_counted(self):
+        for name in ("a", "one/b", "one/two/c", "one/two/d"):
+            self.write(name, "")
+        self.assertEqual(files.count(str(self.folder)), 4)
 
     def test_whatever_is_there_is_cleared(self):
         self.write("folder/file", "")

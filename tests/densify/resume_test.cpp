@@ -78,6 +78,7 @@ class Resume : public testing::Test {
                   const std::vector<io::DmapStatus>& existing, const std::string& fingerprint) {
     StageRun run;
     run.images = images;
+    run.all_images = images_;
     run.final_file = [&](std::size_t image) { return final_file(image); };
     run.fingerprint = fingerprint;
     run.existing = existing;
@@ -285,6 +286,19 @@ TEST_F(Resume, PartsInAnyOrderGiveTheBytesOfOneRun) {
     EXPECT_TRUE(calls_.empty());
     EXPECT_EQ(files(), expected);
   }
+}
+
+TEST_F(Resume, APartMakesNothingIfALaterStageIsComplete) {
+  run();
+  const auto expected = files();
+  for (std::size_t stage = 0; stage < 3; ++stage) {
+    run_part(stage, {0});
+    EXPECT_TRUE(calls_.empty()) << stage;
+  }
+  EXPECT_EQ(files(), expected);
+  fs::remove(final_file(3));
+  run_part(0, {0});
+  EXPECT_EQ(calls_, (std::vector<Call>{{"first", 0}}));
 }
 
 TEST_F(Resume, APartNeedsTheMapsOfThePreviousStage) {

@@ -13,7 +13,7 @@ import subprocess
 from . import files, jobs
 from .failure import Failure
 from .running import die_with, ending
-from .steps import Records, chain_to, is_done
+from .steps import Records, chain_to, digest, is_done, read_record
 
 
 def check(given):
@@ -37,14 +37,15 @@ def forget_what_changed(todo, out):
             for later in todo[number:]:
                 records.forget(later)
             break
-    chain = chain_to("densify", todo)
+    chain = digest(chain_to("densify", todo))
     for record in [out / jobs.done("plan"), *out.glob(jobs.done("depth-*"))]:
-        if record.exists() and json.loads(record.read_text()).get("chain") != chain:
+        if read_record(record).get("chain") != chain:
             files.clear(record)
 
 
 def largest_node(given):
-    """Processors and memory [MB] of this machine, or of the largest node of Slurm."""
+    """Processors and memory [MB] of this machine, or of the node of Slurm with the most memory among
+    those that have as many processors as a job can use."""
     if given.cluster == "local":
         memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >> 20
         return {"cpus": len(os.sched_getaffinity(0)), "memory_mb": memory}
@@ -53,7 +54,9 @@ def largest_node(given):
     nodes = [[int(word.rstrip("+")) for word in line.split()] for line in listed.stdout.splitlines()]
     if listed.returncode != 0 or not nodes:
         raise Failure(f"--cluster slurm: sinfo shows no nodes: {listed.stderr.strip()}")
-    return {"cpus": max(cpus for cpus, _ in nodes), "memory_mb": max(memory for _, memory in nodes)}
+    enough = min(jobs.MOST_CPUS, max(cpus for cpus, _ in nodes))
+    memory, cpus = max((memory, cpus) for cpus, memory in nodes if cpus >= enough)
+    return {"cpus": cpus, "memory_mb": memory}
 
 
 def command(given, out, node):
@@ -63,6 +66,19 @@ def command(given, out, node):
     return ["snakemake", "--snakefile", here / "Snakefile", "--profile",
             here / "profiles" / given.cluster, "--configfile", out / jobs.OPTIONS, *local,
             *shlex.split(given.snakemake)]
+
+
+def cancel_jobs(out):
+    """Cancels the jobs of Slurm of a run in the folder `out`. While snakemake asks for the states of
+    its jobs, an interruption lets it end without cancelling them."""
+    listed = subprocess.run(["squeue", "--noheader", "--user", getpass.getuser(), "--format", "%A %j"],
+                            capture_output=True, text=True)
+    jobs_left = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
+    numbers = [number for number, name in jobs_left if name.endswith(f"-{jobs.code_of(out)}")]
+    if numbers:
+        subprocess.run(["scancel", *numbers])
+    if listed.returncode != 0:
+        print(f"squeue: {listed.stderr.strip()}: jobs may be left in the queue", flush=True)
 
 
 def run_to_its_end(words, given, out, lock):
@@ -77,7 +93,11 @@ def run_to_its_end(words, given, out, lock):
     try:
         code = process.wait()
     except KeyboardInterrupt:  # snakemake has got the signal, too
-        process.wait()
+        try:
+            process.wait()
+        finally:
+            if given.cluster == "slurm":
+                cancel_jobs(out)
         raise
     if code != 0:
         raise Failure(f"snakemake: {ending(code)}; the outputs of the steps are in {out / 'logs'}; "
@@ -86,15 +106,15 @@ def run_to_its_end(words, given, out, lock):
 
 def run_all(todo, given, out, lock):
     """Runs the steps that are not done, like steps.run_all(). `lock`: the open file that refuses other
-    runs in the folder `out`. The time of the step "densify" includes
-    the jobs of the depth maps, one after another."""
+    runs in the folder `out`. The time of the step "densify" includes the jobs of the depth maps, one
+    after another."""
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
-    config = {"given": vars(given), "folder": os.getcwd(), "images": len(os.listdir(given.images)),
+    config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),
               "node": node}
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)
     seconds = {step.name: records.read(step, "done")["seconds"] for step in todo}
-    of_parts = [json.loads(record.read_text())["seconds"] for record in out.glob(jobs.done("depth-*"))]
+    of_parts = [read_record(record)["seconds"] for record in out.glob(jobs.done("depth-*"))]
     seconds["densify"] = round(seconds["densify"] + sum(of_parts), 1)
     return seconds

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writing and removing files. No file is ever half written under its final name."""
 
+import pathlib
 import shutil
 
 
@@ -17,6 +18,11 @@ def copy_once(source, target):
     temporary = target.with_name(target.name + ".tmp")
     shutil.copyfile(source, temporary)
     temporary.rename(target)
+
+
+def count(folder):
+    """The number of files in a folder and its subfolders."""
+    return sum(path.is_file() for path in pathlib.Path(folder).rglob("*"))
 
 
 def clear(path):

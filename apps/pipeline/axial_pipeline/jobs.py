@@ -26,6 +26,13 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5),
          "evaluate": (8000, 0, 60, 0)}
+PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
+SECONDS_TO_READ = 0.2  # an image and its depth map
+
+
+def code_of(out):
+    """The last part of the names that Slurm's jobs of a run in the folder `out` have."""
+    return hashlib.sha256(str(out).encode()).hexdigest()[:8]
 
 
 def done(name):
@@ -36,15 +43,15 @@ def done(name):
 class Job:
     """What a rule says about its jobs. `name`: with the names of wildcards in braces. `needs`: the
     records of other jobs. `node`: the largest machine, whose processors and memory no job exceeds.
-    `asked`: a function of
-    the wildcards that returns megabytes and minutes; every further attempt asks for twice as much."""
+    `asked`: a function of the wildcards that returns megabytes and minutes; every further attempt
+    asks for twice as much."""
 
     def __init__(self, out, name, node, needs, asked):
         self.needs = needs
         self.threads = min(MOST_CPUS, node["cpus"])
         # A run that was killed may have left jobs in the queue. The dependency "singleton" lets a job
         # wait for the end of jobs of the same name.
-        run = hashlib.sha256(str(out).encode()).hexdigest()[:8]
+        run = code_of(out)
 
         def command(wildcards):
             words = ["env", f"PYTHONPATH={PACKAGE.parent}", sys.executable, "-B", "-m",
@@ -73,6 +80,7 @@ class Survey:
         self.steps = list(steps(given, self.out))
         self.names = [step.name for step in self.steps]
         self.images, self.node = config["images"], config["node"]
+        self.matcher = given.matcher
 
     def job(self, name):
         number = self.names.index(name)
@@ -87,19 +95,27 @@ class Survey:
     @property
     def depth(self):
         return Job(self.out, "depth-{stage}-{part}", self.node, [],
-                   lambda wildcards: self.asked_for_depth(wildcards.stage))
+                   lambda wildcards: self.asked_for_depth(wildcards.stage, wildcards.part))
 
     def asked(self, name):
         memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
         if name == "densify" and (self.out / PLAN).exists():
             return self.with_margin(self.planned()["fusion"])
-        return (memory + memory_of_image * self.images, minutes + minutes_of_image * self.images)
+        more_minutes = minutes_of_image * self.images
+        if name == "matches" and self.matcher == "exhaustive":
+            pairs = self.images * (self.images - 1) / 2
+            # Twice, because processors differ in speed.
+            more_minutes = 2 * PAIR_CPU_SECONDS * pairs / min(MOST_CPUS, self.node["cpus"]) / 60
+        return memory + memory_of_image * self.images, minutes + more_minutes
 
     def planned(self):
         return json.loads((self.out / PLAN).read_text())
 
-    def asked_for_depth(self, stage):
-        return self.with_margin(self.planned()["per_part"][stage])
+    def asked_for_depth(self, stage, part):
+        memory, minutes = self.with_margin(self.planned()["per_part"][stage])
+        if part == WHOLE:
+            minutes += SECONDS_TO_READ * self.images / 60
+        return memory, minutes
 
     def with_margin(self, work):
         """Megabytes and minutes to ask for. Processors differ in speed, and a job that is stopped at
@@ -129,8 +145,23 @@ class Survey:
             return self.steps[self.names.index(name)], chain_to(name, self.steps)
         densify = self.steps[self.names.index("densify")]
         more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
-        return (Step(name, [*densify.command, *more], makes=self.out, reads=densify.reads),
+        return (Step(name, [*without_export(densify.command), *more], makes=self.out,
+                     reads=densify.reads),
                 chain_to("densify", self.steps))
+
+
+def without_export(command):
+    """The words of `command` without --pinhole-export, also in its shorter forms: this option needs
+    the cloud, which only the step "densify" makes."""
+    kept, words = [], iter(command)
+    for word in words:
+        option, equals, _ = word.partition("=")
+        if option.startswith("--pi") and "--pinhole-export".startswith(option):
+            if not equals:
+                next(words, None)  # the folder
+        else:
+            kept.append(word)
+    return kept
 
 
 def part_options(name):

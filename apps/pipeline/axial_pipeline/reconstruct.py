@@ -215,8 +215,9 @@ def report(out, seconds):
 
 
 def only_run_in(out):
-    """Refuses other runs in the folder `out` until the returned file is closed. Commands do not
-    inherit the file, so that the refusal ends with this process."""
+    """Refuses other runs in the folder `out` until the returned file is closed. The commands of steps
+    do not inherit the file, so that the refusal ends with this process. With --cluster, snakemake
+    inherits the file, so that the refusal ends when both processes have ended."""
     lock = open(out / "lock", "w")
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

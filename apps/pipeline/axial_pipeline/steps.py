@@ -3,6 +3,7 @@
 continues with the step that was killed. With other commands or inputs, it continues with the first
 step that differs."""
 
+import hashlib
 import json
 import pathlib
 import shlex
@@ -40,19 +41,30 @@ class Step:
                 for file in found if file.is_file()]
 
 
+def read_record(path):
+    """A record; empty if there is none or if it is damaged."""
+    try:
+        record = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return {}
+    return record if isinstance(record, dict) else {}
+
+
+def digest(chain):
+    """What a record says about a chain, which has a line for each photograph."""
+    return hashlib.sha256(json.dumps(chain).encode()).hexdigest()
+
+
 class Records:
-    """Says for each step whether it was begun and done, and with which chain: the commands and
-    inputs of all steps up to this one."""
+    """Says for each step whether it was begun and done, and with the digest of which chain: the
+    commands and inputs of all steps up to this one."""
 
     def __init__(self, folder):
         self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
 
     def read(self, step, state):
-        try:
-            return json.loads((self.folder / f"{step.name}.{state}.json").read_text())
-        except (OSError, ValueError):
-            return {}
+        return read_record(self.folder / f"{step.name}.{state}.json")
 
     def write(self, step, state, record):
         files.write(self.folder / f"{step.name}.{state}.json", json.dumps(record))
@@ -72,23 +84,23 @@ def chain_to(name, todo):
 
 
 def is_done(step, chain, records):
-    return records.read(step, "done").get("chain") == chain and step.makes.exists()
+    return records.read(step, "done").get("chain") == digest(chain) and step.makes.exists()
 
 
 def perform(step, chain, records, logs, limits=()):
     """Runs a step that is not done. Returns its time in seconds. `limits`: words that the command
     gets in addition, which never change its result."""
-    changed = records.read(step, "begun").get("chain") != chain
+    changed = records.read(step, "begun").get("chain") != digest(chain)
     for path in [*step.anew, *(step.changed if changed else [])]:
         files.clear(path)
-    records.write(step, "begun", {"chain": chain})
+    records.write(step, "begun", {"chain": digest(chain)})
     begin = time.monotonic()
     logs.mkdir(exist_ok=True)
     step.before()
     logged([*step.command, *limits], logs / f"{step.name}.log", step.name)
     step.after()
     seconds = round(time.monotonic() - begin, 1)
-    records.write(step, "done", {"chain": chain, "seconds": seconds})
+    records.write(step, "done", {"chain": digest(chain), "seconds": seconds})
     return seconds
 
 

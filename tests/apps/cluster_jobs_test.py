@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `reconstruct --cluster` asks Slurm for, with stand-ins for Slurm's commands."""
+
+import argparse
+import json
+import os
+import unittest.mock
+
+from pipeline_folder import InFolder
+from programs import main
+
+from axial_pipeline import cluster, jobs, reconstruct, steps
+
+
+class SlurmCommands(InFolder):
+    def setUp(self):
+        super().setUp()
+        path = unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
+        path.start()
+        self.addCleanup(path.stop)
+
+    def test_jobs_of_this_run_are_cancelled(self):
+        mine, other = jobs.code_of("/out"), jobs.code_of("/other")
+        self.put_script("squeue", f"echo 3 depth-photometric-1of2-{mine}; echo 4 mesh-{other}; "
+                        f"echo 5 a name; echo 16 plan-{mine}")
+        self.put_script("scancel", f"echo $* >> {self.folder / 'cancelled'}")
+        cluster.cancel_jobs("/out")
+        self.assertEqual((self.folder / "cancelled").read_text(), "3 16\n")
+        self.put_script("squeue", f"echo 4 mesh-{other}")
+        cluster.cancel_jobs("/out")
+        self.assertEqual((self.folder / "cancelled").read_text(), "3 16\n")
+        self.put_script("squeue", "echo no controller >&2; exit 1")
+        self.assertIn("squeue: no controller: ", self.said_by(cluster.cancel_jobs, "/out"))
+
+    def test_the_largest_node_is_one_node(self):
+        given = argparse.Namespace(cluster="slurm")
+        for listed, cpus, memory in (("128 256000+\n8 2000000", 128, 256000),
+                                     ("16 64000\n64 32000+", 16, 64000),
+                                     ("4 16000\n8+ 8000", 8, 8000)):
+            self.put_script("sinfo", f"echo '{listed}'")
+            self.assertEqual(cluster.largest_node(given), {"cpus": cpus, "memory_mb": memory})
+
+
+class Jobs(InFolder):
+    def survey(self, images=2, **more):
+        """The jobs of a run with stand-ins for COLMAP and for the plan."""
+        self.put_script("colmap", "exit 0")
+        lens = self.write("cameras.txt", "1 PINHOLE 640 480 500 500 320 240\n")
+        plan = {"parts": 3, "stages": ["photometric", "geometric1"], "threads": 16,
+                "per_part": {stage: {"cpu_seconds": 9600, "memory_mb": 1000}
+                             for stage in ("photometric", "geometric1")}}
+        self.write(jobs.PLAN, json.dumps(plan))
+        given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
+                 "scale_from": "", "refine": "", "matcher": "exhaustive", "lens_model": "OPENCV",
+                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
+                 "until": "cloud", "truth": "", "programs": "bin", **more}
+        with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
+            return jobs.Survey({"given": given, "images": images,
+                                "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct.steps)
+
+    def test_only_fusion_exports(self):
+        for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):
+            survey = self.survey(densify=f"--iters 2 {export} --fusion-tiles 4")
+            for name, more in (("plan", ["--plan", str(self.folder / jobs.PLAN)]),
+                               ("depth-geometric1-2of3", ["--until", "geometric1", "--part", "2/3"])):
+                words = survey.step(name)[0].command
+                self.assertEqual(words[words.index("--iters"):],
+                                 ["--iters", "2", "--fusion-tiles", "4", *more])
+            self.assertIn(export, " ".join(survey.step("densify")[0].command))
+
+    def minutes(self, name, **options):
+        job = self.survey(**options).job(name)
+        return [job.resources["runtime"](None, attempt) for attempt in (1, 2)]
+
+    def test_time_of_matching_grows_with_the_pairs(self):
+        # 499,500 pairs of 0.9 s on 16 processors, twice: 936.6 minutes
+        self.assertEqual(self.minutes("matches", images=1000), [997, 1994])
+        self.assertEqual(self.minutes("matches", images=1000, matcher="sequential"), [1060, 2120])
+
+    def test_time_of_the_check_of_all_maps_grows_with_the_images(self):
+        def minutes(part, images):
+            wildcards = argparse.Namespace(stage="photometric", part=part)
+            return self.survey(images).depth.resources["runtime"](wildcards, 1)
+
+        # 10 minutes, and four times 9600 s on 16 processors
+        self.assertEqual([minutes("1of3", images) for images in (300, 3000)], [50, 50])
+        self.assertEqual([minutes("whole", images) for images in (300, 3000)], [51, 60])
+
+    def test_records_of_other_depth_maps_are_removed(self):
+        todo = self.survey().steps
+        chain = {"chain": steps.digest(steps.chain_to("densify", todo)), "seconds": 1}
+        records = {"plan": json.dumps(chain), "depth-photometric-1of3": json.dumps(chain),
+                   "depth-photometric-2of3": '{"chain": ', "depth-photometric-3of3": "",
+                   "depth-photometric-whole": json.dumps({**chain, "chain": "other"})}
+        for name, record in records.items():
+            self.write(jobs.done(name), record)
+        cluster.forget_what_changed(todo, self.folder)
+        self.assertEqual({path.name for path in (self.folder / "steps").glob("*.done.json")},
+                         {"plan.done.json", "depth-photometric-1of3.done.json"})
+
+
+if __name__ == "__main__":
+    main()
