@@ -51,7 +51,8 @@ class Jobs(InFolder):
                              for stage in ("photometric", "geometric1")}}
         self.write(jobs.PLAN, json.dumps(plan))
         given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
-                 "scale_from": "", "refine": "", "matcher": "exhaustive", "lens_model": "OPENCV",
+                 "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
+                 "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
                  "until": "cloud", "truth": "", "programs": "bin", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
