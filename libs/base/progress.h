@@ -17,9 +17,9 @@ using ProgressSink = std::function<void(std::size_t done, std::size_t total)>;
 // Returns a sink that writes "<title> 3/10 (30%, 12s, 28s left)": the items done, the time since
 // this function was called, and an estimate of the time left. The estimate begins after 5 % of the
 // items, or after 32 items and 10 seconds. On a terminal the sink overwrites one line. Otherwise it
-// logs a line every 3 seconds at most. At the end of the stage (done = total) it
-// logs the line "<title> 10/10 (100%, 40.0s)". Progress has the log level debug, and the end of the
-// stage has the level info. The sink writes nothing at a level that the log does not write.
+// logs a line every 3 seconds at most. At the end of the stage (done = total) it logs the line
+// "<title> 10/10 (100%, 40.0s)". Progress has the log level debug, and the end of the stage has the
+// level info. The sink writes nothing at a level that the log does not write.
 ProgressSink console_progress(const std::string& title);
 
 // Counts the items that several threads finish, and calls a sink from one thread at a time.

@@ -36,15 +36,14 @@ Tile grown(const Tile& tile, double margin);
 // rows). A box is divided across the axis along which the middle nine tenths of its points extend
 // farthest, in proportion to the numbers of tiles on both sides. The two parts are divided in turn;
 // the tiles of the lower part come first. Without equal coordinates, the numbers of points of any
-// two tiles differ by at most 2. A tile may be empty if there are fewer
-// points than tiles, or if points have equal coordinates. Precondition: `count` is at least 1, and
-// the points are finite.
+// two tiles differ by at most 2. A tile may be empty if there are fewer points than tiles, or if
+// points have equal coordinates. Precondition: `count` is at least 1, and the points are finite.
 std::vector<Tile> make_tiles(std::span<const Eigen::Vector3f> points, std::size_t count,
                              const Eigen::Matrix3d& rotation);
 
-// Returns for each box of `boxes` whether the map has a point in it. The answer may be true for a
-// box that the map's points only pass closely: a small block of pixels counts with the box around
-// its points. Precondition: all boxes have the same rotation.
+// Returns for each box of `boxes` whether the map has a point in it. The answer may also be
+// true if points of the map are near the box: all pixels of a small block are tested at once, with
+// the box around their points. Precondition: all boxes have the same rotation.
 std::vector<bool> boxes_seen(const DepthMap& map, std::span<const Tile> boxes);
 
 }  // namespace axial::cloud

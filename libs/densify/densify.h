@@ -46,10 +46,9 @@ struct Report {
 //   exceptions: the scene, one bit per pixel in fusion (of the views of a tile), and a cloud whose
 //   colours or normals are estimated from the whole cloud (estimate_colors or estimate_normals is
 //   1). Such a cloud is kept in memory in addition to max_memory.
-// * With Settings::tile the run makes only one tile of the cloud, and with Settings::fusion_tiles
-// it
-//   makes the cloud from all tiles. A tile needs complete depth maps. Its points are those of the
-//   cloud in one piece, except for few near the borders of the tile (fusion_tiles.h).
+// * With Settings::tile the run makes only one tile of the cloud. With Settings::fusion_tiles the
+//   run makes the cloud from all tiles. A tile needs complete depth maps. Its points are those of
+//   the cloud in one piece, except for a few near the borders of the tile (fusion_tiles.h).
 // * Progress, results and warnings are logged (base/log.h). `observer`, unless it is empty, is
 //   called once, before views are selected. It is not called for a point export.
 // * Call densify() before other threads start, and make only one run at a time. The reason: the

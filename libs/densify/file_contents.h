@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fingerprints of the photographs and masks of a run, kept in a file, so that the runs of a
-// thousand parts do not each read all photographs of a survey.
+// Fingerprints of the photographs and masks of a run. A file keeps the fingerprints, so that a run
+// for one part of the images need not read all photographs of a survey.
 #pragma once
 
 #include <string>
@@ -11,12 +11,11 @@
 namespace axial::densify {
 
 // Returns, for each view, a fingerprint of the bytes of its photograph and of its mask; empty for
-// images without calibration. If Settings::until, tile or plan is given, the fingerprints are
-// taken from the file depth_inputs.json in the working folder, for photographs and masks whose
-// names, sizes and times of change are those of the file. Runs for all
-// images then write this file. In all other cases, reads the photographs and masks. Throws an Error
-// for a photograph or mask that cannot be read, and if depth_inputs.json cannot be written. A
-// damaged depth_inputs.json counts as empty.
+// images without calibration. Reads the photographs and masks, with one exception: if
+// Settings::until, tile or plan is given, photographs and masks whose names, sizes and times of
+// change are in the file depth_inputs.json of the working folder get their fingerprints from this
+// file. Runs with `until` or `plan` for all images write the file. A damaged file counts as empty.
+// Throws an Error for a photograph or mask that cannot be read, and if the file cannot be written.
 std::vector<std::string> contents_of_views(const Project& project, const Settings& settings);
 
 }  // namespace axial::densify

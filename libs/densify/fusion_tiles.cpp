@@ -31,7 +31,7 @@ std::vector<const SparsePoint*> points_to_divide(const Project& project, const S
   return points;
 }
 
-// The depth that 95 % of the observations do not exceed; 0 without observations.
+// The 95th percentile of the depths; 0 without observations.
 double large_depth(std::vector<double>& depths) {
   if (depths.empty()) return 0;
   const auto at = depths.begin() + static_cast<std::ptrdiff_t>((depths.size() - 1) * 19 / 20);

@@ -17,10 +17,10 @@ namespace axial::densify {
 // the world without a region. FusionPart::seen_by is empty.
 //
 // A tile's reach is the tile and a margin of kMarginInThresholds times the difference of depth that
-// still agrees: FuseOptions::depth_threshold times the depth that 95 % of the observations of the
-// tile's points do not exceed. The reason: two points compete for a pixel only if they are within
-// two such differences of each other, and each link of a chain of such points reaches as far. The
-// factor was measured (docs/formats.md).
+// still agrees: FuseOptions::depth_threshold times the 95th percentile of the depths at which
+// images observe the points of the tile. The reason: two points compete for a pixel only if they
+// are within two such differences of each other, and each link of a chain of such points reaches as
+// far. The factor was measured (docs/formats.md).
 std::vector<cloud::FusionPart> tiles_of(const Project& project, const Settings& settings);
 
 inline constexpr double kMarginInThresholds = 8;

@@ -19,8 +19,8 @@ struct MemoryPlan {
   std::size_t cached_depths = 0;  // StageRun::cached_depths (map_stages.h)
   std::size_t cached_maps = 0;    // StageRun::cached_maps
   std::size_t fused_maps = 0;     // FuseOptions::max_maps
-  std::size_t least_fused_maps =
-      0;                         // the least value of fused_maps for any view and its neighbours
+  // The least value of fused_maps that suffices for any view and its neighbours.
+  std::size_t least_fused_maps = 0;
   std::size_t marked_views = 0;  // views of which fusion can mark each pixel (ListLengths::marked)
   std::size_t fusion_loads = 1;  // FuseOptions::max_loads
   std::size_t exports = 1;       // images resampled at the same time by the pinhole export

@@ -68,8 +68,8 @@ Project load_scene_and_headers(const Settings& settings);
 // ImageStore::check_all() finds other faults of images.
 Project load_project(const Settings& settings, const SceneObserver& observer = {});
 
-// The images of the part Settings::part: neighbours in the order of `images`. The numbers of images
-// of two parts differ by one at most. All images if Settings::parts is 0.
+// Returns the images of the part Settings::part: consecutive elements of `images`. The numbers of
+// images of two parts differ by one at most. Returns all images if Settings::parts is 0.
 std::vector<std::size_t> part_of(std::span<const std::size_t> images, const Settings& settings);
 
 // Whether no camera of Project::views has a port or a distorted lens.

@@ -17,8 +17,8 @@
 namespace axial::densify {
 namespace {
 
-// CPU seconds for a million pixels of a map, for each source view or neighbour: medians of twelve
-// clouds of 10 and 12 photographs at 1024 x 768.
+// CPU seconds for a million pixels of a map, for each source view or neighbour: rounded from the
+// progress lines of clouds of 10 and 12 photographs of 1024 x 768 pixels.
 constexpr double kMatchSeconds = 0.2;  // with two sweeps per level
 constexpr double kGeometricSeconds = 0.1;
 constexpr double kAdjustSeconds = 0.05;
@@ -76,7 +76,7 @@ WorkPlan plan_work(const Project& project, const Settings& settings) {
   plan.threads = static_cast<unsigned>(thread_count());
   plan.stages = stage_names(settings);
   plan.parts = number_of_parts(settings, plan.images, *std::ranges::max_element(seconds));
-  // The plan of a run would be the same with more memory: all threads have work.
+  // With less memory, fewer images than threads would be processed at the same time.
   const std::uint64_t memory =
       std::max(bytes.scene + kProgramBytes + least_bytes(bytes, lists, plan.threads),
                least_memory_to_prepare(project.scene, settings));

@@ -44,8 +44,8 @@ struct CleanReport {
 //   6. remeshing and step 4 again, if `edge_length` is above 0,
 //   7. smoothing of faces that intersect each other, and removal of these faces if smoothing does
 //      not help,
-//   8. removal of small pieces that step 7 cut off, except the largest piece of each component, and
-//      of components that are spurious now.
+//   8. removal of small pieces that step 7 cut off; the largest piece of each component stays. Then
+//      removal of all components that are below the limit of step 2.
 //
 // Vertices at the same place are moved apart: each moves by 1 % of the way to the mean of its
 // neighbours. Vertices without faces are removed. Colours are lost. `report` is overwritten; null:
