@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/fraction.h"
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/unused_input.h"
 #include "base/version.h"
 #include "dense_config.h"
-#include "fraction.h"
 #include "io/images/bit_depth.h"
 #include "option_names.h"
 #include "tile_option.h"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "fraction.h"
+#include "base/fraction.h"
 
 namespace axial::apps {
 namespace {

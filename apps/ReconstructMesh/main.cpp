@@ -13,6 +13,7 @@
 #include "io/openmvs/point_source.h"
 #include "options.h"
 #include "scene/region.h"
+#include "tiled.h"
 
 namespace axial::apps {
 namespace {
@@ -21,14 +22,6 @@ namespace fs = std::filesystem;
 
 // The memory of the program itself: code and libraries, stacks, small blocks.
 constexpr std::uint64_t kProgramBytes = 60 * kMegabyte;
-
-// As in OpenMVS: the cloud beside the scene is taken if none is named.
-fs::path cloud_file(const Options& options) {
-  if (!options.cloud.empty()) return options.cloud;
-  const fs::path beside = fs::path(options.scene.scene).replace_extension(".ply");
-  std::error_code error;
-  return fs::exists(beside, error) ? beside : fs::path();
-}
 
 void check_outputs(const Options& options) {
   const std::vector<fs::path> inputs{options.scene.scene,
@@ -85,9 +78,16 @@ int run(int argc, char** argv) {
   io::SceneWithCameras scene = io::read_scene_with_cameras(options.scene);
   if (scene.scene.region) scene.scene.region = with_border(*scene.scene.region, options.roi_border);
   options.reconstruct.max_bytes = memory_limit(options.max_memory, "--max-memory");
+  if (options.tile > 0) {
+    make_tile(scene, options);
+    return 0;
+  }
   write(options.output,
-        options.mesh.empty() ? reconstruct(scene, options) : clean_given(scene, options),
+        options.tiles > 1      ? join_tiles(scene, options)
+        : options.mesh.empty() ? reconstruct(scene, options)
+                               : clean_given(scene, options),
         scene.frame);
+  remove_tiles(options);
   return 0;
 }
 

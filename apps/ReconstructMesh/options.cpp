@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "base/error.h"
+#include "base/fraction.h"
 #include "base/log.h"
 #include "base/not_built.h"
 #include "base/setting_names.h"
@@ -18,12 +21,13 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, output, cloud, mesh, export_type = "ply";
+  std::string input, output, cloud, mesh, export_type = "ply", tile;
   io::SceneOptions scene;
 };
 
 constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
-                                    {"merge.min_distance", "--min-point-distance"}};
+                                    {"merge.min_distance", "--min-point-distance"},
+                                    {"tiles", "--tiles"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -47,7 +51,11 @@ void declare_io(OptionList& list, Raw& raw, Options& options) {
       .add("output-file,o", &raw.output, "mesh to write (<input>_mesh.ply)")
       .add_with_default("export-type", &raw.export_type, "format of the mesh: ply or obj")
       .add_with_default("max-memory", &options.max_memory,
-                        "largest memory to use [MB] (0: 70 % of the free memory)");
+                        "largest memory to use [MB] (0: 70 % of the free memory)")
+      .add_with_default("tiles", &options.tiles,
+                        "make the mesh in this many parts, so that less memory is needed")
+      .add("tile", &raw.tile,
+           "make only tile I of N tiles (I/N); a run with --tiles N joins the tiles");
 }
 
 void declare_reconstruction(OptionList& list, Options& options) {
@@ -124,6 +132,29 @@ void take_paths(const Raw& raw, Options& options) {
       io::mesh_file(options.output, raw.export_type, given(options.parsed, "export-type"));
 }
 
+// A tile has neighbours whose triangles must be the same.
+void refuse_other_triangles(const std::string& option, const Options& options) {
+  for (const char* name : {"decimate", "target-face-num", "edge-length"})
+    if (given(options.parsed, name))
+      fail("{}: contradicts --{}; give --{} with --mesh-file for the joined mesh", option, name,
+           name);
+  if (!options.mesh.empty()) fail("{}: contradicts --mesh-file", option);
+}
+
+void take_tiles(const Raw& raw, Options& options) {
+  check_range("tiles", options.tiles, std::size_t{1}, kMostTiles);
+  std::string option = fmt::format("--tiles {}", options.tiles);
+  if (given(options.parsed, "tile")) {
+    const Fraction fraction = parse_fraction("tile", raw.tile, kMostTiles);
+    option = "--tile " + raw.tile;
+    if (given(options.parsed, "tiles") && options.tiles != fraction.count)
+      fail("{}: contradicts --tiles {}", option, options.tiles);
+    options.tile = fraction.part;
+    options.tiles = fraction.count;
+  }
+  if (options.tiles > 1 || options.tile > 0) refuse_other_triangles(option, options);
+}
+
 // Warns of valid options that have no effect.
 void warn_of_no_effect(const Options& options) {
   if (options.mesh.empty()) return;
@@ -158,6 +189,7 @@ Options parse_command_line(int argc, const char* const* argv) {
   check_values(options, raw);
   options.reconstruct.clean.cut_off = options.reconstruct.clean.spurious;
   take_paths(raw, options);
+  take_tiles(raw, options);
   options.reconstruct.name_of = option_of;
   warn_of_no_effect(options);
   return options;

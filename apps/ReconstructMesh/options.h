@@ -19,8 +19,12 @@ struct Options {
   std::filesystem::path output;  // .ply or .obj
   double roi_border = 0;
   std::uint64_t max_memory = 0;  // [MB of 10^6 bytes]; 0: 70 % of the free memory
+  std::size_t tiles = 1;         // 1: the mesh is made in one piece
+  std::size_t tile = 0;          // from 1: make only this tile; 0: make and join all tiles
   mesh::ReconstructOptions reconstruct;
 };
+
+inline constexpr std::size_t kMostTiles = 1000;
 
 // Parses and checks the command line. Error for an unknown option and for a wrong value.
 // `parsed.run` is false if nothing is left to do, for example after --help.

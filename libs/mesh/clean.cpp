@@ -87,23 +87,6 @@ std::size_t remove_cut_off_components(HalfedgeMesh& mesh, const Components& befo
   });
 }
 
-// Returns the number of closed holes.
-std::size_t close_holes(HalfedgeMesh& mesh, std::size_t most) {
-  if (most == 0) return 0;
-  std::vector<HalfedgeMesh::Halfedge_index> cycles;
-  pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
-  std::size_t closed = 0;
-  for (const auto cycle : cycles) {
-    std::size_t edges = 0;
-    for ([[maybe_unused]] const auto half : mesh.halfedges_around_face(cycle)) ++edges;
-    if (edges > most) continue;
-    std::vector<HalfedgeMesh::Face_index> patch;
-    pmp::triangulate_hole(mesh, cycle, std::back_inserter(patch));
-    closed += patch.empty() ? 0 : 1;
-  }
-  return closed;
-}
-
 // Moves the vertices inside the mesh by `part` of the way to the mean of their neighbours.
 void move_to_means(HalfedgeMesh& mesh, double part) {
   std::vector<Eigen::Vector3d> moved(mesh.number_of_vertices());
@@ -149,6 +132,26 @@ std::size_t faces_to_keep(const HalfedgeMesh& mesh, const CleanOptions& options)
 
 }  // namespace
 
+std::size_t close_holes(HalfedgeMesh& mesh, std::size_t most, const VertexFilter& open) {
+  if (most == 0) return 0;
+  std::vector<HalfedgeMesh::Halfedge_index> cycles;
+  pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
+  std::size_t closed = 0;
+  for (const auto cycle : cycles) {
+    std::size_t edges = 0;
+    bool stays_open = false;
+    for (const auto half : mesh.halfedges_around_face(cycle)) {
+      ++edges;
+      stays_open = stays_open || (open && open(mesh.target(half)));
+    }
+    if (edges > most || stays_open) continue;
+    std::vector<HalfedgeMesh::Face_index> patch;
+    pmp::triangulate_hole(mesh, cycle, std::back_inserter(patch));
+    closed += patch.empty() ? 0 : 1;
+  }
+  return closed;
+}
+
 std::uint64_t bytes_to_clean(std::uint64_t vertices) {
   // Measured: CGAL's mesh with its properties, and the boxes of the search for intersections.
   return vertices * 1100;
@@ -177,7 +180,7 @@ Mesh clean(const Mesh& mesh, const CleanOptions& options, CleanReport* report) {
   result.removed_intersections = untangle(surface);
   result.removed_components += remove_cut_off_components(surface, before, options.cut_off);
   result.removed_components += remove_small_components(surface, spurious);
-  if (surface.number_of_faces() == 0)
+  if (surface.number_of_faces() == 0 && !options.may_be_empty)
     fail(
         "no face of the mesh is left: all pieces are smaller than the limit for spurious pieces, "
         "or their faces intersect each other");

@@ -23,6 +23,7 @@ struct CleanOptions {
   // Step 8 removes the pieces that step 7 cut off and whose bounding box has a diagonal below this
   // many mean edge lengths of the mesh in step 8; 0: none.
   double cut_off = 20;
+  bool may_be_empty = false;  // return a mesh without faces instead of an Error if no face is left
 };
 
 // What clean() did.
@@ -51,8 +52,8 @@ struct CleanReport {
 // neighbours. Vertices without faces are removed. Colours are lost. `report` is overwritten; null:
 // no report. Precondition: the corners of all faces are indices into the vertices. The result does
 // not depend on the number of threads. Throws an Error if no face of `mesh` has three different
-// vertices, if the steps leave no face, if a mesh without area shall be remeshed, or if remeshing
-// would make more than 2^28 faces.
+// vertices, if the steps leave no face (unless `may_be_empty`), if a mesh without area shall be
+// remeshed, or if remeshing would make more than 2^28 faces.
 Mesh clean(const Mesh& mesh, const CleanOptions& options = {}, CleanReport* report = nullptr);
 
 // An estimate of the memory [bytes] of clean() with its result, besides `mesh`, if the mesh is not

@@ -163,7 +163,12 @@ MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
       options.most_points > 0 ? options.most_points : std::numeric_limits<std::size_t>::max();
   for (const std::uint32_t i : by_views(cloud)) merger.take_point(i, most, merged);
   if (merged.count > most) return merged;
-  return in_order(merged, spatial_order(merged.positions));
+  sort_in_space(merged);
+  return merged;
+}
+
+void sort_in_space(MergedPoints& points) {
+  points = in_order(points, spatial_order(points.positions));
 }
 
 }  // namespace axial::mesh

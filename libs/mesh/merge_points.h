@@ -55,4 +55,7 @@ struct MergedPoints {
 MergedPoints merge_points(const PointCloud& cloud, const ViewRays& rays,
                           const MergeOptions& options = {});
 
+// Brings points into the order of merge_points().
+void sort_in_space(MergedPoints& points);
+
 }  // namespace axial::mesh

@@ -16,27 +16,6 @@
 namespace axial::mesh {
 namespace {
 
-void check(const PointCloud& cloud, const Scene& scene) {
-  if (cloud.positions.empty()) fail("the cloud has no points");
-  if (cloud.view_begin.empty())
-    fail("the points have no views, which tell the free space in front of them");
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.positions[i].allFinite()) fail("the position of point {} is not finite", i);
-    for (const std::uint32_t view : cloud.views_of(i)) {
-      if (view >= scene.images.size())
-        fail("point {} names view {}, but the scene has {} images", i, view, scene.images.size());
-      if (!scene.images[view].calibrated)
-        fail("point {} names view {}, an image without calibration: {}", i, view,
-             scene.images[view].path);
-    }
-  }
-  constexpr float kLargestWeight = 1e6f;  // sums of weights stay far from the largest float
-  for (const float weight : cloud.view_weights)
-    if (!(weight >= 0 && weight <= kLargestWeight))
-      fail("a view of a point has the weight {}, which must be from 0 to {}", weight,
-           kLargestWeight);
-}
-
 // The largest number of merged points, at least 1, whose mesh needs at most `max_bytes`.
 std::size_t most_points(std::uint64_t max_bytes) {
   const std::uint64_t fixed = bytes_needed(0), each = bytes_needed(1) - fixed;
@@ -58,9 +37,11 @@ MergedPoints merged(PointCloud cloud, const Scene& scene, const ViewRays& rays,
 void check_memory(std::size_t points, const ReconstructOptions& options) {
   const std::uint64_t needed = bytes_needed(points);
   if (options.max_bytes > 0 && needed > options.max_bytes)
-    fail("{} merged points need about {} MB, but {} is {}; a larger {} merges more points", points,
-         needed / kMegabyte, options.name_of("max_memory"), options.max_bytes / kMegabyte,
-         options.name_of("merge.min_distance"));
+    fail(
+        "{} merged points need about {} MB, but {} is {}; a larger {} merges more points, and a "
+        "larger {} needs less memory",
+        points, needed / kMegabyte, options.name_of("max_memory"), options.max_bytes / kMegabyte,
+        options.name_of("merge.min_distance"), options.name_of("tiles"));
 }
 
 Surface cut_surface(const MergedPoints& points, const ViewRays& rays,
@@ -97,19 +78,36 @@ std::uint64_t bytes_needed(std::size_t merged_points) {
   return 60'000'000 + merged_points * 1700;
 }
 
-Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options) {
-  check(cloud, scene);
-  const ViewRays rays(scene);
-  Surface surface;
-  {
-    const MergedPoints points = merged(std::move(cloud), scene, rays, options);
-    return_freed_memory();
-    check_memory(points.count, options);
-    surface = cut_surface(points, rays, options);
+void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first) {
+  if (cloud.view_begin.empty())
+    fail("the points have no views, which tell the free space in front of them");
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.positions[i].allFinite()) fail("the position of point {} is not finite", first + i);
+    for (const std::uint32_t view : cloud.views_of(i)) {
+      if (view >= scene.images.size())
+        fail("point {} names view {}, but the scene has {} images", first + i, view,
+             scene.images.size());
+      if (!scene.images[view].calibrated)
+        fail("point {} names view {}, an image without calibration: {}", first + i, view,
+             scene.images[view].path);
+    }
   }
+  constexpr float kLargestWeight = 1e6f;  // sums of weights stay far from the largest float
+  for (const float weight : cloud.view_weights)
+    if (!(weight >= 0 && weight <= kLargestWeight))
+      fail("a view of a point has the weight {}, which must be from 0 to {}", weight,
+           kLargestWeight);
+}
+
+Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
+                        const ReconstructOptions& options) {
+  if (points.size() < 4) return {};
+  check_memory(points.size(), options);
+  Surface surface = cut_surface(points, rays, options);
+  points = {};
   return_freed_memory();
-  if (surface.mesh.faces.empty()) fail("no surface separates free space from points");
   if (options.crop_to_region && scene.region) crop(surface.mesh, *scene.region);
+  if (surface.mesh.faces.empty()) return {};
   CleanReport report;
   Mesh mesh = clean(surface.mesh, options.clean, &report);
   log_info(
@@ -117,6 +115,20 @@ Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions&
       "that intersected others",
       report.removed_components, report.removed_spikes, report.closed_holes,
       report.removed_intersections);
+  return mesh;
+}
+
+Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options) {
+  if (cloud.positions.empty()) fail("the cloud has no points");
+  check_points(cloud, scene);
+  const ViewRays rays(scene);
+  MergedPoints points = merged(std::move(cloud), scene, rays, options);
+  return_freed_memory();
+  check_memory(points.count, options);
+  ReconstructOptions settings = options;
+  settings.clean.may_be_empty = false;
+  Mesh mesh = reconstruct_merged(std::move(points), scene, rays, settings);
+  if (mesh.faces.empty()) fail("no surface separates free space from points");
   return mesh;
 }
 

@@ -25,8 +25,8 @@ struct ReconstructOptions {
   bool only_region = false;     // use only points in Scene::region, if there is one
   bool crop_to_region = true;   // remove faces with a corner outside of Scene::region, if any
   std::uint64_t max_bytes = 0;  // limit of bytes_needed(); 0: no limit
-  // Errors name max_bytes by name_of("max_memory"), and merge.min_distance by
-  // name_of("merge.min_distance").
+  // Errors name max_bytes by name_of("max_memory"), merge.min_distance by
+  // name_of("merge.min_distance"), and the number of tiles (tiled.h) by name_of("tiles").
   SettingNames name_of = own_name;
 };
 
@@ -47,5 +47,16 @@ std::uint64_t bytes_needed(std::size_t merged_points);
 // * bytes_needed() exceeds max_bytes,
 // * no surface is found, or clean() throws (clean.h).
 Mesh reconstruct(PointCloud cloud, const Scene& scene, const ReconstructOptions& options = {});
+
+// The steps of reconstruct(), for clouds that are reconstructed in tiles (tiled.h).
+//
+// Throws the Errors of reconstruct() for a point whose position, views or weights are wrong. The
+// points of `cloud` have the numbers from `first` on in messages.
+void check_points(const PointCloud& cloud, const Scene& scene, std::size_t first = 0);
+// Makes the mesh of points that are merged already. `rays`: of the same scene. The result has no
+// faces if there are fewer than four points, if no surface is found, or if cleaning leaves no face.
+// Throws an Error if bytes_needed() exceeds max_bytes, or if all points lie in a plane.
+Mesh reconstruct_merged(MergedPoints points, const Scene& scene, const ViewRays& rays,
+                        const ReconstructOptions& options);
 
 }  // namespace axial::mesh

@@ -26,7 +26,7 @@ void sort_unique(std::vector<Index>& indices) {
 
 // The faces of `among` that intersect another face of `among`, ascending.
 template <class Faces>
-std::vector<Face> intersecting_faces(const HalfedgeMesh& mesh, const Faces& among) {
+std::vector<Face> intersecting_among(const HalfedgeMesh& mesh, const Faces& among) {
   std::vector<std::pair<Face, Face>> pairs;
   pmp::self_intersections<CGAL::Sequential_tag>(among, mesh, std::back_inserter(pairs));
   std::vector<Face> faces;
@@ -61,7 +61,7 @@ std::vector<Face> intersecting_near(const HalfedgeMesh& mesh, const std::vector<
   CGAL::box_intersection_d(some.begin(), some.end(), all.begin(), all.end(),
                            [&](const Box&, const Box& hit) { near.push_back(hit.info()); });
   sort_unique(near);
-  return intersecting_faces(mesh, near);
+  return intersecting_among(mesh, near);
 }
 
 std::vector<Vertex> corners_of(const HalfedgeMesh& mesh, const std::vector<Face>& faces) {
@@ -71,15 +71,6 @@ std::vector<Vertex> corners_of(const HalfedgeMesh& mesh, const std::vector<Face>
       corners.push_back(vertex);
   sort_unique(corners);
   return corners;
-}
-
-// Adds the faces that share a corner with `faces`.
-std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> faces) {
-  for (const Vertex vertex : corners_of(mesh, faces))
-    for (const auto face : mesh.faces_around_target(mesh.halfedge(vertex)))
-      if (face != HalfedgeMesh::null_face()) faces.push_back(face);
-  sort_unique(faces);
-  return faces;
 }
 
 // By the vertices' indices. Removed vertices have NaN, which equals no position: a new vertex may
@@ -112,10 +103,23 @@ void smooth_around(HalfedgeMesh& mesh, const std::vector<Face>& faces) {
 }
 
 }  // namespace
-void separate_copies(HalfedgeMesh& mesh) {
+
+std::vector<Face> intersecting_faces(const HalfedgeMesh& mesh) {
+  return intersecting_among(mesh, mesh.faces());
+}
+
+std::vector<Face> with_neighbours(const HalfedgeMesh& mesh, std::vector<Face> faces) {
+  for (const Vertex vertex : corners_of(mesh, faces))
+    for (const auto face : mesh.faces_around_target(mesh.halfedge(vertex)))
+      if (face != HalfedgeMesh::null_face()) faces.push_back(face);
+  sort_unique(faces);
+  return faces;
+}
+
+void separate_copies(HalfedgeMesh& mesh, const VertexFilter& fixed) {
   std::vector<Vertex> order;
   for (const auto vertex : mesh.vertices())
-    if (!mesh.is_isolated(vertex)) order.push_back(vertex);
+    if (!mesh.is_isolated(vertex) && !(fixed && fixed(vertex))) order.push_back(vertex);
   std::sort(order.begin(), order.end(), [&](Vertex a, Vertex b) {
     return std::pair(mesh.point(a), a) < std::pair(mesh.point(b), b);
   });
@@ -132,7 +136,7 @@ void separate_copies(HalfedgeMesh& mesh) {
 
 std::size_t untangle(HalfedgeMesh& mesh) {
   constexpr int kRounds = 8;
-  std::vector<Face> faces = intersecting_faces(mesh, mesh.faces());
+  std::vector<Face> faces = intersecting_faces(mesh);
   if (faces.empty()) return 0;
   // The other sheets of the surface near a face are found only if they intersect something already.
   // The check of the faces that moved against all faces finds the rest.
@@ -141,7 +145,7 @@ std::size_t untangle(HalfedgeMesh& mesh) {
   std::vector<Eigen::Vector3d> before = positions(mesh);
   for (int round = 0; round < kRounds && !faces.empty(); ++round) {
     smooth_around(mesh, faces);
-    faces = intersecting_faces(mesh, near);
+    faces = intersecting_among(mesh, near);
   }
   std::size_t removed = 0;
   for (;;) {

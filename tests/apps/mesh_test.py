@@ -97,6 +97,40 @@ class Mesh(Scene):
     def refused(self, folder, expected, *arguments):
         self.refuses(expected, "ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, *arguments)
 
+    def test_tiles_make_the_mesh_of_one_piece(self):
+        folder = self.mesh("water", "--refractive")
+        file = os.path.join(folder, "scene_dense_mesh.ply")
+        whole = PlyMesh(read(file))
+        folder = self.mesh("water", "--refractive", "--tiles", "3")
+        at_once = read(file)
+        self.assertLess(abs(len(PlyMesh(at_once).faces) / len(whole.faces) - 1), 0.01)
+        self.assertLess(self.evaluated("water", file), 0.002)
+        self.assertEqual([name for name in os.listdir(folder) if "tiles" in name], [])
+        # Tiles that other runs made, one of which was killed while it wrote.
+        folder = self.copy("water")
+        for tile in (3, 1):
+            self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, "--refractive",
+                          "--tile", f"{tile}/3")
+        tiles = os.path.join(folder, "scene_dense_mesh.tiles3")
+        write(os.path.join(tiles, "mesh1.bin"), read(os.path.join(tiles, "mesh1.bin"))[:-100])
+        self.assertFalse(os.path.exists(file))
+        said = self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder,
+                             "--refractive", "--tiles", "3").stdout
+        self.assertEqual(read(file), at_once)
+        self.assertIn("Tile 1 of 3", said)
+        self.assertNotIn("Tile 3 of 3", said)
+
+    def test_wrong_tiles_are_refused(self):
+        folder = self.copy("air")
+        self.refused(folder, "--tiles 0", "--tiles", "0")
+        self.refused(folder, "--tile 4/3", "--tile", "4/3")
+        self.refused(folder, "--tile 1/3: contradicts --tiles 4", "--tile", "1/3", "--tiles", "4")
+        self.refused(folder, "--tiles 2: contradicts --decimate", "--tiles", "2", "--decimate",
+                     "0.5")
+        cloud = os.path.join(folder, "scene_dense.ply")
+        write(cloud, read(cloud)[:-1])
+        self.refused(folder, "scene_dense.ply", "--tiles", "2")
+
     def test_wrong_input_is_refused_in_one_line(self):
         folder = self.copy("air")
         cloud = os.path.join(folder, "scene_dense.ply")

@@ -41,6 +41,48 @@ TEST_F(PlyTest, FindsPropertiesByName) {
   EXPECT_FALSE(ply_has_faces(file_));
 }
 
+// The points of a file, read in portions of `points` points.
+PointCloud in_portions(const fs::path& file, std::size_t points) {
+  PointCloud all;
+  all.view_begin.push_back(0);
+  read_cloud_portions(file, nullptr, points, [&](const PointCloud& portion, std::size_t count) {
+    EXPECT_EQ(portion.size(), std::min(points, count - all.size()));
+    all.positions.insert(all.positions.end(), portion.positions.begin(), portion.positions.end());
+    for (std::size_t i = 0; i < portion.size(); ++i) {
+      for (const std::uint32_t view : portion.views_of(i)) all.view_images.push_back(view);
+      all.view_begin.push_back(all.view_images.size());
+    }
+  });
+  return all;
+}
+
+TEST_F(PlyTest, PortionsAreTheWholeCloud) {
+  // Both files are longer than the buffer of 32 MB, and rows lie across its end.
+  constexpr std::uint32_t kPoints = 40000;
+  PointCloud cloud;
+  cloud.view_begin.push_back(0);
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 40000\nproperty float x\nproperty float y\n"
+      "property float z\nproperty list uchar uint view_indices\nend_header\n";
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const auto x = static_cast<float>(i);
+    cloud.positions.emplace_back(x, -x, 0.5f);
+    for (std::uint32_t k = 0; k < 230 + i % 4; ++k) cloud.view_images.push_back(i + k);
+    cloud.view_begin.push_back(cloud.view_images.size());
+    text += std::to_string(i) + std::string(900, ' ') + "-" + std::to_string(i) + " 0.5 2 1 22\n";
+  }
+  write_cloud_ply(file_, cloud);
+  ASSERT_GT(fs::file_size(file_), 33u << 20);
+  const PointCloud read = in_portions(file_, 7001);
+  EXPECT_EQ(read.positions, cloud.positions);
+  EXPECT_EQ(read.view_images, cloud.view_images);
+  EXPECT_EQ(read.view_begin, cloud.view_begin);
+  ASSERT_GT(text.size(), 33u << 20);
+  test::put(file_, text);
+  EXPECT_EQ(in_portions(file_, 30000).positions, cloud.positions);
+  EXPECT_EQ(in_portions(file_, 2 * kPoints).views_of(kPoints - 1)[1], 22u);
+}
+
 // The bytes of `value` in big-endian order.
 template <class T>
 std::string big(T value) {
@@ -178,6 +220,14 @@ TEST_F(PlyTest, SurvivesWrongInput) {
   test::expect_damage_survived(file_, std::string(kForeign), as_cloud);
   test::expect_prefixes_refused(file_, kQuad, as_mesh);
   test::expect_damage_survived(file_, std::string(kQuad), as_mesh);
+  const auto in_parts = [](const fs::path& file) {
+    read_cloud_portions(file, nullptr, 1, [](const PointCloud&, std::size_t) {});
+  };
+  test::expect_prefixes_refused(file_, binary, in_parts);
+  test::expect_damage_survived(file_, binary, in_parts);
+  test::expect_damage_survived(file_, std::string(kForeign), in_parts);
+  const auto place = [](const fs::path& file) { ply_place(file); };
+  test::expect_damage_survived(file_, binary, place);
   write_mesh_ply(file_, mesh(kQuad));
   const std::string mesh_bytes = read_file(file_);
   test::expect_prefixes_refused(file_, mesh_bytes, as_mesh);

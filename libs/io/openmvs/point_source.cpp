@@ -43,6 +43,11 @@ PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::p
   return is_silently_in(frame, ply) ? read_cloud_ply(ply) : read_cloud_ply(ply, frame);
 }
 
+void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesystem::path& ply,
+                                     std::size_t points, const CloudPortionSink& sink) {
+  read_cloud_portions(ply, is_silently_in(frame, ply) ? nullptr : &frame, points, sink);
+}
+
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply) {
   return is_silently_in(frame, ply) ? read_mesh_ply(ply) : read_mesh_ply(ply, frame);
 }

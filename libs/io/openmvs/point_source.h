@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "io/openmvs/mvs_counts.h"
+#include "io/ply/ply.h"
 #include "scene/local_frame.h"
 #include "scene/mesh.h"
 #include "scene/point_cloud.h"
@@ -27,6 +28,11 @@ namespace axial::io {
 // Errors as for read_cloud_ply and read_mesh_ply.
 PointCloud read_cloud_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
 Mesh read_mesh_of_scene(const LocalFrame& frame, const std::filesystem::path& ply);
+
+// Reads a cloud of any size in portions (read_cloud_portions() in io/ply/ply.h), with the positions
+// of read_cloud_of_scene().
+void read_cloud_of_scene_in_portions(const LocalFrame& frame, const std::filesystem::path& ply,
+                                     std::size_t points, const CloudPortionSink& sink);
 
 // Estimates of the memory [bytes] that read_cloud_of_scene() and read_mesh_of_scene() need, with
 // their result. The estimate for a cloud is made from the size and the header of the file, and is 0

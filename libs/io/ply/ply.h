@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,18 @@ PointCloud read_cloud_ply(const std::filesystem::path& path);
 // point in the file's comment geo_offset, or the world's origin if there is no such comment. The
 // positions are moved in double precision and then rounded to float.
 PointCloud read_cloud_ply(const std::filesystem::path& path, const LocalFrame& frame);
+
+// Receives a portion of a cloud, and the number of points of the whole cloud.
+using CloudPortionSink = std::function<void(PointCloud portion, std::size_t all_points)>;
+
+// Reads a cloud of any size in portions. Calls `sink` with portions of `points` points each, in the
+// order of the file; the last portion may be smaller. Properties, positions and Errors are those of
+// the function read_cloud_ply() with the same frame; null: the function without a frame. In
+// addition, rows of more than 1 MB are refused. Data behind the vertices are not read. If an Error
+// is found in a portion, `sink` has received the portions before. Needs at most 32 MB, besides the
+// portion. Precondition: `points` is at least 1.
+void read_cloud_portions(const std::filesystem::path& path, const LocalFrame* frame,
+                         std::size_t points, const CloudPortionSink& sink);
 
 // Where the positions of a file are, and their precision.
 struct PlyPlace {

@@ -161,15 +161,18 @@ PlyBody::PlyBody(std::string_view bytes, const std::string& file, const PlyHeade
     fail("{}: truncated: the last line has no end", file);
 }
 
-void PlyBody::require_rows(const PlyElement& element) const {
-  const std::uint64_t row = min_row_bytes(element, format_);
+void require_rows(const PlyElement& element, PlyFormat format, std::uint64_t left,
+                  const std::string& file) {
+  const std::uint64_t row = min_row_bytes(element, format);
   if (row == 0 && element.count > 0)
-    fail("{}: element {} has {} rows without properties", reader_.file(), element.name,
-         element.count);
-  const std::uint64_t left = format_ == PlyFormat::kAscii ? text_.size() : reader_.left();
+    fail("{}: element {} has {} rows without properties", file, element.name, element.count);
   if (row > 0 && element.count > left / row)
-    fail("{}: truncated: element {} should have {} rows, but only {} bytes are left",
-         reader_.file(), element.name, element.count, left);
+    fail("{}: truncated: element {} should have {} rows, but only {} bytes are left", file,
+         element.name, element.count, left);
+}
+
+void PlyBody::require_rows(const PlyElement& element) const {
+  io::require_rows(element, format_, left(), reader_.file());
 }
 
 template <class T>

@@ -6,7 +6,10 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <span>
+#include <vector>
 
 #include "scene/mesh.h"
 
@@ -38,9 +41,22 @@ void decimate(HalfedgeMesh& mesh, std::size_t faces);
 // Makes triangles with edges of about `edge_length` [m] (isotropic remeshing).
 void remesh(HalfedgeMesh& mesh, double edge_length);
 
+// Chooses vertices; an empty function chooses none.
+using VertexFilter = std::function<bool(HalfedgeMesh::Vertex_index)>;
+
+// Closes holes whose border has at most `most` edges and none of the vertices that `open` chooses.
+// Returns the number of closed holes.
+std::size_t close_holes(HalfedgeMesh& mesh, std::size_t most, const VertexFilter& open = {});
+
+// The faces that intersect another face, ascending.
+std::vector<HalfedgeMesh::Face_index> intersecting_faces(const HalfedgeMesh& mesh);
+// `faces` and the faces that share a corner with them, ascending.
+std::vector<HalfedgeMesh::Face_index> with_neighbours(const HalfedgeMesh& mesh,
+                                                      std::vector<HalfedgeMesh::Face_index> faces);
+
 // Moves vertices at the same place apart: each moves by 1 % of the way to the mean of its
-// neighbours.
-void separate_copies(HalfedgeMesh& mesh);
+// neighbours. The vertices that `fixed` chooses stay.
+void separate_copies(HalfedgeMesh& mesh, const VertexFilter& fixed = {});
 // Makes the mesh free of self-intersections. Faces that intersect others are smoothed up to 8
 // times. Faces that still intersect others are removed, and then spikes are removed. Returns the
 // number of all removed faces.

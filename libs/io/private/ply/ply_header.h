@@ -43,15 +43,23 @@ struct PlyHeader {
 // Parses the header. Error that names `file` if it is not well-formed.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& file);
 
+// Error that names `file` if `left` bytes cannot hold the declared rows of `element`. Call this
+// function before memory is allocated for `element.count` rows: the count of a damaged file may be
+// huge.
+void require_rows(const PlyElement& element, PlyFormat format, std::uint64_t left,
+                  const std::string& file);
+
 // Reads the values of the body, in any of the three formats. Values are returned as double, because
 // a double holds the values of all PLY types exactly.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const std::string& file, const PlyHeader& header);
 
-  // Error if the bytes left cannot hold the declared rows of `element`. Call this function before
-  // memory is allocated for `element.count` rows: the count of a damaged file may be huge.
+  // The function require_rows() above, for the bytes left.
   void require_rows(const PlyElement& element) const;
+
+  // The number of bytes that have not been read.
+  std::size_t left() const { return format_ == PlyFormat::kAscii ? text_.size() : reader_.left(); }
 
   // Reads one value. Error if the bytes end or a value does not fit its type. Infinite and NaN
   // values are returned.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fraction.h"
+#include "base/fraction.h"
 
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 
-namespace axial::apps {
+namespace axial {
 
 Fraction parse_fraction(const std::string& name, const std::string& value, std::size_t most) {
   const auto words = split(value, '/');
@@ -16,4 +16,4 @@ Fraction parse_fraction(const std::string& name, const std::string& value, std::
   return {*part, *count};
 }
 
-}  // namespace axial::apps
+}  // namespace axial

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The value I/N of options such as --part and --tile.
 #pragma once
 
 #include <cstddef>
 #include <string>
 
-namespace axial::apps {
+namespace axial {
 
 // The part `part` of `count` parts, counted from 1.
 struct Fraction {
@@ -15,4 +16,4 @@ struct Fraction {
 // value unless N is from 1 to `most` and I is from 1 to N.
 Fraction parse_fraction(const std::string& name, const std::string& value, std::size_t most);
 
-}  // namespace axial::apps
+}  // namespace axial

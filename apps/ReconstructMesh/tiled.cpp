@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tiled.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "base/naming.h"
+#include "base/version.h"
+#include "io/cameras/geo_offset.h"
+#include "io/cameras/lenses.h"
+#include "io/openmvs/point_source.h"
+#include "mesh/tiled.h"
+#include "scene/point_cloud.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPortion = 1 << 16;  // [points]
+
+fs::path tile_folder(const Options& options) {
+  return fs::path(options.output).replace_extension(fmt::format(".tiles{}", options.tiles));
+}
+
+// Adds size and time of change. The content of a large cloud is not read for each tile.
+void add_state(const fs::path& file, Fingerprint& print) {
+  struct stat found {};
+  if (file.empty() || ::stat(file.c_str(), &found) != 0) {
+    print.add("no file");
+    return;
+  }
+  for (const auto number : {found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec})
+    print.add(static_cast<std::uint64_t>(number));
+}
+
+void add(const mesh::ReconstructOptions& options, Fingerprint& print) {
+  // A new option does not compile until it has a name here.
+  const auto& [merge, votes, clean, only_region, crop_to_region, max_bytes, name_of] = options;
+  const auto& [min_distance, most_points] = merge;
+  const auto& [constant_weight, weak_support, thickness, quality] = votes;
+  const auto& [decimate, target_faces, spurious, spikes, close_holes, smooth, edge_length, cut_off,
+               may_be_empty] = clean;
+  for (const double value : {min_distance, thickness, quality, spurious, cut_off}) print.add(value);
+  for (const bool value : {constant_weight, weak_support, spikes, only_region, crop_to_region})
+    print.add(std::uint64_t{value});
+  for (const std::uint64_t value : {std::uint64_t{close_holes}, std::uint64_t{smooth}})
+    print.add(value);
+}
+
+mesh::TileRun run_of(const Options& options) {
+  Fingerprint print;
+  print.add(version_line("ReconstructMesh"));
+  const fs::path& scene = options.scene.scene;
+  for (const fs::path& file : {scene, cloud_file(options), io::housing_file(options.scene),
+                               io::lenses_beside(scene), io::geo_offset_beside(scene)})
+    add_state(file, print);
+  add(options.reconstruct, print);
+  print.add(options.roi_border).add(std::uint64_t{options.tiles});
+  return {options.tiles, tile_folder(options), print.hex()};
+}
+
+mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options) {
+  return [&scene, file = cloud_file(options)](const io::CloudPortionSink& sink) {
+    if (file.empty()) {
+      PointCloud points = cloud_of(scene.scene);
+      const std::size_t count = points.size();
+      sink(std::move(points), count);
+    } else {
+      io::read_cloud_of_scene_in_portions(scene.frame, file, kPortion, sink);
+    }
+  };
+}
+
+// Errors in the cloud are named by its file, as those of a mesh in one piece.
+fs::path named_source(const Options& options) {
+  const fs::path cloud = cloud_file(options);
+  return cloud.empty() ? options.scene.scene : cloud;
+}
+
+}  // namespace
+
+fs::path cloud_file(const Options& options) {
+  if (!options.cloud.empty()) return options.cloud;
+  const fs::path beside = fs::path(options.scene.scene).replace_extension(".ply");
+  std::error_code error;
+  return fs::exists(beside, error) ? beside : fs::path();
+}
+
+void make_tile(const io::SceneWithCameras& scene, const Options& options) {
+  naming(named_source(options), [&] {
+    mesh::reconstruct_tile(options.tile - 1, source_of(scene, options), scene.scene,
+                           options.reconstruct, run_of(options));
+  });
+  log_info("{}: tile {} of {} is complete", tile_folder(options).string(), options.tile,
+           options.tiles);
+}
+
+Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options) {
+  return naming(named_source(options), [&] {
+    return mesh::reconstruct_in_tiles(source_of(scene, options), scene.scene, options.reconstruct,
+                                      run_of(options));
+  });
+}
+
+void remove_tiles(const Options& options) {
+  if (options.tiles > 1) mesh::remove_intermediate_files(run_of(options));
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh in tiles (mesh/tiled.h), with its files beside the output.
+#pragma once
+
+#include <filesystem>
+
+#include "io/openmvs/scene_with_cameras.h"
+#include "options.h"
+#include "scene/mesh.h"
+
+namespace axial::apps {
+
+// The cloud to use. As in OpenMVS, the cloud beside the scene is taken if none is named. Empty: the
+// points of the scene.
+std::filesystem::path cloud_file(const Options& options);
+
+// Makes tile Options::tile, and writes its files into the folder <output>.tilesN.
+void make_tile(const io::SceneWithCameras& scene, const Options& options);
+
+// Makes the tiles whose files are missing, and returns the mesh of all tiles.
+Mesh join_tiles(const io::SceneWithCameras& scene, const Options& options);
+
+// Removes the files of the tiles, if the options ask for tiles.
+void remove_tiles(const Options& options);
+
+}  // namespace axial::apps

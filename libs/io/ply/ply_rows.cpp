@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "private/ply/ply_rows.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace axial::io {
+namespace {
+
+void require_finite(const Eigen::Vector3f& v, const char* field, std::size_t row,
+                    const std::string& file) {
+  if (!v.allFinite()) fail("{}: vertex {} has a {} that is not finite", file, row, field);
+}
+
+}  // namespace
+
+std::size_t find_property(const PlyElement& element, const std::string& name, bool list) {
+  for (std::size_t i = 0; i < element.properties.size(); ++i)
+    if (element.properties[i].name == name && element.properties[i].is_list == list) return i;
+  return kNoProperty;
+}
+
+const PlyElement* find_element(const PlyHeader& header, const std::string& name) {
+  for (const PlyElement& element : header.elements)
+    if (element.name == name) return &element;
+  return nullptr;
+}
+
+void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>* into) {
+  if (into) into->clear();
+  const std::size_t size = body.list_size(property);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double value = body.scalar(property.type, property.name);
+    if (into) into->push_back(value);
+  }
+}
+
+void skip_row(PlyBody& body, const PlyElement& element) {
+  for (const PlyProperty& property : element.properties)
+    if (property.is_list)
+      read_list(body, property, nullptr);
+    else
+      body.scalar(property.type, property.name);
+}
+
+void skip_rows(PlyBody& body, const PlyElement& element) {
+  body.require_rows(element);
+  for (std::uint64_t i = 0; i < element.count; ++i) skip_row(body, element);
+}
+
+std::uint32_t as_index(double value, const char* field, std::size_t row, const std::string& file) {
+  if (!(value >= 0 && value <= 4294967295.0) || value != std::trunc(value))
+    fail("{}: {} of row {} contains {}, which is not an index", file, field, row, value);
+  return static_cast<std::uint32_t>(value);
+}
+
+std::optional<Eigen::Vector3d> shift_into(const LocalFrame* frame, const PlyHeader& header) {
+  if (!frame) return {};
+  const Eigen::Vector3d shift = header.geo_offset.value_or(Eigen::Vector3d::Zero()) - frame->origin;
+  if (shift.isZero(0)) return {};
+  return shift;
+}
+
+VertexRows::VertexRows(const PlyElement& element, std::string file,
+                       const std::optional<Eigen::Vector3d>& shift)
+    : element_(element),
+      file_(std::move(file)),
+      shift_(shift),
+      slot_of_(element.properties.size(), kNoProperty) {
+  for (std::size_t slot = 0; slot < kSlots; ++slot) {
+    std::size_t i = find_property(element, kNames[slot], false);
+    if (i == kNoProperty && slot >= kRed)
+      i = find_property(element, std::string("diffuse_") + kNames[slot], false);
+    has_[slot] = i != kNoProperty;
+    if (i != kNoProperty) slot_of_[i] = slot;
+  }
+  indices_at_ = find_property(element, "view_indices", true);
+  weights_at_ = find_property(element, "view_weights", true);
+  if (!has(kX)) fail("{}: element vertex has no x, y or z", file_);
+}
+
+PointCloud VertexRows::empty_cloud() const {
+  PointCloud cloud;
+  if (has_views()) cloud.view_begin.push_back(0);
+  return cloud;
+}
+
+void VertexRows::read_values(PlyBody& body) {
+  for (std::size_t i = 0; i < element_.properties.size(); ++i) {
+    const PlyProperty& property = element_.properties[i];
+    if (property.is_list) {
+      read_list(body, property,
+                i == indices_at_   ? &indices_
+                : i == weights_at_ ? &weights_
+                                   : nullptr);
+    } else {
+      const double value = body.scalar(property.type, property.name);
+      if (slot_of_[i] != kNoProperty) values_[slot_of_[i]] = value;
+    }
+  }
+}
+
+// Integer colours are in 0..255; some writers store floats in [0, 255]. Values outside are clamped.
+Rgb VertexRows::color() const {
+  Rgb rgb;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double value = values_[kRed + c];
+    rgb[c] = static_cast<std::uint8_t>(value >= 0 && value <= 255 ? value : value > 255 ? 255 : 0);
+  }
+  return rgb;
+}
+
+void VertexRows::append_views(PointCloud& cloud) const {
+  if (has_weights() && weights_.size() != indices_.size())
+    fail("{}: vertex {} has {} view_indices but {} view_weights", file_, row_, indices_.size(),
+         weights_.size());
+  for (const double value : indices_)
+    cloud.view_images.push_back(as_index(value, "view_indices", row_, file_));
+  if (has_weights())
+    for (const double value : weights_) cloud.view_weights.push_back(static_cast<float>(value));
+  cloud.view_begin.push_back(cloud.view_images.size());
+}
+
+void VertexRows::read(PlyBody& body, PointCloud& cloud) {
+  read_values(body);
+  cloud.positions.push_back((shift_ ? (numbers(kX) + *shift_).eval() : numbers(kX)).cast<float>());
+  require_finite(cloud.positions.back(), "position", row_, file_);
+  if (has(kNx)) {
+    cloud.normals.emplace_back(numbers(kNx).cast<float>());
+    require_finite(cloud.normals.back(), "normal", row_, file_);
+  }
+  if (has(kRed)) cloud.colors.push_back(color());
+  if (has_views()) append_views(cloud);
+  ++row_;
+}
+
+}  // namespace axial::io

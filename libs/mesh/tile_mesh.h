@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The part of a mesh that belongs to a tile, and the union of the parts of all tiles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cloud/tiles.h"
+#include "mesh/clean.h"
+#include "scene/mesh.h"
+
+namespace axial::mesh {
+
+// The faces of a mesh that belong to a tile.
+struct TileMesh {
+  Mesh mesh;
+  // The edges at which the faces of the tile meet faces of other tiles. The two vertices are in the
+  // order in which the face of this tile passes them.
+  std::vector<std::array<std::uint32_t, 2>> seams;
+};
+
+// Returns the faces of `mesh` that belong to `tile`: the faces whose centroid the tile contains.
+// The centroid depends on the positions of the corners, and not on their order. So each face of a
+// mesh belongs to exactly one tile of make_tiles() (cloud/tiles.h), and a face that two meshes have
+// belongs to the same tile in both. Vertices without faces are left out. Precondition: at most two
+// faces of `mesh` meet at an edge, and they are oriented.
+TileMesh owned_part(const Mesh& mesh, const cloud::Tile& tile);
+
+struct JoinOptions {
+  // Pieces whose bounding box has a diagonal below this many mean edge lengths are removed; 0:
+  // none.
+  double spurious = 20;
+  std::size_t close_gaps = 60;  // gaps of at most this many edges are closed
+};
+
+struct JoinReport {
+  std::size_t seams = 0;  // edges between tiles, counted in one of the tiles
+  // Of these: edges that have no counterpart in another tile, because the meshes of the two tiles
+  // differ there.
+  std::size_t unmatched = 0;
+  std::size_t replaced_faces = 0;      // faces around unmatched edges, which were mended
+  std::size_t removed_components = 0;  // pieces below the spurious limit
+};
+
+// Joins the meshes of all tiles. Each mesh is the part of its tile (owned_part) of a mesh of the
+// tile and its surroundings. Vertices at both ends of a seam become one vertex if another tile has
+// the same seam in the opposite direction, and both ends differ by at most a thousandth of its
+// length. Where a seam has no counterpart, the faces around it are mended: gaps are closed, and
+// faces that intersect other faces of the neighbourhood are replaced or removed. All other faces
+// and vertices stay as they are. The result is edge- and vertex-manifold and oriented if each mesh
+// is. The vertices are in the order of the tiles; the new vertices follow.
+Mesh join_tiles(std::vector<TileMesh> tiles, const JoinOptions& options = {},
+                JoinReport* report = nullptr);
+
+// The memory [bytes] of join_tiles() with its result and its arguments.
+std::uint64_t bytes_to_join(std::uint64_t vertices);
+
+}  // namespace axial::mesh

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/tiled.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/progress.h"
+#include "cloud/crop.h"
+#include "io/openmvs/point_source.h"
+#include "mesh/tile_files.h"
+
+namespace axial::mesh {
+namespace {
+
+constexpr std::size_t kSample = 1 << 20;  // most points that decide on the tiles, up to twice
+
+// Every k-th point of a cloud whose size is not known, with k as small as kSample allows.
+class Sample {
+ public:
+  void add(const Eigen::Vector3f& point) {
+    if (seen_++ % step_ != 0) return;
+    points_.push_back(point);
+    if (points_.size() < 2 * kSample) return;
+    for (std::size_t i = 0; i < kSample; ++i) points_[i] = points_[2 * i];
+    points_.resize(kSample);
+    step_ *= 2;
+  }
+  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+
+ private:
+  std::vector<Eigen::Vector3f> points_;
+  std::size_t seen_ = 0, step_ = 1;
+};
+
+class TiledRun {
+ public:
+  TiledRun(const CloudSource& cloud, const Scene& scene, const ReconstructOptions& options,
+           const TileRun& run)
+      : cloud_(cloud),
+        scene_(scene),
+        rays_(scene),
+        options_(options),
+        count_(run.tiles),
+        margin_(run.margin),
+        files_(run.folder, run.made_from) {
+    if (options.clean.decimate != 1 || options.clean.target_faces > 0 ||
+        options.clean.edge_length > 0)
+      fail("a mesh in tiles cannot be simplified or remeshed");
+    options_.clean.may_be_empty = true;
+    make_folder(run.folder);
+    divide_cloud();
+  }
+
+  TileMesh tile_mesh(std::size_t tile) const {
+    if (std::optional<TileMesh> made = files_.mesh(tile)) return std::move(*made);
+    MergedPoints own = points_of(tile);
+    const std::size_t own_points = own.size();
+    MergedPoints points = with_margin(tile, std::move(own));
+    log_info("Tile {} of {}: {} merged points, {} of them in the tile", tile + 1, count_,
+             points.size(), own_points);
+    const TileMesh mesh = owned_part(
+        own_points == 0 ? Mesh{} : reconstruct_merged(std::move(points), scene_, rays_, options_),
+        tiles_[tile]);
+    return_freed_memory();
+    files_.write(tile, mesh);
+    return mesh;
+  }
+
+  Mesh joined() const {
+    std::size_t vertices = 0;
+    for (std::size_t tile = 0; tile < count_; ++tile)
+      vertices += tile_mesh(tile).mesh.vertices.size();
+    require_memory(bytes_to_join(vertices), fmt::format("a mesh of {} vertices", vertices));
+    std::vector<TileMesh> meshes;
+    for (std::size_t tile = 0; tile < count_; ++tile) meshes.push_back(tile_mesh(tile));
+    JoinOptions join;
+    join.spurious = options_.clean.spurious;
+    JoinReport report;
+    Mesh mesh = join_tiles(std::move(meshes), join, &report);
+    log_info("Joined {} tiles: {} of {} edges between tiles differ, {} faces around them mended",
+             count_, report.unmatched, report.seams, report.replaced_faces);
+    if (mesh.faces.empty()) fail("no surface separates free space from points");
+    return mesh;
+  }
+
+ private:
+  void require_memory(std::uint64_t bytes, const std::string& work) const {
+    if (options_.max_bytes > 0 && bytes > options_.max_bytes)
+      fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte,
+           options_.name_of("max_memory"), options_.max_bytes / kMegabyte);
+  }
+
+  // Passes the points to use to `sink`.
+  void read(const std::string& title, const std::function<void(PointCloud)>& sink) const {
+    const ProgressSink progress = console_progress(title);
+    std::size_t done = 0;
+    cloud_([&](PointCloud portion, std::size_t all) {
+      check_points(portion, scene_, done);
+      done += portion.size();
+      if (options_.only_region && scene_.region) cloud::crop(portion, *scene_.region);
+      sink(std::move(portion));
+      progress(done, all);
+    });
+    if (done == 0) fail("the cloud has no points");
+  }
+
+  bool is_divided() {
+    const auto made = files_.tiles();
+    if (!made || made->size() != count_) return false;
+    for (std::size_t tile = 0; tile < count_; ++tile)
+      if (!std::filesystem::is_regular_file(files_.cloud(tile))) return false;
+    tiles_ = *made;
+    return true;
+  }
+
+  void divide_cloud() {
+    if (is_divided()) return;
+    Sample sample;
+    read("Read points", [&](const PointCloud& portion) {
+      for (const Eigen::Vector3f& position : portion.positions) sample.add(position);
+    });
+    const Eigen::Matrix3d axes =
+        scene_.region ? scene_.region->rotation : Eigen::Matrix3d::Identity().eval();
+    tiles_ = cloud::make_tiles(sample.points(), count_, axes);
+    write_clouds();
+    files_.write(tiles_);
+  }
+
+  // The points of a portion in each tile.
+  std::vector<PointCloud> parts_of(const PointCloud& portion) const {
+    std::vector<PointCloud> parts(count_);
+    for (PointCloud& part : parts) part.view_begin.push_back(0);
+    std::size_t tile = 0;  // the next point is often in the same tile
+    for (std::size_t i = 0; i < portion.size(); ++i) {
+      const Eigen::Vector3d place = portion.positions[i].cast<double>();
+      while (!tiles_[tile].contains(place)) tile = (tile + 1) % count_;
+      append(portion, i, parts[tile]);
+    }
+    return parts;
+  }
+
+  // Appends point `i` of `from` to `to`, without its colour.
+  static void append(const PointCloud& from, std::size_t i, PointCloud& to) {
+    to.positions.push_back(from.positions[i]);
+    if (!from.normals.empty()) to.normals.push_back(from.normals[i]);
+    for (std::size_t v = from.view_begin[i]; v < from.view_begin[i + 1]; ++v) {
+      to.view_images.push_back(from.view_images[v]);
+      if (!from.view_weights.empty()) to.view_weights.push_back(from.view_weights[v]);
+    }
+    to.view_begin.push_back(to.view_images.size());
+  }
+
+  void write_clouds() const {
+    std::vector<std::unique_ptr<io::CloudWriter>> writers(count_);
+    read("Divided points", [&](const PointCloud& portion) {
+      const io::CloudLayout layout{.normals = !portion.normals.empty(),
+                                   .views = true,
+                                   .view_weights = !portion.view_weights.empty()};
+      const std::vector<PointCloud> parts = parts_of(portion);
+      for (std::size_t tile = 0; tile < count_; ++tile) {
+        if (!writers[tile])
+          writers[tile] = std::make_unique<io::CloudWriter>(files_.cloud(tile), layout);
+        writers[tile]->add(parts[tile]);
+      }
+    });
+    for (const auto& writer : writers) writer->finish();
+  }
+
+  MergedPoints points_of(std::size_t tile) const {
+    if (std::optional<MergedPoints> made = files_.points(tile)) return std::move(*made);
+    const std::filesystem::path file = files_.cloud(tile);
+    require_memory(io::bytes_to_read_cloud(file), "reading " + file.string());
+    MergedPoints points = merge_points(io::read_cloud_ply(file), rays_, options_.merge);
+    files_.write(tile, points);
+    return points;
+  }
+
+  // `points`, the points of the tile, with those of other tiles in its margin.
+  MergedPoints with_margin(std::size_t tile, MergedPoints points) const {
+    if (points.size() == 0) return points;
+    const cloud::Tile reach = cloud::grown(tiles_[tile], margin_at(points));
+    for (std::size_t other = 0; other < count_; ++other) {
+      const cloud::Tile& box = tiles_[other];
+      const bool meets = (box.low.array() < reach.high.array()).all() &&
+                         (box.high.array() > reach.low.array()).all();
+      if (other != tile && meets) append(points_of(other), reach, points);
+    }
+    sort_in_space(points);
+    return points;
+  }
+
+  double margin_at(const MergedPoints& points) const {
+    std::vector<float> widths = points.pixel_widths;
+    const auto at = widths.begin() + static_cast<std::ptrdiff_t>((widths.size() - 1) * 19 / 20);
+    std::nth_element(widths.begin(), at, widths.end());
+    return margin_ * static_cast<double>(*at);
+  }
+
+  // Appends the points inside `box`.
+  static void append(const MergedPoints& more, const cloud::Tile& box, MergedPoints& points) {
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      if (!box.contains(more.positions[i].cast<double>())) continue;
+      points.positions.push_back(more.positions[i]);
+      points.pixel_widths.push_back(more.pixel_widths[i]);
+      for (std::size_t v = more.view_begin[i]; v < more.view_begin[i + 1]; ++v) {
+        points.view_images.push_back(more.view_images[v]);
+        points.view_weights.push_back(more.view_weights[v]);
+      }
+      points.view_begin.push_back(points.view_images.size());
+    }
+    points.count = points.size();
+  }
+
+  const CloudSource& cloud_;
+  const Scene& scene_;
+  ViewRays rays_;
+  ReconstructOptions options_;
+  std::size_t count_;
+  double margin_;
+  TileFiles files_;
+  std::vector<cloud::Tile> tiles_;
+};
+
+}  // namespace
+
+Mesh reconstruct_in_tiles(const CloudSource& cloud, const Scene& scene,
+                          const ReconstructOptions& options, const TileRun& run) {
+  return TiledRun(cloud, scene, options, run).joined();
+}
+
+void reconstruct_tile(std::size_t tile, const CloudSource& cloud, const Scene& scene,
+                      const ReconstructOptions& options, const TileRun& run) {
+  TiledRun(cloud, scene, options, run).tile_mesh(tile);
+}
+
+void remove_intermediate_files(const TileRun& run) {
+  TileFiles(run.folder, run.made_from).remove(run.tiles);
+}
+
+}  // namespace axial::mesh
