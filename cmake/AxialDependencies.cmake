@@ -13,7 +13,9 @@ find_package(nanoflann REQUIRED)
 find_package(embree 3 REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as header-only library
 find_package(Boost REQUIRED COMPONENTS program_options)
-find_package(Ceres REQUIRED)
+# With the component SuiteSparse, the package defines the targets of its parts, for example
+# SuiteSparse::CHOLMOD.
+find_package(Ceres REQUIRED COMPONENTS SuiteSparse)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and

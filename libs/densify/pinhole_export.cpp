@@ -2,7 +2,6 @@
 #include "densify/pinhole_export.h"
 
 #include <algorithm>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -145,14 +144,11 @@ class Export {
     for (const std::size_t image : project_.references)
       make_folder(image_file(image).parent_path());
     const std::size_t count = project_.references.size();
-    const ProgressSink progress = console_progress("Exported pinhole images");
-    std::mutex reporting;
+    ProgressCounter counter(console_progress("Exported pinhole images"), count);
     FirstError error;
-    std::size_t done = 0;
     for_each_in_flight(count, plan_.exports, [&](std::size_t i) {
       error.run(i, [&] { export_image(project_.references[i]); });
-      const std::lock_guard lock(reporting);
-      progress(++done, count);
+      counter.add();
     });
     error.rethrow();
   }

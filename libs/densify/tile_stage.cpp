@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -94,21 +93,20 @@ class TileRun {
       reaches.push_back(part.reach);
       part.seen_by.assign(views_.size(), false);
     }
-    const ProgressSink progress = console_progress("Assigned depth maps to tiles");
-    std::mutex mutex;
-    std::size_t done = 0;
+    std::vector<std::vector<bool>> seen(views_.size());  // for each view, one for each tile
+    ProgressCounter counter(console_progress("Assigned depth maps to tiles"), views_.size());
     for_each_in_flight(views_.size(), run_.plan.fusion_loads, [&](std::size_t view) {
       const DepthMap map = load_final_map(run_, views_[view].image);
       Fingerprint print;
       for (const cv::Mat& plane :
            {cv::Mat(map.depth), cv::Mat(map.normal), cv::Mat(map.confidence)})
         add_plane(print, plane);
-      const std::vector<bool> seen = cloud::boxes_seen(map, reaches);
-      const std::lock_guard lock(mutex);
+      seen[view] = cloud::boxes_seen(map, reaches);
       contents_[view] = print.hex();
-      for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].seen_by[view] = seen[i];
-      progress(++done, views_.size());
+      counter.add();
     });
+    for (std::size_t view = 0; view < views_.size(); ++view)
+      for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].seen_by[view] = seen[view][i];
   }
 
   std::string made_from(std::size_t tile) const {

@@ -24,7 +24,7 @@ class Iterations : public ceres::IterationCallback {
   Iterations(const AdjustSink& sink, double least_gain) : sink_(sink), least_gain_(least_gain) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    if (sink_) sink_({iteration.iteration, iteration.cost});
+    if (sink_) sink_({iteration.iteration, iteration.cost, iteration.iteration_time_in_seconds});
     const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
                       iteration.cost_change < least_gain_ &&
                       iteration.trust_region_radius > kLongSteps / 1000;

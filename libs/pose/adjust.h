@@ -69,8 +69,9 @@ struct AdjustOptions : Unknowns {
 
 // The state of an adjustment after an iteration of the solver.
 struct AdjustIteration {
-  int number = 0;   // 0: the evaluation of the start
-  double cost = 0;  // half the cost of adjust()
+  int number = 0;      // 0: the evaluation of the start
+  double cost = 0;     // half the cost of adjust()
+  double seconds = 0;  // that the iteration took
 };
 
 // Receives the state after each iteration, in the thread of the caller.

@@ -99,12 +99,35 @@ double best_scale(const Bundle& bundle) {
   return best;
 }
 
-AdjustSink iteration_lines(const std::string& title, const TextSink& sink) {
-  if (!sink) return {};
-  return [title, &sink](const AdjustIteration& iteration) {
-    sink(fmt::format("{}: iteration {}, cost {:.8g}", title, iteration.number, iteration.cost));
-  };
-}
+// Adjusts bundles and tells the progress.
+class Adjuster {
+ public:
+  Adjuster(const TextSink& progress, const TextSink& iterations)
+      : progress_(progress), iterations_(iterations) {}
+
+  AdjustReport adjust(Bundle& bundle, const AdjustOptions& options, const std::string& title) {
+    const bool is_long = !options.poses_known && bundle.images.size() >= options.many_images;
+    if (progress_ && is_long) progress_(start_line(bundle, title));
+    return pose::adjust(bundle, options, [&](const AdjustIteration& iteration) {
+      seconds_ = iteration.seconds;
+      if (iterations_)
+        iterations_(fmt::format("{}: iteration {}, cost {:.8g}, {:.1f} s", title, iteration.number,
+                                iteration.cost, iteration.seconds));
+    });
+  }
+
+ private:
+  std::string start_line(const Bundle& bundle, const std::string& title) const {
+    std::string line = fmt::format("{}: starts with {} images and {} points", title,
+                                   bundle.images.size(), bundle.points.size());
+    if (seconds_ > 0) line += fmt::format(", about {:.1f} s for each iteration", seconds_);
+    return line;
+  }
+
+  const TextSink& progress_;
+  const TextSink& iterations_;
+  double seconds_ = 0;  // time of the last iteration; 0: there was none
+};
 
 }  // namespace
 
@@ -148,9 +171,9 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
   limits.max_error *= 4;
   adjusting.loss_sigmas *= 4;
   adjusting.least_gain = std::max(adjusting.least_gain, kGainOfRounds);
+  Adjuster adjuster(progress, iterations);
   for (int round = 0; round < options.rounds; ++round) {
-    report.last =
-        adjust(bundle, adjusting, iteration_lines(fmt::format("round {}", round + 1), iterations));
+    report.last = adjuster.adjust(bundle, adjusting, fmt::format("round {}", round + 1));
     // The adjusted cameras predict which of several observations in one image is the right one.
     if (round == 0) report.repeated = drop_repeated(bundle);
     const std::size_t dropped = filter(bundle, limits, &report.dropped);
@@ -166,7 +189,7 @@ RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink
     adjusting.pixel_sigma = observed_pixel_sigma(bundle, adjusting);
   }
   adjusting.least_gain = options.adjust.least_gain;
-  report.last = adjust(bundle, adjusting, iteration_lines("last adjustment", iterations));
+  report.last = adjuster.adjust(bundle, adjusting, "last adjustment");
   filter(bundle, limits, &report.dropped);
   if (bundle.observations.empty()) fail("no observation fits refractive cameras");
   report.lost = lost_knowledge(bundle, adjusting);

@@ -57,10 +57,11 @@ void bring_to_metres(Bundle& bundle, const AdjustOptions& options);
 // themselves, and observed_pixel_sigma() of the round before. The first round also drops repeated
 // observations (drop_repeated()). `progress` gets one line of text for each round, and
 // `iterations` one line for each iteration of the solver. With AdjustOptions::many_images or more
-// poses, the rounds before the last adjustment end at an AdjustOptions::least_gain of 0.1 or of
-// `options.adjust` if that is larger: this is enough to find observations that do not fit. For the
-// standard deviations of the result, call uncertainty() with the refined bundle and
-// `options.adjust`. Throws an Error if no observation is left, or if adjust() fails.
+// poses, `progress` also gets a line at the start of each adjustment, and the rounds before the
+// last adjustment end at an AdjustOptions::least_gain of 0.1 or of `options.adjust` if that is
+// larger: this is enough to find observations that do not fit. For the standard deviations of the
+// result, call uncertainty() with the refined bundle and `options.adjust`. Throws an Error if no
+// observation is left, or if adjust() fails.
 RefineReport refine(Bundle& bundle, const RefineOptions& options, const TextSink& progress = {},
                     const TextSink& iterations = {});
 

@@ -2,7 +2,6 @@
 #include <ceres/crs_matrix.h>
 #include <fmt/format.h>
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "pose/adjust.h"
 #include "pose/adjust_problem.h"
+#include "pose/sparse_cholesky.h"
 #include "scene/decompositions.h"
 
 namespace axial::pose {
@@ -76,36 +76,39 @@ Sparse reduced_normal_matrix(const Sparse& jacobian, Eigen::Index camera_columns
   return Sparse(cameras.transpose() * cameras) - eliminated;
 }
 
+// Of one core, for the factorization of surveys with 2,400 to 10,000 images.
+constexpr double kOperationsPerSecond = 1.2e10;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Covariance of a vector with the given normal matrix. The matrix is scaled first, since metres,
-// radians and indices differ by orders of magnitude.
+// radians and indices differ by orders of magnitude. `start`: see SparseCholesky.
 class Covariance {
  public:
-  explicit Covariance(const Sparse& normal)
-      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
-    Sparse scaled = scale_.asDiagonal() * normal * scale_.asDiagonal();
-    Sparse damping(normal.rows(), normal.cols());
-    damping.setIdentity();
-    scaled += kDamping * damping;
-    factor_.compute(scaled);
-  }
+  Covariance(const Sparse& normal, const std::function<void(double operations)>& start)
+      : scale_(normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
+        factor_(damped(scale_.asDiagonal() * normal * scale_.asDiagonal()), start) {}
 
   // The variance along `direction`. Infinite along directions that nothing but the damping
   // determines.
   double variance(const Eigen::VectorXd& direction) const {
     const Eigen::VectorXd scaled = scale_.asDiagonal() * direction;
-    if (factor_.info() != Eigen::Success || scaled.isZero(0)) return kInfinite;
-    const Eigen::VectorXd ordered = factor_.permutationP() * scaled;
-    const double variance = factor_.matrixL().solve(ordered).squaredNorm();
+    if (!factor_.is_positive_definite() || scaled.isZero(0)) return kInfinite;
+    const double variance = factor_.inverse_form(scaled);
     const bool determined = variance < 1e-3 / kDamping * scaled.squaredNorm();
     return determined ? variance : kInfinite;
   }
 
  private:
   static constexpr double kDamping = 1e-12;
+
+  static Sparse damped(const Sparse& matrix) {
+    Sparse damping(matrix.rows(), matrix.cols());
+    damping.setIdentity();
+    return matrix + kDamping * damping;
+  }
+
   Eigen::VectorXd scale_;
-  Eigen::SimplicialLLT<Sparse> factor_;
+  SparseCholesky factor_;
 };
 
 // The normal equations at the solution, and the columns of each parameter block.
@@ -124,9 +127,11 @@ class Normal {
     if (progress) progress("standard deviations: normal equations");
     const Sparse normal =
         reduced_normal_matrix(jacobian(problem_.problem(), blocks), camera_columns_);
-    if (progress)
-      progress(fmt::format("standard deviations: factorization of {} equations", camera_columns_));
-    covariance_.emplace(normal);
+    covariance_.emplace(normal, [&](double operations) {
+      if (progress)
+        progress(fmt::format("standard deviations: factorization of {} equations, about {:.0f} s",
+                             camera_columns_, std::ceil(operations / kOperationsPerSecond)));
+    });
   }
 
   HousingChange<double> sigmas_of_camera(std::size_t camera) {

@@ -195,6 +195,23 @@ TEST(Refine, TellsTheIterationsOfEachRound) {
         << start;
 }
 
+TEST(Refine, TellsTheStartOfEachAdjustmentOfManyImages) {
+  const Bundle start = survey(camera_behind(flat_port()), {.noise = 0.3});
+  for (const std::size_t many : {start.images.size(), start.images.size() + 1}) {
+    Bundle bundle = start;
+    RefineOptions options;
+    options.adjust.many_images = many;
+    std::vector<std::string> lines;
+    refine(bundle, options, [&](const std::string& line) { lines.push_back(line); });
+    for (const char* begin : {"round 1: starts with ", "round 2: starts with ",
+                              "round 3: starts with ", "last adjustment: starts with "})
+      EXPECT_EQ(std::ranges::count_if(
+                    lines, [&](const std::string& line) { return line.starts_with(begin); }),
+                many == start.images.size() ? 1 : 0)
+          << begin;
+  }
+}
+
 TEST(Refine, DropsOutliers) {
   const Bundle truth = survey(camera_behind(flat_port()), {.points = 600, .noise = 0.3});
   Bundle bundle = truth;
