@@ -54,7 +54,7 @@ class Jobs(InFolder):
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
                  "lens_model": "OPENCV",
                  "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
-                 "until": "cloud", "truth": "", "programs": "bin", **more}
+                 "tiles": 1, "until": "cloud", "truth": "", "programs": "bin", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
                                 "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct.steps)
@@ -68,6 +68,18 @@ class Jobs(InFolder):
                 self.assertEqual(words[words.index("--iters"):],
                                  ["--iters", "2", "--fusion-tiles", "4", *more])
             self.assertIn(export, " ".join(survey.step("densify")[0].command))
+
+    def test_tiles_are_jobs(self):
+        survey = self.survey(tiles=3, until="mesh", mesh="-d 4", densify="--pinhole-export e")
+        self.assertEqual(survey.tiled, ["densify", "mesh"])
+        words = survey.step("mesh-tile-2of3")[0].command
+        self.assertEqual(words[-6:], ["--tiles", "3", "-d", "4", "--tile", "2/3"])
+        words = survey.step("densify-tile-1of3")[0].command
+        self.assertEqual(words[-4:], ["--fusion-tiles", "3", "--tile", "1/3"])
+        self.assertEqual(survey.before_tile_of_mesh("1of3"), [jobs.done("densify")])
+        self.assertEqual(survey.before_tile_of_mesh("3of3"), [jobs.done("mesh-tile-1of3")])
+        self.assertEqual(self.survey(until="mesh").tiled, [])
+        self.assertEqual(self.survey(tiles=3).tiled, ["densify"])
 
     def minutes(self, name, **options):
         job = self.survey(**options).job(name)
@@ -92,12 +104,15 @@ class Jobs(InFolder):
         chain = {"chain": steps.digest(steps.chain_to("densify", todo)), "seconds": 1}
         records = {"plan": json.dumps(chain), "depth-photometric-1of3": json.dumps(chain),
                    "depth-photometric-2of3": '{"chain": ', "depth-photometric-3of3": "",
-                   "depth-photometric-whole": json.dumps({**chain, "chain": "other"})}
+                   "depth-photometric-whole": json.dumps({**chain, "chain": "other"}),
+                   "densify-tile-1of3": json.dumps(chain),
+                   "densify-tile-2of3": json.dumps({**chain, "chain": "other"})}
         for name, record in records.items():
             self.write(jobs.done(name), record)
         cluster.forget_what_changed(todo, self.folder)
         self.assertEqual({path.name for path in (self.folder / "steps").glob("*.done.json")},
-                         {"plan.done.json", "depth-photometric-1of3.done.json"})
+                         {"plan.done.json", "depth-photometric-1of3.done.json",
+                          "densify-tile-1of3.done.json"})
 
 
 if __name__ == "__main__":

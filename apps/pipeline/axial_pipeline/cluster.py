@@ -29,7 +29,7 @@ def check(given):
 
 def forget_what_changed(todo, out):
     """Removes the records of the first step that is not done and of all later steps, and of depth
-    maps that another command made."""
+    maps and tiles that another command made."""
     records, chain = Records(out / "steps"), []
     for number, step in enumerate(todo):
         chain = [*chain, step.command, step.fingerprint()]
@@ -37,10 +37,12 @@ def forget_what_changed(todo, out):
             for later in todo[number:]:
                 records.forget(later)
             break
-    chain = digest(chain_to("densify", todo))
-    for record in [out / jobs.done("plan"), *out.glob(jobs.done("depth-*"))]:
-        if read_record(record).get("chain") != chain:
-            files.clear(record)
+    parts = {"densify": ["plan", "depth-*", "densify-tile-*"], "mesh": ["mesh-tile-*"]}
+    for name in {step.name for step in todo} & set(parts):
+        chain = digest(chain_to(name, todo))
+        for record in [path for part in parts[name] for path in out.glob(jobs.done(part))]:
+            if read_record(record).get("chain") != chain:
+                files.clear(record)
 
 
 def largest_node(given):
@@ -106,8 +108,8 @@ def run_to_its_end(words, given, out, lock):
 
 def run_all(todo, given, out, lock):
     """Runs the steps that are not done, like steps.run_all(). `lock`: the open file that refuses other
-    runs in the folder `out`. The time of the step "densify" includes the jobs of the depth maps, one
-    after another."""
+    runs in the folder `out`. The times of the steps "densify" and "mesh" include the jobs of the
+    depth maps and of the tiles, one after another."""
     records, node = Records(out / "steps"), largest_node(given)
     forget_what_changed(todo, out)
     config = {"given": vars(given), "folder": os.getcwd(), "images": files.count(given.images),
@@ -115,6 +117,8 @@ def run_all(todo, given, out, lock):
     files.write(out / jobs.OPTIONS, json.dumps(config))
     run_to_its_end(command(given, out, node), given, out, lock)
     seconds = {step.name: records.read(step, "done")["seconds"] for step in todo}
-    of_parts = [read_record(record)["seconds"] for record in out.glob(jobs.done("depth-*"))]
-    seconds["densify"] = round(seconds["densify"] + sum(of_parts), 1)
+    for name, parts in (("densify", ["depth-*", "densify-tile-*"]), ("mesh", ["mesh-tile-*"])):
+        for record in [path for part in parts for path in out.glob(jobs.done(part))]:
+            if name in seconds:
+                seconds[name] = round(seconds[name] + read_record(record)["seconds"], 1)
     return seconds

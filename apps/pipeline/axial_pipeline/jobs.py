@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The jobs of the workflow apps/pipeline/Snakefile: the steps of `reconstruct`, and jobs that compute
-the depth maps of a part of the images. A job of Slurm is one call of one_step.py."""
+"""The jobs of the workflow apps/pipeline/Snakefile: the steps of `reconstruct`, jobs that compute the
+depth maps of a part of the images, and jobs that make a tile of the cloud or of the mesh. A job of
+Slurm is one call of one_step.py."""
 
 import argparse
 import hashlib
@@ -28,6 +29,7 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "evaluate": (8000, 0, 60, 0)}
 PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
 SECONDS_TO_READ = 0.2  # an image and its depth map
+TILED = ("densify", "mesh")
 
 
 def code_of(out):
@@ -80,7 +82,9 @@ class Survey:
         self.steps = list(steps(given, self.out))
         self.names = [step.name for step in self.steps]
         self.images, self.node = config["images"], config["node"]
-        self.matcher = given.matcher
+        self.matcher, self.tiles = given.matcher, given.tiles
+        # The steps of which jobs make the tiles.
+        self.tiled = [name for name in TILED if name in self.names] if given.tiles > 1 else []
 
     def job(self, name):
         number = self.names.index(name)
@@ -97,6 +101,21 @@ class Survey:
         return Job(self.out, "depth-{stage}-{part}", self.node, [],
                    lambda wildcards: self.asked_for_depth(wildcards.stage, wildcards.part))
 
+    def tile(self, name):
+        return Job(self.out, name + "-tile-{part}", self.node, [],
+                   lambda wildcards: self.asked_for_tile(name))
+
+    def tiles_of(self, name):
+        """The records of the tiles of the step `name`."""
+        if name not in self.tiled:
+            return []
+        return [done(f"{name}-tile-{tile}of{self.tiles}") for tile in range(1, self.tiles + 1)]
+
+    def before_tile_of_mesh(self, part):
+        """The first tile of the mesh divides the cloud for the others."""
+        first = self.tiles_of("mesh")[0]
+        return [done("densify") if first == done(f"mesh-tile-{part}") else first]
+
     def asked(self, name):
         memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
         if name == "densify" and (self.out / PLAN).exists():
@@ -107,6 +126,14 @@ class Survey:
             # Twice, because processors differ in speed.
             more_minutes = 2 * PAIR_CPU_SECONDS * pairs / min(MOST_CPUS, self.node["cpus"]) / 60
         return memory + memory_of_image * self.images, minutes + more_minutes
+
+    def asked_for_tile(self, name):
+        """A tile has a margin: it is counted as twice its share of the images."""
+        if name == "densify":
+            return self.asked(name)
+        memory, memory_of_image, minutes, minutes_of_image = NEEDS[name]
+        images = min(1, 2 / self.tiles) * self.images
+        return memory + memory_of_image * images, minutes + minutes_of_image * images
 
     def planned(self):
         return json.loads((self.out / PLAN).read_text())
@@ -140,9 +167,14 @@ class Survey:
 
     def step(self, name):
         """The step of this name, and its chain. The steps of the depth maps have the chain of the
-        step "densify"."""
+        step "densify", and tiles have the chain of their step."""
         if name in self.names:
             return self.steps[self.names.index(name)], chain_to(name, self.steps)
+        tile = re.fullmatch(r"(\w+)-tile-(\d+of\d+)", name)
+        if tile:
+            whole, chain = self.step(tile[1])
+            command = [*without_export(whole.command), "--tile", tile[2].replace("of", "/")]
+            return Step(name, command, makes=self.out, reads=whole.reads), chain
         densify = self.steps[self.names.index("densify")]
         more = ["--plan", self.out / PLAN] if name == "plan" else part_options(name)
         return (Step(name, [*without_export(densify.command), *more], makes=self.out,

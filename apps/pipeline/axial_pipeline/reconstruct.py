@@ -30,6 +30,7 @@ PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructM
 # Options whose values are options for a program, and this program.
 MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
                 "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh"}
+MOST_TILES = 1000  # as in the programs
 
 
 def options(script_folder):
@@ -58,6 +59,9 @@ def options(script_folder):
         parser.add_argument(f"--{name}", default="",
                             help=f"more options for {program}, in one word" +
                             (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
+    parser.add_argument("--tiles", type=int, default=1,
+                        help="make the cloud and the reconstructed mesh in this many tiles, so that "
+                        "less memory is needed; with --cluster, in as many jobs (default: %(default)s)")
     parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
@@ -101,6 +105,8 @@ def check(given):
             raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
     for name in (*MORE_OPTIONS, "snakemake"):
         words_of(name, given)
+    if not 1 <= given.tiles <= MOST_TILES:
+        raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
@@ -143,6 +149,11 @@ def refine_options(given):
     return [*known, *refine, *words_of("refine-poses", given)]
 
 
+def tile_options(option, given):
+    """The option of a program for the tiles."""
+    return (option, given.tiles) if given.tiles > 1 else ()
+
+
 def mesh_steps(given, out):
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
@@ -151,7 +162,8 @@ def mesh_steps(given, out):
     reads = {name: existing_files(words) for name, words in options.items()}
     if given.until == "cloud":
         return
-    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive, *options["mesh"]),
+    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive,
+                                                 *tile_options("--tiles", given), *options["mesh"]),
                makes=mesh, reads=reads["mesh"])
     yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
                                                    *options["refine-mesh"]),
@@ -174,8 +186,9 @@ def steps(given, out):
                       *existing_files(words_of("refine-poses", given))])
     yield Step("import", programs.import_scene(refined, given.images, scene,
                                                refined / "housing.json"), makes=scene)
-    yield Step("densify", programs.densify(scene, out, "--refractive", 1, *densify), makes=cloud,
-               reads=existing_files(densify))
+    yield Step("densify", programs.densify(scene, out, "--refractive", 1,
+                                           *tile_options("--fusion-tiles", given), *densify),
+               makes=cloud, reads=existing_files(densify))
     yield from mesh_steps(given, out)
     if given.truth:
         yield Step("evaluate", programs.evaluate(cloud, given.truth, "--json",
