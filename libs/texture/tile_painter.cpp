@@ -59,8 +59,10 @@ ChartTiles give_charts(FaceTiles& tiles, const Charts& charts) {
       const std::uint32_t tile = tiles.of_face[f];
       if (counts[tile] > counts[most] || (counts[tile] == counts[most] && tile < most)) most = tile;
     }
-    for (const std::uint32_t f : faces) counts[tiles.of_face[f]] = 0;
-    for (const std::uint32_t f : faces) tiles.of_face[f] = most;
+    for (const std::uint32_t f : faces) {
+      counts[tiles.of_face[f]] = 0;
+      tiles.of_face[f] = most;
+    }
     result.of_chart.push_back(most);
   }
   return result;
@@ -88,13 +90,20 @@ bool TilePainter::levelled() const {
   return !seams_.empty() && (options.global || options.local);
 }
 
+std::uint64_t TilePainter::bytes_of_corrections() const {
+  if (!levelled()) return 0;
+  return bytes_of_seams(atlas_, seams_) + charts_.nodes.size() * sizeof(Eigen::Vector3f);
+}
+
 // Error if there is no memory to write a result. It is known as soon as the textures are planned.
 void TilePainter::check_writing() const {
   constexpr std::uint64_t kOfFace = sizeof(TexturedMesh::Corners) + sizeof(std::uint32_t);
+  // The corrections are in memory until the last tile is levelled.
+  const std::uint64_t held = tiles_.count() > 1 ? bytes_of_corrections() : 0;
   for (const ResultSize& size : sizes_of_tiles(mesh_, charts_, tiles_, atlas_)) {
     const std::uint64_t part = tiles_.count() > 1 ? bytes_of_part(size.vertices, size.faces) : 0;
     const auto& to_write = sources_.options.bytes_to_write;
-    budget_.less_by("tiles").require(part + size.faces * kOfFace +
+    budget_.less_by("tiles").require(held + part + size.faces * kOfFace +
                                          bytes_of_textures(size.textures) +
                                          (to_write ? to_write(size) : 0),
                                      fmt::format("writing {} textures", size.textures.size()));
@@ -103,9 +112,8 @@ void TilePainter::check_writing() const {
 
 Corrections TilePainter::corrections_of_all() {
   const LevelingOptions& options = sources_.options.leveling;
-  budget_ = budget_.without(
-      bytes_of_seams(atlas_, seams_) + charts_.nodes.size() * sizeof(Eigen::Vector3f),
-      fmt::format("levelling {} seams", seams_.size()));
+  budget_ =
+      budget_.without(bytes_of_corrections(), fmt::format("levelling {} seams", seams_.size()));
   SeamColors colors = seam_samples(atlas_, seams_);
   for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
     paint_tile(tile);
@@ -158,7 +166,8 @@ TexturedMesh TilePainter::assemble(std::size_t tile) {
 
 void TilePainter::run(const TileSink& take) {
   const bool levels = levelled();
-  const Corrections corrections = levels ? corrections_of_all() : Corrections{};
+  Corrections corrections;
+  if (levels) corrections = corrections_of_all();
   for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
     if (tiles_.count() > 1 && std::ranges::count(tiles_.of_face, tile) == 0) {
       take(tile, {});
@@ -168,6 +177,7 @@ void TilePainter::run(const TileSink& take) {
     if (levels)
       level_charts(atlas_, charts_, seams_, corrections, sources_.options.leveling,
                    budget_.without(bytes_of_textures(atlas_.sizes[tile]), "painting textures"));
+    if (tile + 1 == tiles_.count()) corrections = {};
     take(tile, assemble(tile));
     return_freed_memory();
   }

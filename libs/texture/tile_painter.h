@@ -34,6 +34,7 @@ class TilePainter {
 
  private:
   bool levelled() const;
+  std::uint64_t bytes_of_corrections() const;
   void check_writing() const;
   Corrections corrections_of_all();
   void paint_tile(std::size_t tile);
