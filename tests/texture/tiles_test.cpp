@@ -130,12 +130,12 @@ TEST(TextureTiles, WithTheSameViewsThePixelsAreThoseOfOnePiece) {
 }
 
 // A face in the mesh of a tile.
-struct Place {
+struct TileFace {
   std::size_t tile, face;
 };
 
-std::map<Corners, Place> places_in(const std::vector<TexturedMesh>& tiles) {
-  std::map<Corners, Place> places;
+std::map<Corners, TileFace> places_in(const std::vector<TexturedMesh>& tiles) {
+  std::map<Corners, TileFace> places;
   for (std::size_t t = 0; t < tiles.size(); ++t)
     for (std::size_t f = 0; f < tiles[t].mesh.faces.size(); ++f)
       places[corners_of(tiles[t].mesh, f)] = {t, f};
@@ -145,18 +145,19 @@ std::map<Corners, Place> places_in(const std::vector<TexturedMesh>& tiles) {
 // The mean difference of colours at the middles of edges between two tiles [grey levels]. `whole`
 // is the mesh of all tiles, whose neighbours are connected.
 double mean_step_between(const std::vector<TexturedMesh>& tiles, const Mesh& whole) {
-  const std::map<Corners, Place> places = places_in(tiles);
+  const std::map<Corners, TileFace> places = places_in(tiles);
   double sum = 0;
   std::size_t count = 0;
   for (const FacePair& pair : face_pairs(whole.faces)) {
-    const auto color = [&](const Place& place, std::uint32_t face) {
+    const auto color = [&](const TileFace& place, std::uint32_t face) {
       Eigen::Vector3f weights = Eigen::Vector3f::Zero();
       for (std::size_t k = 0; k < 3; ++k)
         if (whole.faces[face][k] == pair.from || whole.faces[face][k] == pair.to)
           weights[static_cast<int>(k)] = 0.5f;
       return test::color_at(tiles[place.tile], place.face, weights);
     };
-    const Place a = places.at(corners_of(whole, pair.a)), b = places.at(corners_of(whole, pair.b));
+    const TileFace a = places.at(corners_of(whole, pair.a)),
+                   b = places.at(corners_of(whole, pair.b));
     if (a.tile == b.tile) continue;
     const auto of_a = color(a, pair.a), of_b = color(b, pair.b);
     if (!of_a || !of_b) continue;
