@@ -9,10 +9,10 @@ namespace axial::texture {
 namespace {
 
 // The numbers of vertices of the tiles are equal enough with this number of vertices.
-constexpr std::size_t kSampled = 100'000;
+constexpr std::size_t kSampledVertices = 100'000;
 
 std::vector<Eigen::Vector3f> some_vertices(const Mesh& mesh) {
-  const std::size_t step = mesh.vertices.size() / kSampled + 1;
+  const std::size_t step = mesh.vertices.size() / kSampledVertices + 1;
   std::vector<Eigen::Vector3f> points;
   for (std::size_t i = 0; i < mesh.vertices.size(); i += step) points.push_back(mesh.vertices[i]);
   return points;
@@ -53,7 +53,7 @@ std::uint64_t bytes_to_divide(const Mesh& mesh, std::size_t count) {
   // The sampled vertices, the same along the axes, and their coordinates along one axis.
   constexpr std::uint64_t kOfSample =
       2 * sizeof(Eigen::Vector3f) + 2 * sizeof(Eigen::Vector3d) + 16;
-  return std::min(mesh.vertices.size(), kSampled) * kOfSample +
+  return std::min(mesh.vertices.size(), kSampledVertices) * kOfSample +
          mesh.faces.size() * sizeof(std::uint32_t);
 }
 
