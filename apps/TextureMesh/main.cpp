@@ -41,31 +41,64 @@ Mesh read_mesh(const Settings& settings, const LocalFrame& frame) {
   return mesh;
 }
 
-void report(const TexturedMesh& mesh, const texture::Report& facts) {
-  if (facts.new_faces > 0)
-    log_info("{} faces were added by splitting faces whose image is not linear", facts.new_faces);
-  log_info("{} parts of photographs in {} textures; {} of {} faces are not seen", facts.charts,
-           mesh.textures.size(), facts.unseen_faces, mesh.mesh.faces.size());
+// The output of a tile, with the extension .mvs. It is that of the run if there is one tile.
+fs::path output_of(const Settings& settings, std::size_t tile) {
+  if (settings.texture.tiles == 1) return settings.output;
+  return fs::path(settings.output)
+      .replace_extension(fmt::format(".tile{}-{}.mvs", tile + 1, settings.texture.tiles));
 }
 
-// Error if a file of a mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const Photographs& photographs, std::size_t textures) {
+// Error if a file of a tile's mesh with `textures` textures is an input.
+void keep_inputs(const Settings& settings, const Photographs& photographs, std::size_t tile,
+                 std::size_t textures) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
   inputs.insert(inputs.end(),
                 {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
                  io::geo_offset_beside(scene), settings.views_file});
   for (const io::TexturedFormat format : settings.formats)
-    require_no_inputs(io::textured_files(settings.output, format, textures), inputs,
+    require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
                       "--output-file");
 }
 
-void require_writable_outputs(const Settings& settings) {
+void check_outputs(const Settings& settings, const Photographs& photographs) {
   std::error_code ignored;
   fs::create_directories(settings.output.parent_path(), ignored);
-  for (const io::TexturedFormat format : settings.formats)
-    for (const fs::path& file : io::textured_files(settings.output, format, 1))
-      require_writable(file);
+  for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile) {
+    keep_inputs(settings, photographs, tile, 1);
+    for (const io::TexturedFormat format : settings.formats)
+      for (const fs::path& file : io::textured_files(output_of(settings, tile), format, 1))
+        require_writable(file);
+  }
+}
+
+// What the meshes of all tiles have.
+struct Written {
+  std::size_t textures = 0, faces = 0;
+};
+
+void write(const Settings& settings, const LocalFrame& frame, std::size_t tile,
+           const TexturedMesh& mesh) {
+  const fs::path output = output_of(settings, tile);
+  for (const io::TexturedFormat format : settings.formats) {
+    const fs::path file = io::textured_files(output, format, 1).front();
+    if (mesh.mesh.faces.empty()) {
+      // The file of another run would seem to belong to this one.
+      std::error_code ignored;
+      fs::remove(file, ignored);
+      log_info("{}: not written: the tile has no faces", file.string());
+      continue;
+    }
+    io::write_textured_mesh(output, mesh, format, frame);
+    log_info("wrote {}", file.string());
+  }
+}
+
+void report(const Written& written, const texture::Report& facts) {
+  if (facts.new_faces > 0)
+    log_info("{} faces were added by splitting faces whose image is not linear", facts.new_faces);
+  log_info("{} parts of photographs in {} textures; {} of {} faces are not seen", facts.charts,
+           written.textures, facts.unseen_faces, written.faces);
 }
 
 // The options of texture_mesh(), with what is left of the memory after the input was read.
@@ -83,6 +116,28 @@ texture::Options with_memory(const Settings& settings, const Photographs& photog
   return options;
 }
 
+void texture_and_write(const Settings& settings, Mesh mesh, const Photographs& photographs,
+                       const LocalFrame& frame, const Eigen::Matrix3d& axes) {
+  texture::Options options = with_memory(settings, photographs);
+  options.axes = axes;
+  texture::Report facts;
+  Written written;
+  naming(settings.mesh, [&] {
+    texture::texture_tiles(
+        std::move(mesh), photographs.views(),
+        [&](std::size_t view) { return photographs.load(view); }, options,
+        [&](std::size_t tile, const TexturedMesh& textured) {
+          return_freed_memory();
+          keep_inputs(settings, photographs, tile, textured.textures.size());
+          written.textures += textured.textures.size();
+          written.faces += textured.mesh.faces.size();
+          if (tile + 1 == options.tiles) report(written, facts);
+          write(settings, frame, tile, textured);
+        },
+        &facts, [](const std::string& stage) { return console_progress(stage); });
+  });
+}
+
 int run(int argc, char** argv) {
   const Options options = parse_command_line(argc, argv);
   if (!options.parsed.run) return options.parsed.exit_code;
@@ -95,26 +150,13 @@ int run(int argc, char** argv) {
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
   const Photographs photographs(scene.scene, settings);
-  keep_inputs(settings, photographs, 1);
-  require_writable_outputs(settings);
+  check_outputs(settings, photographs);
   const LocalFrame frame = scene.frame;
+  const Eigen::Matrix3d axes =
+      scene.scene.region ? scene.scene.region->rotation : Eigen::Matrix3d::Identity();
   scene = {};
   return_freed_memory();
-  texture::Report facts;
-  const TexturedMesh textured = naming(settings.mesh, [&] {
-    return texture::texture_mesh(
-        std::move(mesh), photographs.views(),
-        [&](std::size_t view) { return photographs.load(view); },
-        with_memory(settings, photographs), &facts,
-        [](const std::string& stage) { return console_progress(stage); });
-  });
-  return_freed_memory();
-  report(textured, facts);
-  keep_inputs(settings, photographs, textured.textures.size());
-  for (const io::TexturedFormat format : settings.formats) {
-    io::write_textured_mesh(settings.output, textured, format, frame);
-    log_info("wrote {}", io::textured_files(settings.output, format, 1).front().string());
-  }
+  texture_and_write(settings, std::move(mesh), photographs, frame, axes);
   return 0;
 }
 

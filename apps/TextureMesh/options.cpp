@@ -25,7 +25,7 @@ struct Raw {
   int packing_heuristic = 3;
 };
 
-constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"}};
+constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"}, {"tiles", "--tiles"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -51,6 +51,9 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
                         "formats to write, separated by commas: ply, obj, glb, gltf")
       .add_with_default("max-memory", &settings.max_memory,
                         "largest memory to use [MB] (0: 70 % of the free memory)")
+      .add_with_default("tiles", &settings.texture.tiles,
+                        "make this number of meshes, <output>.tileI-N, one after the other, in "
+                        "less memory; their colours agree where they meet")
       .add_with_default("resolution-level", &raw.resolution_level,
                         "how many times the images are halved")
       .add_with_default("min-resolution", &settings.resolution.min,
@@ -94,6 +97,7 @@ void check_range(const char* name, T value, T low, T high) {
 }
 
 void check_values(const Raw& raw, const Settings& settings) {
+  check_range("tiles", settings.texture.tiles, std::size_t{1}, texture::kMostTiles);
   check_range("resolution-level", raw.resolution_level, 0u, 16u);
   check_range("min-resolution", settings.resolution.min, 1, 1 << 16);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);

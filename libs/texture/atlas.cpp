@@ -50,11 +50,28 @@ void copy_part(const cv::Mat3b& image, const cv::Rect& rect, cv::Mat3b target) {
     cv::resize(part, target, target.size(), 0, 0, cv::INTER_AREA);
 }
 
+// Places charts in textures of their own, and adds the sizes of the textures to the atlas. Returns
+// the number of charts that are scaled down.
+std::size_t place_charts(Atlas& atlas, std::span<const std::uint32_t> charts,
+                         const PackingOptions& options) {
+  std::vector<cv::Size> sizes{{kEmptySide, kEmptySide}};
+  for (const std::uint32_t c : charts) sizes.push_back(atlas.parts[c].size());
+  const Packing packing = pack(sizes, options);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const Place& place = packing.places[i + 1];
+    atlas.rects[charts[i]] = {place.corner, size_at(place, sizes[i + 1])};
+    atlas.texture_of[charts[i]] = place.texture;
+  }
+  atlas.sizes.push_back(packing.sizes);
+  return packing.scaled_down;
+}
+
 void place_nodes(const Charts& charts, Atlas& atlas) {
   atlas.uv.resize(charts.nodes.size());
   for (std::size_t n = 0; n < charts.nodes.size(); ++n) {
     const Node& node = charts.nodes[n];
-    const cv::Rect &from = atlas.parts[node.chart], &to = atlas.rects[node.chart];
+    const cv::Rect& from = atlas.parts[node.chart];
+    const cv::Rect to(atlas.corners[node.chart], atlas.rects[node.chart].size());
     const auto moved = [](float x, int begin, int length, int new_begin, int new_length) {
       const double scale = static_cast<double>(new_length) / length;
       return static_cast<float>((x + 0.5 - begin) * scale - 0.5 + new_begin);
@@ -73,25 +90,40 @@ std::uint64_t bytes_of_textures(std::span<const cv::Size> sizes) {
   return pixels * sizeof(cv::Vec3b);
 }
 
+Atlas plan_atlas(const Charts& charts, ChartTiles tiles, const PackingOptions& options) {
+  Atlas atlas;
+  atlas.tiles = std::move(tiles);
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t c = 0; c < charts.charts.size(); ++c) {
+    all.push_back(c);
+    atlas.parts.push_back(part_with_border(charts.charts[c].rect, largest_side(options)));
+  }
+  atlas.rects.resize(all.size());
+  atlas.texture_of.resize(all.size());
+  atlas.scaled_down = place_charts(atlas, all, options);
+  for (const cv::Rect& rect : atlas.rects) atlas.corners.push_back(rect.tl());
+  place_nodes(charts, atlas);
+  if (atlas.tiles.count == 1) return atlas;
+  atlas.sizes.clear();
+  std::vector<std::vector<std::uint32_t>> of_tiles(atlas.tiles.count);
+  for (const std::uint32_t c : all) of_tiles[atlas.tiles.of(c)].push_back(c);
+  for (const auto& of_tile : of_tiles) place_charts(atlas, of_tile, options);
+  return atlas;
+}
+
+void begin_tile(Atlas& atlas, std::size_t tile, const Rgb& empty, const Budget& budget) {
+  atlas.textures.clear();
+  atlas.tile = tile;
+  const std::vector<cv::Size>& sizes = atlas.sizes[tile];
+  budget.require(bytes_of_textures(sizes), fmt::format("painting {} textures", sizes.size()));
+  for (const cv::Size& size : sizes)
+    atlas.textures.emplace_back(size, cv::Vec3b(empty[2], empty[1], empty[0]));
+}
+
 Atlas lay_out(const Charts& charts, const PackingOptions& options, const Rgb& empty,
               const Budget& budget) {
-  Atlas atlas;
-  std::vector<cv::Size> sizes{{kEmptySide, kEmptySide}};
-  for (const Chart& chart : charts.charts)
-    sizes.push_back(
-        atlas.parts.emplace_back(part_with_border(chart.rect, largest_side(options))).size());
-  const Packing packing = pack(sizes, options);
-  budget.require(bytes_of_textures(packing.sizes),
-                 fmt::format("painting {} textures", packing.sizes.size()));
-  atlas.scaled_down = packing.scaled_down;
-  for (std::size_t c = 0; c < charts.charts.size(); ++c) {
-    const Place& place = packing.places[c + 1];
-    atlas.rects.emplace_back(place.corner, size_at(place, sizes[c + 1]));
-    atlas.texture_of.push_back(place.texture);
-  }
-  for (const cv::Size& size : packing.sizes)
-    atlas.textures.emplace_back(size, cv::Vec3b(empty[2], empty[1], empty[0]));
-  place_nodes(charts, atlas);
+  Atlas atlas = plan_atlas(charts, {}, options);
+  begin_tile(atlas, 0, empty, budget);
   return atlas;
 }
 
@@ -104,14 +136,13 @@ void paint(Atlas& atlas, const Charts& charts, std::size_t views, const ImageSou
            double sharpness, std::size_t in_flight) {
   std::vector<std::vector<std::uint32_t>> charts_of(views);
   for (std::uint32_t c = 0; c < charts.charts.size(); ++c)
-    charts_of[charts.charts[c].view].push_back(c);
+    if (atlas.in_work(c)) charts_of[charts.charts[c].view].push_back(c);
   const std::size_t threads = thread_count();
   const std::size_t at_once = in_flight == 0 ? threads : std::min(in_flight, threads);
   for_each_in_flight(views, at_once, [&](std::size_t v) {
     if (charts_of[v].empty()) return;
     const cv::Mat3b image = sharpened(images(v).color, sharpness);
-    for (const std::uint32_t c : charts_of[v])
-      copy_part(image, atlas.parts[c], atlas.textures[atlas.texture_of[c]](atlas.rects[c]));
+    for (const std::uint32_t c : charts_of[v]) copy_part(image, atlas.parts[c], atlas.pixels(c));
   });
 }
 

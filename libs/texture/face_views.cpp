@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "scene/bilinear.h"
-#include "texture/occluders.h"
 
 namespace axial::texture {
 namespace {
@@ -82,24 +81,60 @@ class UnusablePixels {
   cv::Mat1i sums_;
 };
 
+enum class Sees : std::uint8_t { unknown, yes, no, outside };
+
+// A vertex in the image of a view.
+struct ProjectedVertex {
+  Eigen::Vector2f pixel;
+  Sees state;
+};
+
+template <class Camera>
+std::vector<ProjectedVertex> project_vertices(const Mesh& mesh, const Camera& camera,
+                                              const View& view) {
+  std::vector<ProjectedVertex> vertices(mesh.vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const auto image = camera.project(view.pose.to_camera(mesh.vertices[i].cast<double>()));
+    const bool inside = image.visible && image.pixel.x() >= 0 && image.pixel.y() >= 0 &&
+                        image.pixel.x() <= view.camera.width - 1 &&
+                        image.pixel.y() <= view.camera.height - 1;
+    vertices[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::outside};
+  }
+  return vertices;
+}
+
+bool any_face_inside(const Mesh& mesh, std::span<const ProjectedVertex> vertices) {
+  return std::ranges::any_of(mesh.faces, [&](const std::array<std::uint32_t, 3>& face) {
+    return std::ranges::none_of(
+        face, [&](std::uint32_t corner) { return vertices[corner].state == Sees::outside; });
+  });
+}
+
+// The faces that are looked at, and what their sights depend on.
+struct Scenery {
+  const Mesh& mesh;
+  std::span<const Eigen::Vector3f> normals;  // one per vertex of `mesh`
+  const Occluders& occluders;                // of the whole mesh
+};
+
 // What one view sees.
 template <class Camera>
 class Observer {
  public:
-  Observer(const Mesh& mesh, std::span<const Eigen::Vector3f> normals, const Occluders& occluders,
-           const VisibilityOptions& options, const Camera& camera, const View& view,
-           const ViewImage& image)
-      : mesh_(mesh),
-        normals_(normals),
-        occluders_(occluders),
+  // `vertices`: the result of project_vertices().
+  Observer(const Scenery& scenery, const VisibilityOptions& options, const Camera& camera,
+           const View& view, const ViewImage& image, std::vector<ProjectedVertex> vertices)
+      : mesh_(scenery.mesh),
+        normals_(scenery.normals),
+        occluders_(scenery.occluders),
         options_(options),
         camera_(camera),
         view_(view),
         image_(image),
-        unusable_(image.usable) {}
+        unusable_(image.usable),
+        vertices_(std::move(vertices)) {}
 
   std::vector<SeenFace> seen() {
-    project_vertices();
     std::vector<SeenFace> result;
     for (std::uint32_t face = 0; face < mesh_.faces.size(); ++face)
       if (const std::optional<Sight> s = look_at(face))
@@ -108,24 +143,6 @@ class Observer {
   }
 
  private:
-  enum class Sees : std::uint8_t { unknown, yes, no, outside };
-
-  struct Vertex {
-    Eigen::Vector2f pixel;
-    Sees state;
-  };
-
-  void project_vertices() {
-    vertices_.resize(mesh_.vertices.size());
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const auto image = camera_.project(view_.pose.to_camera(position(i)));
-      const bool inside = image.visible && image.pixel.x() >= 0 && image.pixel.y() >= 0 &&
-                          image.pixel.x() <= view_.camera.width - 1 &&
-                          image.pixel.y() <= view_.camera.height - 1;
-      vertices_[i] = {image.pixel.template cast<float>(), inside ? Sees::unknown : Sees::outside};
-    }
-  }
-
   Eigen::Vector3d position(std::size_t vertex) const {
     return mesh_.vertices[vertex].cast<double>();
   }
@@ -140,7 +157,7 @@ class Observer {
   }
 
   bool sees_vertex(std::uint32_t i) {
-    Vertex& vertex = vertices_[i];
+    ProjectedVertex& vertex = vertices_[i];
     if (vertex.state == Sees::unknown)
       vertex.state = hidden(position(i), vertex.pixel) ? Sees::no : Sees::yes;
     return vertex.state == Sees::yes;
@@ -207,7 +224,7 @@ class Observer {
   const View& view_;
   const ViewImage& image_;
   UnusablePixels unusable_;
-  std::vector<Vertex> vertices_;
+  std::vector<ProjectedVertex> vertices_;
 };
 
 // Removes sights of a part of a face where a view sees all of it.
@@ -243,13 +260,6 @@ FaceViews by_face(std::size_t faces, std::vector<std::vector<SeenFace>>& of_view
   return result;
 }
 
-// The memory [bytes] for the whole mesh while views are in work.
-std::uint64_t bytes_of_mesh(const Mesh& mesh) {
-  // Normals, the occluders' copy of the vertices, and Embree's tree while it is built.
-  constexpr std::uint64_t kTreePerFace = 160;
-  return mesh.vertices.size() * 2 * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
-}
-
 // The memory [bytes] for each view in work.
 std::uint64_t bytes_of_view(const Mesh& mesh, std::span<const View> views,
                             std::uint64_t image_bytes) {
@@ -266,13 +276,13 @@ std::uint64_t bytes_of_view(const Mesh& mesh, std::span<const View> views,
 // Collects what the views see, as long as there is memory for it, and counts it in any case.
 class SeenFaces {
  public:
+  // `fixed`: the memory [bytes] that is in use as long as views are in work.
   SeenFaces(const Mesh& mesh, std::span<const View> views, const ViewMemory& memory,
-            const ProgressSink& progress)
+            std::uint64_t fixed, const ProgressSink& progress)
       : faces_(mesh.faces.size()),
         budget_(memory.budget),
         progress_(progress),
         of_view_(views.size()) {
-    const std::uint64_t fixed = bytes_of_mesh(mesh);
     const std::uint64_t each = bytes_of_view(mesh, views, memory.image_bytes);
     budget_.require(fixed + each, fmt::format("finding the views of {} faces", faces_));
     // Half of the memory is for what the views see.
@@ -316,15 +326,19 @@ class SeenFaces {
   std::size_t count_ = 0, done_ = 0;
 };
 
-void look(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
+void look(const Scenery& scenery, std::span<const View> views, const ImageSource& images,
           const VisibilityOptions& options, SeenFaces& seen) {
-  const Occluders occluders(mesh);
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
   for_each_in_flight(views.size(), seen.in_flight(), [&](std::size_t v) {
-    const ViewImage image = images(v);
     std::visit(
         [&](const auto& camera) {
-          seen.add(v, Observer(mesh, normals, occluders, options, camera, views[v], image).seen());
+          auto vertices = project_vertices(scenery.mesh, camera, views[v]);
+          if (!any_face_inside(scenery.mesh, vertices)) {
+            seen.add(v, {});
+            return;
+          }
+          const ViewImage image = images(v);
+          seen.add(v,
+                   Observer(scenery, options, camera, views[v], image, std::move(vertices)).seen());
         },
         make_camera<double>(views[v].camera));
   });
@@ -332,12 +346,35 @@ void look(const Mesh& mesh, std::span<const View> views, const ImageSource& imag
 
 }  // namespace
 
+Surroundings::Surroundings(const Mesh& mesh) : occluders(mesh), normals(vertex_normals(mesh)) {}
+
+std::uint64_t bytes_of_surroundings(const Mesh& mesh) {
+  // Normals, the occluders' copy of the vertices, and Embree's tree while it is built.
+  constexpr std::uint64_t kTreePerFace = 160;
+  return mesh.vertices.size() * 2 * sizeof(Eigen::Vector3f) + mesh.faces.size() * kTreePerFace;
+}
+
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options, const ProgressSink& progress,
                           const ViewMemory& memory) {
-  SeenFaces seen(mesh, views, memory, progress);
-  look(mesh, views, images, options, seen);
+  SeenFaces seen(mesh, views, memory, bytes_of_surroundings(mesh), progress);
+  {
+    const Surroundings whole(mesh);
+    look({mesh, whole.normals, whole.occluders}, views, images, options, seen);
+  }
   return by_face(mesh.faces.size(), seen.of_view());
+}
+
+FaceViews find_face_views(const MeshPart& part, const Surroundings& whole,
+                          std::span<const View> views, const ImageSource& images,
+                          const VisibilityOptions& options, const ProgressSink& progress,
+                          const ViewMemory& memory) {
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(part.vertices.size());
+  for (const std::uint32_t v : part.vertices) normals.push_back(whole.normals[v]);
+  SeenFaces seen(part.mesh, views, memory, normals.size() * sizeof(normals[0]), progress);
+  look({part.mesh, normals, whole.occluders}, views, images, options, seen);
+  return by_face(part.mesh.faces.size(), seen.of_view());
 }
 
 }  // namespace axial::texture

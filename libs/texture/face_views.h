@@ -10,6 +10,8 @@
 #include "base/progress.h"
 #include "scene/mesh.h"
 #include "texture/memory.h"
+#include "texture/mesh_tiles.h"
+#include "texture/occluders.h"
 #include "texture/views.h"
 
 namespace axial::texture {
@@ -66,10 +68,31 @@ struct ViewMemory {
 //
 // Calls progress(done, total) with numbers of views, from any thread but one call at a time. As
 // many views are in work at the same time as there are threads, or fewer if `memory.budget` demands
-// it. Throws an Error if Occluders refuses the mesh (occluders.h), or if the budget does not
-// suffice for one view or for the result. Exceptions of `images` are passed on.
+// it. `images` is not asked for a view whose image contains no face. Throws an Error if Occluders
+// refuses the mesh (occluders.h), or if the budget does not suffice for one view or for the result.
+// Exceptions of `images` are passed on.
 FaceViews find_face_views(const Mesh& mesh, std::span<const View> views, const ImageSource& images,
                           const VisibilityOptions& options = {}, const ProgressSink& progress = {},
                           const ViewMemory& memory = {});
+
+// What the sights of a face depend on, besides the face: the faces that can hide it, and the
+// normals of the mesh's vertices.
+struct Surroundings {
+  // `mesh` must outlive the object. Errors as for Occluders (occluders.h).
+  explicit Surroundings(const Mesh& mesh);
+
+  Occluders occluders;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+// The memory [bytes] of Surroundings while they are made.
+std::uint64_t bytes_of_surroundings(const Mesh& mesh);
+
+// As above, for the faces of a part of a mesh. `whole`: of the whole mesh. The result is what the
+// function above returns for these faces of the whole mesh. `memory.budget`: besides `whole`.
+FaceViews find_face_views(const MeshPart& part, const Surroundings& whole,
+                          std::span<const View> views, const ImageSource& images,
+                          const VisibilityOptions& options, const ProgressSink& progress,
+                          const ViewMemory& memory);
 
 }  // namespace axial::texture

@@ -48,8 +48,7 @@ struct Leveling {
   std::span<const Eigen::Vector3f> global;  // one per node
 
   Eigen::Vector2f place(std::uint32_t node, std::size_t chart) const {
-    const cv::Rect& rect = atlas.rects[chart];
-    return atlas.uv[node] - Eigen::Vector2f(static_cast<float>(rect.x), static_cast<float>(rect.y));
+    return atlas.in_chart(atlas.uv[node], chart);
   }
 
   ChartField global_field(std::size_t chart) const {
@@ -89,8 +88,9 @@ struct Leveling {
 
 std::uint64_t bytes_of_largest_field(const Atlas& atlas) {
   std::uint64_t pixels = 0;
-  for (const cv::Rect& rect : atlas.rects)
-    pixels = std::max(pixels, static_cast<std::uint64_t>(rect.area()));
+  for (std::size_t c = 0; c < atlas.rects.size(); ++c)
+    if (atlas.in_work(c))
+      pixels = std::max(pixels, static_cast<std::uint64_t>(atlas.rects[c].area()));
   return bytes_of_field(pixels);
 }
 
@@ -100,28 +100,34 @@ std::string work_of(std::span<const Seam> seams) {
 
 }  // namespace
 
-void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
-                 const LevelingOptions& options, const Budget& budget) {
-  if (seams.empty() || !(options.global || options.local)) return;
-  const std::uint64_t kept =
-      bytes_of_seams(atlas, seams) + charts.nodes.size() * sizeof(Eigen::Vector3f);
-  budget.require(
-      kept + bytes_to_level_globally(mesh.faces.size(), seams.size(), charts.nodes.size()),
-      work_of(seams));
-  const SeamColors colors = compare_seams(atlas, charts, seams);
-  std::vector<Eigen::Vector3f> global(charts.nodes.size(), Eigen::Vector3f::Zero());
-  if (options.global) global = level_globally(mesh, charts, seams, colors, options.global_options);
+Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
+                             SeamColors colors, const LevelingOptions& options,
+                             const Budget& budget) {
+  budget.require(bytes_to_level_globally(mesh.faces.size(), seams.size(), charts.nodes.size()),
+                 work_of(seams));
+  Corrections result{std::move(colors), {}};
+  if (options.global)
+    result.global = level_globally(mesh, charts, seams, result.colors, options.global_options);
+  else
+    result.global.assign(charts.nodes.size(), Eigen::Vector3f::Zero());
+  return result;
+}
+
+void level_charts(Atlas& atlas, const Charts& charts, std::span<const Seam> seams,
+                  const Corrections& corrections, const LevelingOptions& options,
+                  const Budget& budget) {
   const Sides sides(charts, seams);
-  const Leveling leveling{atlas, charts, seams, colors, global};
+  const Leveling leveling{atlas, charts, seams, corrections.colors, corrections.global};
   const std::size_t in_flight =
-      budget.items(kept, bytes_of_largest_field(atlas), thread_count(), work_of(seams));
+      budget.items(0, bytes_of_largest_field(atlas), thread_count(), work_of(seams));
   for_each_in_flight(charts.charts.size(), in_flight, [&](std::size_t chart) {
+    if (!atlas.in_work(chart)) return;
     ChartField field = leveling.global_field(chart);
     std::vector<ChartField::Sample> samples;
     if (options.local)
       for (const Side& side : sides.of(chart)) leveling.add_samples(side, chart, samples);
     field.add_strip(samples, options.strip);
-    field.add_to(atlas.textures[atlas.texture_of[chart]](atlas.rects[chart]));
+    field.add_to(atlas.pixels(chart));
   });
 }
 

@@ -16,10 +16,21 @@ struct LevelingOptions {
   int strip = 20;  // width of the strip [px]; the local correction reaches zero at this distance
 };
 
-// Adds the global and the local corrections to the textures of `atlas`, as far as `options`
-// switches them on. Without seams nothing changes. Precondition: `atlas` is painted (paint() in
-// atlas.h) and not yet levelled. `seams`: the result of find_seams(). The global correction is
-// linear inside each face (global_leveling.h).
+// The corrections at the seams of all charts.
+struct Corrections {
+  SeamColors colors;                    // without corrections
+  std::vector<Eigen::Vector3f> global;  // the result of level_globally(), or zeros; one per node
+};
+
+// Finds the corrections for complete `colors` (add_seam_colors() in seam_colors.h). `seams`: the
+// result of find_seams(). Error if `budget`, besides `colors`, does not suffice.
+Corrections find_corrections(const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
+                             SeamColors colors, const LevelingOptions& options,
+                             const Budget& budget = {});
+
+// Adds the global and the local corrections to the textures of the tile in work, as far as
+// `options` switches them on. The textures are painted (paint() in atlas.h) and not yet levelled.
+// The global correction is linear inside each face (global_leveling.h).
 //
 // The local correction of a chart is the solution of Laplace's equation in a strip along the seams,
 // with these boundary conditions:
@@ -33,9 +44,10 @@ struct LevelingOptions {
 // Pixels outside a chart's faces, up to two pixels from them, get the correction of their
 // neighbours, because bilinear interpolation uses these pixels.
 //
-// As many charts are in work at the same time as there are threads and as `budget` allows, at least
-// one. Error if `budget` does not suffice for one.
-void level_seams(Atlas& atlas, const Mesh& mesh, const Charts& charts, std::span<const Seam> seams,
-                 const LevelingOptions& options, const Budget& budget = {});
+// As many charts are in work at the same time as there are threads and as `budget`, besides the
+// arguments, allows, at least one. Error if `budget` does not suffice for one.
+void level_charts(Atlas& atlas, const Charts& charts, std::span<const Seam> seams,
+                  const Corrections& corrections, const LevelingOptions& options,
+                  const Budget& budget = {});
 
 }  // namespace axial::texture

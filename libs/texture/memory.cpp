@@ -11,9 +11,16 @@ Budget::Budget(std::uint64_t max_bytes, SettingNames name_of) : name_of_(name_of
   if (max_bytes > 0) limit_ = max_bytes;
 }
 
+Budget Budget::less_by(std::string_view setting) const {
+  Budget copy = *this;
+  copy.advice_ = "; a larger " + name_of_(setting) + " needs less";
+  return copy;
+}
+
 void Budget::require(std::uint64_t bytes, const std::string& work) const {
   if (bytes > limit_)
-    fail("{}: {} needs {} MB more", name_of_("max_memory"), work, (bytes - limit_) / 1'000'000 + 1);
+    fail("{}: {} needs {} MB more{}", name_of_("max_memory"), work,
+         (bytes - limit_) / 1'000'000 + 1, advice_);
 }
 
 std::uint64_t Budget::room(std::uint64_t fixed) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "base/setting_names.h"
 
@@ -18,6 +19,9 @@ class Budget {
   Budget() = default;
   // `max_bytes`: the limit; 0: none. Errors name the limit by name_of("max_memory").
   Budget(std::uint64_t max_bytes, SettingNames name_of);
+
+  // A copy whose errors add that a larger value of the setting `name_of(setting)` needs less.
+  Budget less_by(std::string_view setting) const;
 
   // Error if `bytes` are more than the limit. The message is one line. It tells how many megabytes
   // more `work` needs.
@@ -38,6 +42,7 @@ class Budget {
  private:
   std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
   SettingNames name_of_ = own_name;
+  std::string advice_;  // the end of the errors
 };
 
 }  // namespace axial::texture

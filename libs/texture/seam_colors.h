@@ -27,11 +27,18 @@ struct SeamColors {
   }
 };
 
-// Samples the textures of `atlas` on both sides of each seam. `atlas` must be painted and not yet
-// levelled.
-SeamColors compare_seams(const Atlas& atlas, const Charts& charts, std::span<const Seam> seams);
+// Returns the samples of all seams with differences of zero. add_seam_colors() then adds the
+// colours, tile by tile.
+SeamColors seam_samples(const Atlas& atlas, std::span<const Seam> seams);
 
-// The memory [bytes] of the result of compare_seams().
+// Samples the textures of the tile in work at those sides of the seams whose chart belongs to the
+// tile. Adds the colours of side b to the differences, and subtracts those of side a. The textures
+// must be painted and not yet levelled. The differences are complete after one call for each tile.
+// They do not depend on the tiles or on their order.
+void add_seam_colors(SeamColors& colors, const Atlas& atlas, const Charts& charts,
+                     std::span<const Seam> seams);
+
+// The memory [bytes] of the result of seam_samples().
 std::uint64_t bytes_of_seams(const Atlas& atlas, std::span<const Seam> seams);
 
 }  // namespace axial::texture

@@ -2,6 +2,7 @@
 // Gives a mesh textures from photographs. The cameras of the photographs may be behind ports.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -23,7 +24,14 @@ struct ResultSize {
   std::vector<cv::Size> textures;
 };
 
+// The largest Options::tiles.
+inline constexpr std::size_t kMostTiles = 1000;
+
 struct Options {
+  // The number of tiles of texture_tiles(), from 1 to kMostTiles, and their axes (rows) in the
+  // frame of the mesh.
+  std::size_t tiles = 1;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   SplitOptions split;
   VisibilityOptions visibility;
   // `threshold` of remove_outliers() (outliers.h): the larger, the more views of faces are removed
@@ -42,11 +50,11 @@ struct Options {
   // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An
   // empty function: none.
   std::function<std::uint64_t(const ResultSize&)> bytes_to_write;
-  // Errors name the field max_bytes by name_of("max_memory").
+  // Errors name the fields max_bytes and `tiles` by name_of("max_memory") and name_of("tiles").
   SettingNames name_of = own_name;
 };
 
-// The numbers that texture_mesh() reports.
+// The numbers that texturing reports.
 struct Report {
   std::size_t new_faces = 0;     // faces that splitting has added
   std::size_t unseen_faces = 0;  // faces that no view sees, after splitting
@@ -63,7 +71,7 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 // as chosen by choose_views() (labels.h). A face that no view sees gets Options::empty_color. Faces
 // stay in the same order, and the parts of a split face follow each other at the place of this
 // face. Vertices keep their indices, and the vertices that splitting adds follow. `report`, if
-// given, is filled.
+// given, is filled. Options::tiles has no effect.
 //
 // Throws an Error if check_mesh() refuses the mesh (scene/check_mesh.h), for example a mesh without
 // faces. Throws an Error if no view sees any face, if pack() refuses the options (packing.h), or if
@@ -71,5 +79,29 @@ using StageProgress = std::function<ProgressSink(const std::string& stage)>;
 TexturedMesh texture_mesh(Mesh mesh, std::span<const View> views, const ImageSource& images,
                           const Options& options = {}, Report* report = nullptr,
                           const StageProgress& progress = {});
+
+// Takes the textured mesh of a tile. `tile`: its index.
+using TileSink = std::function<void(std::size_t tile, TexturedMesh mesh)>;
+
+// Textures `mesh` as Options::tiles meshes, so that the views of faces and the textures of only one
+// tile are in memory at the same time. `take` gets the meshes one after the other. For one tile
+// this is the mesh of texture_mesh(). For more tiles:
+//
+//   - Each face is in one of the meshes. Faces and vertices keep their order. A mesh has only the
+//     vertices of its faces, so that a vertex at a border is in several meshes, at the same
+//     position. A mesh without faces has no textures.
+//   - The tiles divide space (divide_faces() in mesh_tiles.h). A face with a chart is in the tile
+//     that contains most of the chart's faces: charts are not cut. A face without chart is in the
+//     tile that contains its middle.
+//   - Views are chosen tile by tile, mostly the same as in one piece (face_labels.h).
+//   - Seams between tiles are levelled like all seams, because the corrections are those of the
+//     whole mesh (leveling.h). With the same views of faces, the pixels of each chart are those of
+//     one piece.
+//
+// Photographs are read three times instead of twice if there are seams. A photograph is read again
+// for each tile that uses it. Errors as for texture_mesh(). Exceptions of `take` are passed on.
+void texture_tiles(Mesh mesh, std::span<const View> views, const ImageSource& images,
+                   const Options& options, const TileSink& take, Report* report = nullptr,
+                   const StageProgress& progress = {});
 
 }  // namespace axial::texture

@@ -109,6 +109,71 @@ class Files(TextureTest):
                                *self.texture("--views-file", "views.txt"))
 
 
+class Tiles(TextureTest):
+    """--tiles N: N meshes with textures of their own."""
+
+    def tile_files(self, count, *extensions):
+        return {f"scene_texture.tile{i + 1}-{count}{extension}"
+                for i in range(count) for extension in extensions}
+
+    def test_each_tile_has_its_files_and_its_faces(self):
+        before = files_below(self.work)
+        said = self.succeeds(*self.texture("--tiles", "3", "--export-type", "ply,glb",
+                                           "--cost-smoothness-ratio", "100")).stdout
+        self.assertEqual(files_below(self.work) - before,
+                         self.tile_files(3, ".ply", ".glb", "0.png"))
+        faces = 0
+        for name in self.tile_files(3, ".ply"):
+            header = self.header(name)
+            self.assertIn(f"comment TextureFile {name[:-4]}0.png\n", header)
+            faces += int(re.search("element face ([0-9]+)\n", header)[1])
+        self.assertEqual(faces, 288)
+        self.assertIn("in 3 textures; 0 of 288 faces", said)
+
+    def test_one_tile_is_the_default(self):
+        self.succeeds(*self.texture())
+        default = contents(self.work)
+        self.succeeds(*self.texture("--tiles", "1"))
+        self.assertEqual(contents(self.work), default)
+
+    def test_any_number_of_threads_gives_the_same_bytes(self):
+        found = []
+        for threads in (1, 2):
+            self.succeeds(*self.texture("--max-threads", threads, "--tiles", "3"))
+            found.append(contents(self.work))
+        self.assertEqual(found[0], found[1])
+
+    def test_a_tile_without_faces_leaves_no_file_of_another_run(self):
+        vertices, faces = wall(cells=1)
+        write(self.mesh, mesh_ply(vertices, faces[:1]))
+        for name in self.tile_files(8, ".ply"):
+            write(self.path("work", name), "old")
+        said = self.succeeds(*self.texture("--tiles", "8")).stdout
+        empty = said.count("not written: the tile has no faces")
+        self.assertGreater(empty, 0)
+        left = [name for name in files_below(self.work) if re.search("tile[0-9]-8.ply$", name)]
+        self.assertEqual(len(left), 8 - empty)
+        for name in left:
+            self.assertIn("comment TextureFile", self.header(name))
+
+    def test_wrong_values(self):
+        for value in ("0", "1001"):
+            self.refuses_and_keeps(f"--tiles {value}: must be from 1 to 1000",
+                                   *self.texture("--tiles", value))
+        for value in ("-1", "x", "2.5"):
+            self.refuses_and_keeps("--tiles", *self.texture("--tiles", value))
+
+    def test_inputs_are_not_overwritten(self):
+        os.rename(self.mesh, self.path("work", "out.tile2-3.ply"))
+        self.refuses_and_keeps("--output-file",
+                               *self.texture("-m", "out.tile2-3.ply", "-o", "out", "--tiles", "3"))
+        self.succeeds(*self.texture("-m", "out.tile2-3.ply", "-o", "out", "--tiles", "2"))
+
+    def test_outputs_that_cannot_be_written(self):
+        os.mkdir(self.path("work", "scene_texture.tile2-3.ply"))
+        self.refuses_and_keeps("scene_texture.tile2-3.ply", *self.texture("--tiles", "3"))
+
+
 class Masks(TextureTest):
     """Labels of all pixels of all images, beside the images."""
 
