@@ -17,7 +17,7 @@ from programs import BIN, main, run
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
-           "scene_textured.glb", "scene_textured.ply")
+           *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")))
 DENSIFY = "--resolution-level 0 --min-resolution 100 --geometric-iters 1 --plan-parts 2"
 
 # COLMAP's models differ from run to run. This stand-in gives every run the same model.

@@ -60,8 +60,8 @@ def options(script_folder):
                             help=f"more options for {program}, in one word" +
                             (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
     parser.add_argument("--tiles", type=int, default=1,
-                        help="make the cloud and the reconstructed mesh in this many tiles, so that "
-                        "less memory is needed; with --cluster, in as many jobs (default: %(default)s)")
+                        help="make cloud, mesh and textures in this many tiles, so that less memory is "
+                        "needed; with --cluster, cloud and mesh in as many jobs (default: %(default)s)")
     parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
@@ -169,9 +169,13 @@ def mesh_steps(given, out):
                                                    *options["refine-mesh"]),
                makes=refined, reads=reads["refine-mesh"])
     if given.until == "texture":
+        # A tile without faces has no file.
         yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
-                                                    "glb,ply", *refractive, *options["texture"]),
-                   makes=textured.with_suffix(".glb"), reads=reads["texture"])
+                                                    "glb,ply", *refractive,
+                                                    *tile_options("--tiles", given),
+                                                    *options["texture"]),
+                   makes=out if given.tiles > 1 else textured.with_suffix(".glb"),
+                   reads=reads["texture"])
 
 
 def steps(given, out):
@@ -243,7 +247,8 @@ def only_run_in(out):
 
 
 def mesh_of(given, out):
-    name = {"cloud": "", "mesh": "scene_dense_refined.ply", "texture": "scene_textured.glb"}[given.until]
+    textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
+    name = {"cloud": "", "mesh": "scene_dense_refined.ply", "texture": textured}[given.until]
     return f"Mesh: {out / name}   " if name else ""
 
 
