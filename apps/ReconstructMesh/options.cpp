@@ -147,6 +147,7 @@ void take_tiles(const Raw& raw, Options& options) {
   if (given(options.parsed, "tile")) {
     const Fraction fraction = parse_fraction("tile", raw.tile, kMostTiles);
     option = "--tile " + raw.tile;
+    if (fraction.count == 1) fail("{}: there must be at least 2 tiles", option);
     if (given(options.parsed, "tiles") && options.tiles != fraction.count)
       fail("{}: contradicts --tiles {}", option, options.tiles);
     options.tile = fraction.part;

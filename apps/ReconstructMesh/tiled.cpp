@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -59,8 +61,13 @@ mesh::TileRun run_of(const Options& options) {
                                io::lenses_beside(scene), io::geo_offset_beside(scene)})
     add_state(file, print);
   add(options.reconstruct, print);
-  print.add(options.roi_border).add(std::uint64_t{options.tiles});
-  return {options.tiles, tile_folder(options), print.hex()};
+  print.add(options.roi_border).add(static_cast<std::uint64_t>(options.scene.ports));
+  const mesh::CleanOptions& clean = options.reconstruct.clean;
+  mesh::TileRun run{options.tiles, tile_folder(options), print.hex()};
+  // A mean edge is 3 to 4 pixels long. A piece that is not spurious must be seen as such from each
+  // tile that has a part of it, and a smoothing step has effects two edges away.
+  run.margin = std::max(run.margin, 7.5 * clean.spurious) + 7.5 * clean.smooth;
+  return run;
 }
 
 mesh::CloudSource source_of(const io::SceneWithCameras& scene, const Options& options) {

@@ -30,7 +30,9 @@ void declare_scene(OptionList& visible, Arguments& a) {
       .add_with_default("coarseness", &a.preset.coarseness,
                         "factor for the distance between the vertices of the mesh")
       .add_with_default("relief", &a.preset.relief, "factor for the scene's heights")
-      .add_with_default("samples", &a.samples, "rays along each side of a pixel");
+      .add_with_default("samples", &a.samples, "rays along each side of a pixel")
+      .add_with_default("sparse-points", &a.sparse_points,
+                        "sparse points of the COLMAP model that are placed for each view");
 }
 
 void declare_port(OptionList& visible, Arguments& a) {
@@ -83,6 +85,8 @@ void check(const Arguments& a) {
   if (!(a.noise >= 0 && a.noise <= 255)) fail("--noise is {}: must be between 0 and 255", a.noise);
   if (a.jpeg_quality < 1 || a.jpeg_quality > 100)
     fail("--jpeg-quality is {}: must be between 1 and 100", a.jpeg_quality);
+  if (a.sparse_points < 1 || a.sparse_points > 10000)
+    fail("--sparse-points is {}: must be between 1 and 10000", a.sparse_points);
   if (a.samples < 1 || a.samples > 16) fail("--samples is {}: must be between 1 and 16", a.samples);
   if (!(std::abs(a.tilt_degrees) <= 45))
     fail("--tilt-degrees is {}: must be between -45 and 45", a.tilt_degrees);

@@ -12,6 +12,7 @@ struct Arguments {
   simulate::PresetOptions preset;
   std::string output, medium = "both", lens;
   int samples = 3, jpeg_quality = 93;
+  int sparse_points = 400;  // for each view
   double haze = 0, noise = 1.2;
   bool truth = true, truth_only = false;
   double water_level = 0;

@@ -46,9 +46,9 @@ void simulate_scene(const Arguments& a, const simulate::Preset& preset,
   write_mesh(folder / "mesh.ply", mesh);
   if (!a.truth_only) {
     write_port(folder / "housing.json", preset);
-    write_sparse_model(
-        folder / "sparse", preset.lens, preset.views,
-        simulate::true_points(scene, shader, preset.lens, preset.views, 400, a.preset.seed));
+    write_sparse_model(folder / "sparse", preset.lens, preset.views,
+                       simulate::true_points(scene, shader, preset.lens, preset.views,
+                                             a.sparse_points, a.preset.seed));
   }
   if (a.medium != "water") photograph(a, preset, scene, shader, false, folder / "air");
   if (a.medium != "air") photograph(a, preset, scene, shader, true, folder / "water");

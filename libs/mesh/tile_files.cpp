@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <system_error>
 
+#include "base/atomic_file.h"
 #include "mesh/array_file.h"
 
 namespace axial::mesh {
@@ -18,6 +20,18 @@ constexpr const char* kMesh = "mesh of a tile 1";
 
 std::string of_tile(const std::string& made_from, std::size_t tile) {
   return fmt::format("{} tile {}", made_from, tile);
+}
+
+// The subfolders of `folder` that have the name of an origin.
+std::vector<std::filesystem::path> folders_of_origins(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() == 32 && name.find_first_not_of("0123456789abcdef") == std::string::npos)
+      found.push_back(entry.path());
+  }
+  return found;
 }
 
 }  // namespace
@@ -90,13 +104,20 @@ std::optional<TileMesh> TileFiles::mesh(std::size_t tile) const {
   return mesh;
 }
 
-void TileFiles::remove(std::size_t count) const {
+void TileFiles::make_folders() const {
+  make_folder(folder_);
+}
+
+bool TileFiles::has_others() const {
+  const std::vector<std::filesystem::path> folders = folders_of_origins(parent_);
+  return std::ranges::any_of(folders, [&](const auto& path) { return path != folder_; });
+}
+
+void TileFiles::remove() const {
   std::error_code ignored;
-  for (std::size_t tile = 0; tile < count; ++tile)
-    for (const auto& path : {cloud(tile), file("points", tile, "bin"), file("mesh", tile, "bin")})
-      std::filesystem::remove(path, ignored);
-  std::filesystem::remove(folder_ / "tiles.bin", ignored);
-  std::filesystem::remove(folder_, ignored);
+  for (const std::filesystem::path& path : folders_of_origins(parent_))
+    std::filesystem::remove_all(path, ignored);
+  std::filesystem::remove(parent_, ignored);
 }
 
 }  // namespace axial::mesh

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files in which a run by tiles keeps its intermediate results. They are read only by programs
-// that were given the same input with the same options (TileRun::made_from in tiled.h).
+// The files in which a run by tiles keeps its intermediate results.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +13,17 @@
 
 namespace axial::mesh {
 
+// The files are in a subfolder of `folder` with the name `origin`, 32 hex digits, which identify
+// all that decides on the files. So runs with other input or other options do not meet these files.
 class TileFiles {
  public:
-  TileFiles(std::filesystem::path folder, std::string made_from)
-      : folder_(std::move(folder)), made_from_(std::move(made_from)) {}
+  TileFiles(std::filesystem::path folder, std::string origin)
+      : parent_(std::move(folder)), folder_(parent_ / origin), made_from_(std::move(origin)) {}
+
+  // Creates both folders. Error if this is not possible.
+  void make_folders() const;
+  // Whether `folder` has files of runs with another origin.
+  bool has_others() const;
 
   // The points of tile `tile` (from 0), a PLY file.
   std::filesystem::path cloud(std::size_t tile) const;
@@ -27,18 +33,18 @@ class TileFiles {
   void write(std::size_t tile, const MergedPoints& points) const;
   void write(std::size_t tile, const TileMesh& mesh) const;
 
-  // Read a file. Empty if it is missing or damaged, or was made from something else.
+  // Read a file. Empty if it is missing or damaged.
   std::optional<std::vector<cloud::Tile>> tiles() const;
   std::optional<MergedPoints> points(std::size_t tile) const;
   std::optional<TileMesh> mesh(std::size_t tile) const;
 
-  // Removes the files of `count` tiles, and the folder if it is empty then. Failures are ignored.
-  void remove(std::size_t count) const;
+  // Removes the subfolders of all origins, and `folder` if it is empty then. Failures are ignored.
+  void remove() const;
 
  private:
   std::filesystem::path file(const char* content, std::size_t tile, const char* extension) const;
 
-  std::filesystem::path folder_;
+  std::filesystem::path parent_, folder_;
   std::string made_from_;
 };
 

@@ -28,14 +28,15 @@ struct TileMesh {
 TileMesh owned_part(const Mesh& mesh, const cloud::Tile& tile);
 
 struct JoinOptions {
-  // Pieces whose bounding box has a diagonal below this many mean edge lengths are removed; 0:
+  // Pieces whose bounding box has a diagonal below this many mean edge lengths are removed. 0:
   // none.
   double spurious = 20;
   std::size_t close_gaps = 60;  // gaps of at most this many edges are closed
 };
 
 struct JoinReport {
-  std::size_t seams = 0;  // edges between tiles, counted in one of the tiles
+  // Edges between tiles. An edge that two tiles have counts once.
+  std::size_t seams = 0;
   // Of these: edges that have no counterpart in another tile, because the meshes of the two tiles
   // differ there.
   std::size_t unmatched = 0;
@@ -44,12 +45,13 @@ struct JoinReport {
 };
 
 // Joins the meshes of all tiles. Each mesh is the part of its tile (owned_part) of a mesh of the
-// tile and its surroundings. Vertices at both ends of a seam become one vertex if another tile has
-// the same seam in the opposite direction, and both ends differ by at most a thousandth of its
-// length. Where a seam has no counterpart, the faces around it are mended: gaps are closed, and
-// faces that intersect other faces of the neighbourhood are replaced or removed. All other faces
-// and vertices stay as they are. The result is edge- and vertex-manifold and oriented if each mesh
-// is. The vertices are in the order of the tiles; the new vertices follow.
+// tile and its surroundings. If another tile has the same seam in the opposite direction, each end
+// of the seam becomes one vertex with the same end in the other tile. The same ends are at most a
+// thousandth of the seam's length apart. Where a seam has no counterpart, the faces around it are
+// mended: gaps are closed, and faces that intersect other faces of the neighbourhood are replaced
+// or removed. All other faces stay as they are, but a vertex that two groups of faces share without
+// an edge is split there. The result is edge- and vertex-manifold and oriented if each mesh is. The
+// vertices are in the order of the tiles; the new vertices follow.
 Mesh join_tiles(std::vector<TileMesh> tiles, const JoinOptions& options = {},
                 JoinReport* report = nullptr);
 

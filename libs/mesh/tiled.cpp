@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -18,9 +19,10 @@
 namespace axial::mesh {
 namespace {
 
-constexpr std::size_t kSample = 1 << 20;  // most points that decide on the tiles, up to twice
+constexpr std::size_t kSample = 1 << 20;
 
-// Every k-th point of a cloud whose size is not known, with k as small as kSample allows.
+// Every k-th point of a cloud whose size is not known. Of a larger cloud, the sample has from
+// kSample to 2 * kSample points.
 class Sample {
  public:
   void add(const Eigen::Vector3f& point) {
@@ -48,12 +50,14 @@ class TiledRun {
         options_(options),
         count_(run.tiles),
         margin_(run.margin),
-        files_(run.folder, run.made_from) {
+        files_(run.folder, origin_of(run)) {
     if (options.clean.decimate != 1 || options.clean.target_faces > 0 ||
         options.clean.edge_length > 0)
       fail("a mesh in tiles cannot be simplified or remeshed");
     options_.clean.may_be_empty = true;
-    make_folder(run.folder);
+    if (files_.has_others())
+      log_warning("{}: has tiles of other input or options, which are not used",
+                  run.folder.string());
     divide_cloud();
   }
 
@@ -64,9 +68,7 @@ class TiledRun {
     MergedPoints points = with_margin(tile, std::move(own));
     log_info("Tile {} of {}: {} merged points, {} of them in the tile", tile + 1, count_,
              points.size(), own_points);
-    const TileMesh mesh = owned_part(
-        own_points == 0 ? Mesh{} : reconstruct_merged(std::move(points), scene_, rays_, options_),
-        tiles_[tile]);
+    const TileMesh mesh = owned_part(mesh_of(tile, std::move(points)), tiles_[tile]);
     return_freed_memory();
     files_.write(tile, mesh);
     return mesh;
@@ -89,22 +91,40 @@ class TiledRun {
     return mesh;
   }
 
+  // The identifier of the run with all that decides on the tiles.
+  static std::string origin_of(const TileRun& run) {
+    return Fingerprint().add(run.made_from).add(std::uint64_t{run.tiles}).add(run.margin).hex();
+  }
+
  private:
+  // Errors name the tile.
+  Mesh mesh_of(std::size_t tile, MergedPoints points) const {
+    try {
+      return reconstruct_merged(std::move(points), scene_, rays_, options_);
+    } catch (const Error& error) {
+      fail("tile {} of {}: {}", tile + 1, count_, error.what());
+    }
+  }
+
   void require_memory(std::uint64_t bytes, const std::string& work) const {
     if (options_.max_bytes > 0 && bytes > options_.max_bytes)
       fail("{} needs about {} MB, but {} is {}", work, bytes / kMegabyte,
            options_.name_of("max_memory"), options_.max_bytes / kMegabyte);
   }
 
-  // Passes the points to use to `sink`.
-  void read(const std::string& title, const std::function<void(PointCloud)>& sink) const {
+  // Passes the points to use to `sink`, and the properties of the cloud.
+  void read(const std::string& title,
+            const std::function<void(PointCloud, const io::CloudLayout&)>& sink) const {
     const ProgressSink progress = console_progress(title);
     std::size_t done = 0;
     cloud_([&](PointCloud portion, std::size_t all) {
       check_points(portion, scene_, done);
       done += portion.size();
+      const io::CloudLayout layout{.normals = !portion.normals.empty(),
+                                   .views = true,
+                                   .view_weights = !portion.view_weights.empty()};
       if (options_.only_region && scene_.region) cloud::crop(portion, *scene_.region);
-      sink(std::move(portion));
+      sink(std::move(portion), layout);
       progress(done, all);
     });
     if (done == 0) fail("the cloud has no points");
@@ -121,8 +141,9 @@ class TiledRun {
 
   void divide_cloud() {
     if (is_divided()) return;
+    files_.make_folders();
     Sample sample;
-    read("Read points", [&](const PointCloud& portion) {
+    read("Read points", [&](const PointCloud& portion, const io::CloudLayout&) {
       for (const Eigen::Vector3f& position : portion.positions) sample.add(position);
     });
     const Eigen::Matrix3d axes =
@@ -158,10 +179,7 @@ class TiledRun {
 
   void write_clouds() const {
     std::vector<std::unique_ptr<io::CloudWriter>> writers(count_);
-    read("Divided points", [&](const PointCloud& portion) {
-      const io::CloudLayout layout{.normals = !portion.normals.empty(),
-                                   .views = true,
-                                   .view_weights = !portion.view_weights.empty()};
+    read("Divided points", [&](const PointCloud& portion, const io::CloudLayout& layout) {
       const std::vector<PointCloud> parts = parts_of(portion);
       for (std::size_t tile = 0; tile < count_; ++tile) {
         if (!writers[tile])
@@ -181,16 +199,29 @@ class TiledRun {
     return points;
   }
 
-  // `points`, the points of the tile, with those of other tiles in its margin.
+  static bool meet(const cloud::Tile& a, const cloud::Tile& b) {
+    return (a.low.array() <= b.high.array()).all() && (a.high.array() >= b.low.array()).all();
+  }
+
+  // The points inside `box` of all tiles but `tile`.
+  MergedPoints others_inside(std::size_t tile, const cloud::Tile& box) const {
+    MergedPoints points;
+    for (std::size_t other = 0; other < count_; ++other)
+      if (other != tile && meet(tiles_[other], box)) append(points_of(other), box, points);
+    return points;
+  }
+
+  // `points`, the points of the tile, with those of other tiles in its margin. The margin of a tile
+  // without points is that of the tiles around it.
   MergedPoints with_margin(std::size_t tile, MergedPoints points) const {
-    if (points.size() == 0) return points;
-    const cloud::Tile reach = cloud::grown(tiles_[tile], margin_at(points));
-    for (std::size_t other = 0; other < count_; ++other) {
-      const cloud::Tile& box = tiles_[other];
-      const bool meets = (box.low.array() < reach.high.array()).all() &&
-                         (box.high.array() > reach.low.array()).all();
-      if (other != tile && meets) append(points_of(other), reach, points);
-    }
+    MergedPoints around;
+    if (points.size() == 0)
+      for (std::size_t other = 0; other < count_; ++other)
+        if (meet(tiles_[other], tiles_[tile])) append(points_of(other), {}, around);
+    const MergedPoints& typical = points.size() > 0 ? points : around;
+    if (typical.size() == 0) return points;
+    const cloud::Tile reach = cloud::grown(tiles_[tile], margin_at(typical));
+    append(others_inside(tile, reach), {}, points);
     sort_in_space(points);
     return points;
   }
@@ -240,7 +271,7 @@ void reconstruct_tile(std::size_t tile, const CloudSource& cloud, const Scene& s
 }
 
 void remove_intermediate_files(const TileRun& run) {
-  TileFiles(run.folder, run.made_from).remove(run.tiles);
+  TileFiles(run.folder, TiledRun::origin_of(run)).remove();
 }
 
 }  // namespace axial::mesh

@@ -19,8 +19,8 @@ using CloudSource = std::function<void(const io::CloudPortionSink& sink)>;
 struct TileRun {
   std::size_t tiles = 2;         // number of tiles, at least 1
   std::filesystem::path folder;  // of the intermediate files; it is created if it is missing
-  // Identifies the cloud, the scene and the options. Intermediate files of a run with another
-  // identifier are made again.
+  // Identifies the cloud, the scene and the options. Intermediate files of runs with another
+  // identifier, margin or number of tiles are not used.
   std::string made_from;
   // The mesh of a tile is made from the points of the tile and of its surroundings up to this
   // distance [px], above 0. The unit is the width of a pixel at the points of the tile: the 95th
@@ -44,9 +44,11 @@ struct TileRun {
 // of an earlier run. The result is the same whether one run or several made the tiles, and for any
 // number of threads.
 //
-// Throws the Errors of reconstruct(); a limit of memory holds for each tile and for the joined
-// mesh. Throws an Error if a file cannot be written, or if CleanOptions::decimate, target_faces or
-// edge_length ask for other triangles: they would differ at both sides of a border.
+// Throws the Errors of reconstruct(), with these differences: a tile may have fewer than four
+// points or no surface; all points of a tile and its margin in a plane are an Error; the limit of
+// memory holds for each tile and for the joined mesh. Throws an Error if a file cannot be written,
+// or if CleanOptions::decimate, target_faces or edge_length ask for other triangles: they would
+// differ at both sides of a border.
 Mesh reconstruct_in_tiles(const CloudSource& cloud, const Scene& scene,
                           const ReconstructOptions& options, const TileRun& run);
 
@@ -55,7 +57,8 @@ Mesh reconstruct_in_tiles(const CloudSource& cloud, const Scene& scene,
 void reconstruct_tile(std::size_t tile, const CloudSource& cloud, const Scene& scene,
                       const ReconstructOptions& options, const TileRun& run);
 
-// Removes the intermediate files of a run, and the folder if it has no other files.
+// Removes all intermediate files in TileRun::folder, and the folder if it has no other files. No
+// other run may use the folder.
 void remove_intermediate_files(const TileRun& run);
 
 }  // namespace axial::mesh

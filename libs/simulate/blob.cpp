@@ -30,7 +30,7 @@ bool Blob::contains(const Eigen::Vector3d& p, double margin) const {
   const Eigen::Vector3d q = (turn.transpose() * (p - centre)).cwiseQuotient(radii);
   const double r = q.norm();
   if (r < 1e-9) return true;
-  if (r > 2.5) return false;
+  if (r > kReach) return false;
   return r < 1 + relief(q / r) - margin / radii.minCoeff();
 }
 

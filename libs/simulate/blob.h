@@ -17,6 +17,9 @@ struct Blob {
   double roughness = 0.2;  // height of the largest bumps, as a fraction of the radius
   std::uint32_t seed = 1;  // of the bumps
 
+  // No point farther from the centre than this many times the largest radius is inside the body.
+  static constexpr double kReach = 2.5;
+
   // The height of the bumps in a direction (unit vector along the body's own axes), as a fraction
   // of the radius; at least -0.7.
   double relief(const Eigen::Vector3d& unit_direction) const;

@@ -148,7 +148,7 @@ void check_factor(const char* name, double value) {
   if (!(value >= 0.01 && value <= 100)) fail("{} is {}: must be between 0.01 and 100", name, value);
 }
 
-constexpr int kMostViews = 10000;
+constexpr int kMostViews = 100000;
 
 }  // namespace
 

@@ -57,8 +57,8 @@ struct Preset {
 //   that most of the ground is seen by exactly two views.
 //
 // "NAME-hazy" is the preset NAME in haze that leaves a seventh of the contrast. Throws an Error for
-// another name, for a number of views outside [0, 10000], for a scale, relief or coarseness outside
-// [0.01, 100], and for a width, height or field of view that make_lens() refuses.
+// another name, for a number of views outside [0, 100000], for a scale, relief or coarseness
+// outside [0.01, 100], and for a width, height or field of view that make_lens() refuses.
 Preset make_preset(const PresetOptions& options);
 
 // The port of `view` in its camera frame: the preset's water surface if Preset::water_level is set,

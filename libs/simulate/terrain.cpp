@@ -41,11 +41,31 @@ double burial(const Terrain& terrain) {
   return 4 * terrain.cell;
 }
 
-bool inside_a_blob(const Terrain& terrain, const Eigen::Vector3d& p, const Blob* except) {
-  return std::any_of(terrain.blobs.begin(), terrain.blobs.end(), [&](const Blob& blob) {
-    return &blob != except && blob.contains(p, burial(terrain));
-  });
-}
+// The blobs of a terrain, along y: a survey has thousands of them in a long strip.
+class BlobsAlongY {
+ public:
+  explicit BlobsAlongY(const std::vector<Blob>& blobs) {
+    for (const Blob& blob : blobs) {
+      sorted_.push_back(&blob);
+      reach_ = std::max(reach_, Blob::kReach * blob.radii.maxCoeff());
+    }
+    std::ranges::stable_sort(sorted_, {}, y_of);
+  }
+
+  // Whether `p` is inside a blob other than `except`, at least `margin` below its surface.
+  bool contain(const Eigen::Vector3d& p, double margin, const Blob* except) const {
+    const auto from = std::ranges::lower_bound(sorted_, p.y() - reach_, {}, y_of);
+    const auto to = std::ranges::upper_bound(sorted_, p.y() + reach_, {}, y_of);
+    return std::any_of(
+        from, to, [&](const Blob* blob) { return blob != except && blob->contains(p, margin); });
+  }
+
+ private:
+  static double y_of(const Blob* blob) { return blob->centre.y(); }
+
+  std::vector<const Blob*> sorted_;
+  double reach_ = 0;  // of the largest blob [m]
+};
 
 bool below_floor(const Terrain& terrain, const Eigen::Vector3d& p) {
   return p.z() < terrain.floor.at(p.x(), p.y()) - burial(terrain);
@@ -84,10 +104,12 @@ double Floor::at(double x, double y) const {
 
 TriangleMesh terrain_mesh(const Terrain& terrain) {
   TriangleMesh mesh = floor_mesh(terrain);
-  remove_hidden(mesh, [&](const Eigen::Vector3d& p) { return inside_a_blob(terrain, p, nullptr); });
+  const BlobsAlongY blobs(terrain.blobs);
+  remove_hidden(
+      mesh, [&](const Eigen::Vector3d& p) { return blobs.contain(p, burial(terrain), nullptr); });
   const auto add = [&](TriangleMesh part, const Blob* self) {
     remove_hidden(part, [&](const Eigen::Vector3d& p) {
-      return below_floor(terrain, p) || inside_a_blob(terrain, p, self);
+      return below_floor(terrain, p) || blobs.contain(p, burial(terrain), self);
     });
     append(mesh, part);
   };

@@ -74,7 +74,6 @@ void append(TriangleMesh& mesh, const TriangleMesh& part) {
     mesh.thickness.resize(mesh.vertices.size() + part.vertices.size(), 0.0f);
   }
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-  mesh.faces.reserve(mesh.faces.size() + part.faces.size());
   for (const auto& [a, b, c] : part.faces) mesh.faces.push_back({a + base, b + base, c + base});
 }
 

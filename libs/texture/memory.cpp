@@ -13,7 +13,7 @@ Budget::Budget(std::uint64_t max_bytes, SettingNames name_of) : name_of_(name_of
 
 Budget Budget::less_by(std::string_view setting) const {
   Budget copy = *this;
-  copy.advice_ = "; a larger " + name_of_(setting) + " needs less";
+  copy.advice_ = "; a larger " + name_of_(setting) + " needs less memory";
   return copy;
 }
 

@@ -20,7 +20,8 @@ class Budget {
   // `max_bytes`: the limit; 0: none. Errors name the limit by name_of("max_memory").
   Budget(std::uint64_t max_bytes, SettingNames name_of);
 
-  // A copy whose errors add that a larger value of the setting `name_of(setting)` needs less.
+  // A copy whose errors add that a larger value of the setting `name_of(setting)` needs less
+  // memory.
   Budget less_by(std::string_view setting) const;
 
   // Error if `bytes` are more than the limit. The message is one line. It tells how many megabytes

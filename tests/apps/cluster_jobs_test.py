@@ -10,6 +10,7 @@ from pipeline_folder import InFolder
 from programs import main
 
 from axial_pipeline import cluster, jobs, reconstruct, steps
+from axial_pipeline.failure import Failure
 
 
 class SlurmCommands(InFolder):
@@ -80,6 +81,23 @@ class Jobs(InFolder):
         self.assertEqual(survey.before_tile_of_mesh("3of3"), [jobs.done("mesh-tile-1of3")])
         self.assertEqual(self.survey(until="mesh").tiled, [])
         self.assertEqual(self.survey(tiles=3).tiled, ["densify"])
+
+    def test_options_that_contradict_tiles_are_refused(self):
+        for tiles, name, words in ((2, "mesh", "-d 4 --decimate=0.5"), (2, "densify", "--fusion-tiles 3"),
+                                   (1, "texture", "--tiles 4"), (1, "densify", "--tile 1/2")):
+            given = argparse.Namespace(**{"densify": "", "mesh": "", "texture": "", name: words},
+                                       tiles=tiles)
+            with self.assertRaisesRegex(Failure, f"--{name}: --.* contradicts --tiles {tiles}"):
+                reconstruct.check_tiles(given)
+        reconstruct.check_tiles(argparse.Namespace(densify="--fusion-tiles 3", mesh="--tiles 4",
+                                                   texture="", tiles=1))
+
+    def test_the_result_of_tiles_is_any_of_their_files(self):
+        tiles = steps.Tiles(self.folder, "scene_textured.tile*-12.glb")
+        self.write("scene_textured.tile1-2.glb", "")
+        self.assertFalse(tiles.exists())
+        self.write("scene_textured.tile7-12.glb", "")
+        self.assertTrue(tiles.exists())
 
     def minutes(self, name, **options):
         job = self.survey(**options).job(name)

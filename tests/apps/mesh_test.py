@@ -112,6 +112,7 @@ class Mesh(Scene):
             self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder, "--refractive",
                           "--tile", f"{tile}/3")
         tiles = os.path.join(folder, "scene_dense_mesh.tiles3")
+        tiles = os.path.join(tiles, *os.listdir(tiles))
         write(os.path.join(tiles, "mesh1.bin"), read(os.path.join(tiles, "mesh1.bin"))[:-100])
         self.assertFalse(os.path.exists(file))
         said = self.succeeds("ReconstructMesh", "-i", "scene_dense.mvs", "-w", folder,
@@ -124,6 +125,7 @@ class Mesh(Scene):
         folder = self.copy("air")
         self.refused(folder, "--tiles 0", "--tiles", "0")
         self.refused(folder, "--tile 4/3", "--tile", "4/3")
+        self.refused(folder, "--tile 1/1: there must be at least 2 tiles", "--tile", "1/1")
         self.refused(folder, "--tile 1/3: contradicts --tiles 4", "--tile", "1/3", "--tiles", "4")
         self.refused(folder, "--tiles 2: contradicts --decimate", "--tiles", "2", "--decimate",
                      "0.5")

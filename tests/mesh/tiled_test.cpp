@@ -140,14 +140,47 @@ TEST_P(Tiled, FilesOfOtherInputAndDamagedFilesAreMadeAgain) {
   const Mesh whole = in_tiles(other, 2, 0);
   in_tiles(cloud, 2, 0);
   const TileRun run = run_of(2, "the other cloud");
-  EXPECT_EQ(reconstruct_in_tiles(portions_of(other), scene_, merging(0), run).faces, whole.faces);
-  std::fstream file(run.folder / "mesh1.bin", std::ios::in | std::ios::out | std::ios::binary);
+  EXPECT_EQ(faces_of(reconstruct_in_tiles(portions_of(other), scene_, merging(0), run)),
+            faces_of(whole));
+  std::filesystem::path changed;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(run.folder))
+    if (entry.path().filename() == "mesh1.bin") changed = entry.path();
+  const TileFiles files(run.folder, changed.parent_path().filename().string());
+  EXPECT_TRUE(files.has_others());
+  std::fstream file(changed, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(200);
   file.put('\7');
   file.close();
-  EXPECT_FALSE(TileFiles(run.folder, run.made_from).mesh(0).has_value());
-  EXPECT_TRUE(TileFiles(run.folder, run.made_from).mesh(1).has_value());
-  EXPECT_EQ(reconstruct_in_tiles(portions_of(other), scene_, merging(0), run).faces, whole.faces);
+  EXPECT_NE(files.mesh(0).has_value(), files.mesh(1).has_value());
+  EXPECT_EQ(faces_of(reconstruct_in_tiles(portions_of(other), scene_, merging(0), run)),
+            faces_of(whole));
+  remove_intermediate_files(run);
+  EXPECT_FALSE(std::filesystem::exists(run.folder));
+}
+
+// The first portions are outside of the region.
+TEST_P(Tiled, PointsOutsideTheRegionAreNotUsed) {
+  scene_.region = OrientedBox{.centre = {0, 0, -0.95}, .half_extent = {1, 1, 1}};
+  ReconstructOptions options = merging(1.5);
+  options.only_region = true;
+  const PointCloud cloud = test::points_on_sphere(scene_, 8000, 0.001);
+  const Mesh whole = reconstruct(cloud, scene_, options);
+  const Mesh tiled = reconstruct_in_tiles(portions_of(cloud), scene_, options, run_of(3));
+  // Points at both sides of borders are not merged, so a few faces differ.
+  const auto faces = static_cast<double>(whole.faces.size());
+  EXPECT_NEAR(static_cast<double>(tiled.faces.size()) / faces, 1, 0.03);
+}
+
+TEST_P(Tiled, TilesMayBeEmpty) {
+  const PointCloud few = test::points_on_sphere(scene_, 300);
+  ReconstructOptions options = merging(0);
+  options.clean.spurious = options.clean.cut_off = 0;
+  const Mesh whole = reconstruct(few, scene_, options);
+  // A margin of all points, and more tiles than points.
+  TileRun run = run_of(400);
+  run.margin = 1e4;
+  EXPECT_EQ(faces_of(reconstruct_in_tiles(portions_of(few), scene_, options, run)),
+            faces_of(whole));
 }
 
 TEST_P(Tiled, WrongInputIsRefused) {
@@ -226,10 +259,10 @@ TEST_F(Join, SmallPiecesAreRemoved) {
   for (Eigen::Vector3f& vertex : small.vertices) vertex.x() += 50;
   JoinReport report;
   const auto tiles = halves(30);
-  const Mesh joined =
-      join_tiles({owned_part(plane(40, 0), tiles[0]), owned_part(small, tiles[1])}, {}, &report);
+  const TileMesh large = owned_part(plane(40, 0), tiles[0]);
+  const Mesh joined = join_tiles({large, owned_part(small, tiles[1])}, {}, &report);
   EXPECT_EQ(report.removed_components, 1u);
-  EXPECT_LT(joined.vertices.size(), plane(40, 0).vertices.size());
+  EXPECT_EQ(faces_of(joined), faces_of(large.mesh));
 }
 
 }  // namespace

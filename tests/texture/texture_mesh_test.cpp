@@ -177,7 +177,7 @@ TEST(TextureMesh, ALimitOnMemoryIsKeptOrRefusedInOneLine) {
     } catch (const Error& error) {
       const std::string said = error.what();
       EXPECT_THAT(said, testing::MatchesRegex("the limit: [^\n]+ needs [0-9]+ MB more"
-                                              "(; a larger number of tiles needs less)?"));
+                                              "(; a larger number of tiles needs less memory)?"));
       works.insert(said.substr(0, 22));
     }
   }

@@ -279,7 +279,7 @@ TEST(TextureTiles, TilesNeedLessMemory) {
   options.bytes_to_write = [](const ResultSize& size) { return 10'000 * size.faces; };
   EXPECT_THAT(test::error_of([&] { in_tiles(mesh, room, options, 1); }),
               testing::MatchesRegex("max_memory: writing 1 textures needs [0-9]+ MB more; a larger "
-                                    "tiles needs less"));
+                                    "tiles needs less memory"));
   in_tiles(mesh, room, options, 4);
 }
 

@@ -43,6 +43,10 @@ def forget_what_changed(todo, out):
         for record in [path for part in parts[name] for path in out.glob(jobs.done(part))]:
             if read_record(record).get("chain") != chain:
                 files.clear(record)
+    # The step "mesh" removes the files of its tiles.
+    if not (out / jobs.done("mesh")).exists() and not any(out.glob("scene_dense_mesh.tiles*")):
+        for record in out.glob(jobs.done("mesh-tile-*")):
+            files.clear(record)
 
 
 def largest_node(given):

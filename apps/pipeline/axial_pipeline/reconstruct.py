@@ -22,7 +22,7 @@ import shlex
 from . import cluster, colmap, files, lens, matching, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
-from .steps import Step, run_all
+from .steps import Step, Tiles, run_all
 
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
@@ -61,7 +61,8 @@ def options(script_folder):
                             (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
     parser.add_argument("--tiles", type=int, default=1,
                         help="make cloud, mesh and textures in this many tiles, so that less memory is "
-                        "needed; with --cluster, cloud and mesh in as many jobs (default: %(default)s)")
+                        "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
+                        "mesh in as many jobs (default: %(default)s)")
     parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
@@ -83,6 +84,22 @@ def words_of(name, given):
         return shlex.split(value)
     except ValueError as error:
         raise Failure(f"--{name} {value}: {error}") from None
+
+
+# Options of programs that contradict tiles, which `reconstruct` asks for.
+NOT_WITH_TILES = {"densify": ("--fusion-tiles", "--tile", "--estimate-normals", "--estimate-colors"),
+                  "mesh": ("--tiles", "--tile", "--decimate", "--target-face-num", "--edge-length"),
+                  "texture": ("--tiles",)}
+
+
+def check_tiles(given):
+    """Refuses options of programs that contradict --tiles. Other programs would refuse them after hours."""
+    for name, refused in NOT_WITH_TILES.items():
+        for word in words_of(name, given):
+            option = word.split("=")[0]
+            always = option == "--tile" or name == "texture"
+            if option in refused and (given.tiles > 1 or always):
+                raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
 
 
 def check(given):
@@ -107,6 +124,7 @@ def check(given):
         words_of(name, given)
     if not 1 <= given.tiles <= MOST_TILES:
         raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
+    check_tiles(given)
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
@@ -169,12 +187,12 @@ def mesh_steps(given, out):
                                                    *options["refine-mesh"]),
                makes=refined, reads=reads["refine-mesh"])
     if given.until == "texture":
-        # A tile without faces has no file.
         yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
                                                     "glb,ply", *refractive,
                                                     *tile_options("--tiles", given),
                                                     *options["texture"]),
-                   makes=out if given.tiles > 1 else textured.with_suffix(".glb"),
+                   makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
+                   else textured.with_suffix(".glb"),
                    reads=reads["texture"])
 
 

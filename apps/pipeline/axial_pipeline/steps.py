@@ -14,7 +14,8 @@ from .running import logged
 
 
 class Step:
-    """One command, the files from outside that it `reads`, and the file or folder that it `makes`.
+    """One command, the files from outside that it `reads`, and the file or folder that it `makes`, or
+    the Tiles.
 
     `anew`: paths that are removed before the command starts, because the command would add to them.
     `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
@@ -39,6 +40,17 @@ class Step:
             found += sorted(path.rglob("*")) if path.is_dir() else [path]
         return [[str(file), file.stat().st_size, file.stat().st_mtime_ns]
                 for file in found if file.is_file()]
+
+
+class Tiles:
+    """The result of a step that makes several files. A tile without content has no file, so one of
+    them is enough."""
+
+    def __init__(self, folder, pattern):
+        self.folder, self.pattern = folder, pattern
+
+    def exists(self):
+        return any(self.folder.glob(self.pattern))
 
 
 def read_record(path):

@@ -38,9 +38,9 @@ using CloudPortionSink = std::function<void(PointCloud portion, std::size_t all_
 // Reads a cloud of any size in portions. Calls `sink` with portions of `points` points each, in the
 // order of the file; the last portion may be smaller. Properties, positions and Errors are those of
 // the function read_cloud_ply() with the same frame; null: the function without a frame. In
-// addition, rows of more than 1 MB are refused. Data behind the vertices are not read. If an Error
-// is found in a portion, `sink` has received the portions before. Needs at most 32 MB, besides the
-// portion. Precondition: `points` is at least 1.
+// addition, rows of more than 1 MB and ascii files with lines of more than 32 MB are refused. Data
+// behind the vertices are not read. If an Error is found in a portion, `sink` has received the
+// portions before. Needs at most 32 MB, besides the portion. Precondition: `points` is at least 1.
 void read_cloud_portions(const std::filesystem::path& path, const LocalFrame* frame,
                          std::size_t points, const CloudPortionSink& sink);
 
