@@ -11,13 +11,14 @@ namespace axial::pose {
 
 // The Cholesky factorization P A P^T = L L^T of a symmetric matrix A. The permutation P keeps L
 // sparse. CHOLMOD's supernodal method stores columns of L with the same pattern as dense blocks and
-// factorizes them by BLAS. The numbers do not depend on the number of threads if BLAS uses one
-// thread, as ATLAS does, with which Debian links Ceres.
+// factorizes them by BLAS. CHOLMOD may divide its work among up to four threads; this does not
+// change the sums. Debian's libraries take their BLAS from ATLAS, which starts no threads. With a
+// BLAS that starts threads, the last digits can depend on their number.
 class SparseCholesky {
  public:
   // Factorizes `matrix`, of which it reads the lower triangle. Calls `start` when P is found,
   // before the arithmetic starts, with the number of additions and multiplications that follow.
-  // Throws std::bad_alloc if memory runs out.
+  // Throws std::bad_alloc if memory runs out, and an Error for any other failure of CHOLMOD.
   explicit SparseCholesky(const Eigen::SparseMatrix<double>& matrix,
                           const std::function<void(double operations)>& start = {});
   ~SparseCholesky();
