@@ -14,6 +14,7 @@ find_package(embree 3 REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # used as header-only library
 find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(Ceres REQUIRED)
+find_package(GDAL REQUIRED)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and
