@@ -59,7 +59,9 @@ MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel, Setti
     low = low.min(at), high = high.max(at);
   }
   // In pixels from the origin of the map.
-  low = (low / pixel).floor(), high = (high / pixel).ceil().max(low + 1);
+  constexpr double kTolerance = 1e-3;
+  low = (low / pixel + kTolerance).floor();
+  high = (high / pixel - kTolerance).ceil().max(low + 1);
   const Eigen::Array2d size = high - low;
   if (!(size.maxCoeff() <= kMost))
     fail("{} {:g}: the map would have {:.0f} x {:.0f} pixels, and {:.0f} per side is the most",

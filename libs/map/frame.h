@@ -49,10 +49,11 @@ struct MapGrid {
   std::int64_t pixels() const { return std::int64_t{columns} * rows; }
 };
 
-// The smallest grid that contains all vertices of the mesh and whose corners are at multiples of
-// `pixel` in map coordinates, so that the pixels of maps with the same `pixel` coincide. Error if a
-// side has more than 1,000,000 pixels; it calls `pixel` by name_of("ground_sample_distance").
-// Precondition: the mesh has vertices, and `pixel` is above 0.
+// The smallest grid that contains all vertices of the mesh up to a thousandth of a pixel, because
+// vertices are rounded to float. The corners of the grid are at multiples of `pixel` in map
+// coordinates, so that the pixels of maps with the same `pixel` coincide. Error if a side has more
+// than 1,000,000 pixels; it calls `pixel` by name_of("ground_sample_distance"). Precondition: the
+// mesh has vertices, and `pixel` is above 0.
 MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel,
                     SettingNames name_of = own_name);
 

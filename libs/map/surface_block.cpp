@@ -27,7 +27,8 @@ Eigen::Vector3d parts_at(const FaceCorners& corners, const std::array<std::uint3
           side_of_edge(corners, face, 0, 1, place)};
 }
 
-// The blocks that the bounding box of a face touches: columns and rows, the ends included.
+// The blocks that the bounding box of a face touches, with a border of a pixel: columns and rows,
+// the ends included.
 struct BlockRange {
   int x0, x1, y0, y1;
   std::uint64_t count() const {
@@ -36,8 +37,8 @@ struct BlockRange {
 };
 
 BlockRange blocks_of(const FaceCorners& corners, const MapGrid& grid, int block_size) {
-  const Eigen::Array2d low = corners.at.rowwise().minCoeff().array();
-  const Eigen::Array2d high = corners.at.rowwise().maxCoeff().array();
+  const Eigen::Array2d low = corners.at.rowwise().minCoeff().array() - 1;
+  const Eigen::Array2d high = corners.at.rowwise().maxCoeff().array() + 1;
   const auto block = [&](double at, int pixels) {
     return static_cast<int>(std::clamp(at, 0.0, pixels - 1.0)) / block_size;
   };

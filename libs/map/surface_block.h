@@ -35,7 +35,7 @@ class FaceBins {
   std::size_t blocks() const { return begin_.size() - 1; }
   // The pixels of a block.
   cv::Rect pixels(std::size_t block) const;
-  // The faces whose bounding box touches the block, in increasing order.
+  // The faces whose bounding box touches the block or a pixel beside it, in increasing order.
   std::span<const std::uint32_t> faces(std::size_t block) const {
     return std::span(faces_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
   }
