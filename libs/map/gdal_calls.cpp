@@ -2,6 +2,7 @@
 #include "private/gdal_calls.h"
 
 #include <gdal_frmts.h>
+#include <ogrsf_frmts.h>
 
 #include <mutex>
 
@@ -15,7 +16,7 @@ void start_gdal() {
   std::call_once(once, [] {
     GDALRegister_GTiff();
     GDALRegister_COG();
-    GDALRegister_MEM();
+    RegisterOGRGeoJSON();
     GDALSetCacheMax64(static_cast<GIntBig>(kCacheBytes));
   });
 }

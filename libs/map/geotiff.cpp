@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/geotiff.h"
 
-#include <cpl_string.h>
 #include <ogr_srs_api.h>
 
 #include <algorithm>
@@ -40,27 +39,6 @@ KindFacts facts_of(MapKind kind) {
   }
   return {GDT_Byte, 1, CV_8UC1, 0, "AVERAGE"};
 }
-
-// GDAL's words "KEY=VALUE".
-class GdalOptions {
- public:
-  GdalOptions(std::initializer_list<std::pair<const char*, const char*>> pairs) {
-    for (const auto& [key, value] : pairs) list_ = CSLSetNameValue(list_, key, value);
-  }
-  ~GdalOptions() { CSLDestroy(list_); }
-  GdalOptions(const GdalOptions&) = delete;
-  GdalOptions& operator=(const GdalOptions&) = delete;
-  char** list() const { return list_; }
-
- private:
-  char** list_ = nullptr;
-};
-
-// Closes a file of GDAL. Errors while it is closed are those of the last writes.
-struct Close {
-  void operator()(GDALDatasetH file) const { GDALClose(file); }
-};
-using DatasetPtr = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, Close>;
 
 // The file beside `path` that gets the blocks.
 fs::path blocks_beside(fs::path path) {

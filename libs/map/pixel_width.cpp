@@ -89,4 +89,10 @@ double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int p
   return 1 / std::sqrt(*middle);
 }
 
+double rounded_width(double width) {
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(width)));  // behind the point
+  const double power = std::pow(10.0, std::abs(digits));
+  return digits >= 0 ? std::round(width * power) / power : std::round(width / power) * power;
+}
+
 }  // namespace axial::map

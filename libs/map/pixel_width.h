@@ -24,4 +24,7 @@ struct Photo {
 // mesh hide from the place count, too. Error if no place is in a photograph that faces it.
 double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int places = 2000);
 
+// `width` rounded to two significant digits. Precondition: `width` is above 0.
+double rounded_width(double width);
+
 }  // namespace axial::map

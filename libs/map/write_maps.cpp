@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "io/images/image.h"
+#include "map/contours.h"
 #include "map/geotiff.h"
 #include "map/overview.h"
 
@@ -18,6 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kJpegQuality = 92;
+
+// In the order of MapFiles::all().
+constexpr fs::path MapFiles::*kMembers[] = {&MapFiles::heights,  &MapFiles::colors,
+                                            &MapFiles::counts,   &MapFiles::shades,
+                                            &MapFiles::contours, &MapFiles::picture};
 
 // The open maps. Blocks are written by one thread at a time.
 class OpenMaps {
@@ -46,9 +52,18 @@ class OpenMaps {
     report_.colored += cv::countNonZero(alpha);
   }
 
-  MapReport finish() {
+  // One file after the other: GDAL shares its cache between open files, and a thread that needs
+  // room in the cache writes blocks of the files of other threads.
+  MapReport finish(const ProgressSink& progress) {
+    std::vector<std::unique_ptr<GeoTiff>*> maps;
     for (auto* map : {&heights_, &colors_, &counts_, &shades_})
-      if (*map) (*map)->finish(), map->reset();
+      if (*map) maps.push_back(map);
+    ProgressCounter counter(progress, maps.size());
+    for (auto* map : maps) {
+      (*map)->finish();
+      map->reset();
+      counter.add();
+    }
     return report_;
   }
 
@@ -80,19 +95,22 @@ void write_picture(const fs::path& path, const fs::path& colors, const WriteOpti
 }
 
 MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
-                    const ProgressSink& progress) {
+                    const StageProgress& progress) {
+  const auto sink = [&](const char* stage) { return progress ? progress(stage) : ProgressSink{}; };
   const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
   const std::size_t at_once = blocks_at_once(content, options, samples);
   OpenMaps maps(files, content.grid, options.crs);
   {
     const FaceBins bins(content.mesh.mesh, content.frame, content.grid, options.block_size);
-    ProgressCounter counter(progress, bins.blocks());
+    ProgressCounter counter(sink("Maps"), bins.blocks());
     for_each_in_flight(bins.blocks(), at_once, [&](std::size_t b) {
       maps.write(make_block(content, bins, b, samples));
       counter.add();
     });
   }
-  const MapReport report = maps.finish();
+  const MapReport report = maps.finish(sink("Files"));
+  if (!files.contours.empty())
+    write_contours(files.heights, options.contour_interval, files.contours);
   if (!files.picture.empty()) write_picture(files.picture, files.colors, options);
   return report;
 }
@@ -101,16 +119,19 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
 
 std::vector<fs::path> MapFiles::all() const {
   std::vector<fs::path> paths;
-  for (const fs::path* path : {&heights, &colors, &counts, &shades, &picture})
-    if (!path->empty()) paths.push_back(*path);
+  for (const auto member : kMembers)
+    if (!(this->*member).empty()) paths.push_back(this->*member);
   return paths;
 }
 
 MapReport write_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
-                     const ProgressSink& progress) {
+                     const StageProgress& progress) {
   check_content(content);
   if (!files.colors.empty() && content.mesh.textures.empty()) fail("the mesh has no textures");
   if (!files.counts.empty() && content.views.empty()) fail("the numbers of views are missing");
+  if (!files.contours.empty() && (files.heights.empty() || !(options.contour_interval > 0)))
+    fail("{} {}: contour lines need an interval above 0 and the map of heights",
+         options.name_of("contour_interval"), options.contour_interval);
   if (!files.picture.empty() && files.colors.empty()) fail("a picture needs the map of colours");
   for (const fs::path& path : files.all())  // of the blocks, too
     remove_abandoned(path.parent_path(), path.stem().string());
@@ -118,9 +139,8 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
   write_together(files.all(), [&](const std::vector<fs::path>& temporaries) {
     MapFiles renamed = files;
     auto next = temporaries.begin();
-    for (fs::path* path :
-         {&renamed.heights, &renamed.colors, &renamed.counts, &renamed.shades, &renamed.picture})
-      if (!path->empty()) *path = *next++;
+    for (const auto member : kMembers)
+      if (!(renamed.*member).empty()) renamed.*member = *next++;
     report = make_maps(renamed, content, options, progress);
   });
   return report;

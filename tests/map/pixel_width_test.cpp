@@ -38,6 +38,13 @@ TEST(PixelWidth, IsThatOfTheCameraBehindThePort) {
   EXPECT_NEAR(median_pixel_width(mesh, std::vector{photo}), apparent / 800, 1e-5 * apparent / 800);
 }
 
+TEST(PixelWidth, IsRoundedToTwoDigits) {
+  EXPECT_DOUBLE_EQ(rounded_width(0.0029249), 0.0029);
+  EXPECT_DOUBLE_EQ(rounded_width(0.00998), 0.01);
+  EXPECT_DOUBLE_EQ(rounded_width(1.26), 1.3);
+  EXPECT_DOUBLE_EQ(rounded_width(1249), 1200);
+}
+
 TEST(PixelWidth, PhotographsFromBelowDoNotCount) {
   Mesh mesh = test::height_field({-1, -1}, {1, 1}, 3, [](double, double) { return 0.5; });
   for (auto& face : mesh.faces) std::swap(face[0], face[1]);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -20,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 MapFiles files_in(const fs::path& folder) {
-  return {folder / "m.dem.tif", folder / "m.ortho.tif", folder / "m.views.tif",
-          folder / "m.hillshade.tif", folder / "m.jpg"};
+  return {folder / "m.dem.tif",       folder / "m.ortho.tif",        folder / "m.views.tif",
+          folder / "m.hillshade.tif", folder / "m.contours.geojson", folder / "m.jpg"};
 }
 
 // The room seen from above, with colours from eight photographs through a flat port.
@@ -45,7 +46,8 @@ struct RoomMap {
 TEST(WriteMaps, ShowTheRoomThroughThePort) {
   const RoomMap room(0.004);
   const MapFiles files = files_in(test::empty_folder());
-  const MapReport report = write_maps(files, room.content, {.crs = crs_of_epsg(32631)});
+  const MapReport report =
+      write_maps(files, room.content, {.crs = crs_of_epsg(32631), .contour_interval = 0.15});
   const StoredMap heights = read_map(files.heights), colors = read_map(files.colors);
   ASSERT_EQ(heights.pixels.size(), cv::Size(400, 400));
   EXPECT_EQ(report.surface, 160'000);
@@ -78,14 +80,35 @@ TEST(WriteMaps, BlocksThreadsAndMemoryHaveNoEffect) {
   std::vector<std::string> first;
   for (const int size : {512, 64, 1024}) {
     const ThreadLimit limit(size == 512 ? 1 : 2);
-    write_maps(files, room.content,
-               {.block_size = size, .memory = {size == 64 ? 2000u : 0, "", 0}});
+    write_maps(
+        files, room.content,
+        {.block_size = size, .contour_interval = 0.15, .memory = {size == 64 ? 2000u : 0, "", 0}});
     std::vector<std::string> bytes;
     for (const fs::path& file : files.all()) bytes.push_back(read_file(file));
     if (first.empty()) first = bytes;
     EXPECT_EQ(bytes, first) << size;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 5);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 6);
+}
+
+// The box of 0.4 m x 0.3 m and 0.2 m height: one closed line at 0.15 m, about on its sides.
+TEST(WriteMaps, ContoursGoAroundTheBox) {
+  const RoomMap room(0.011);
+  const MapFiles files = files_in(test::empty_folder());
+  write_maps(files, room.content, {.crs = crs_of_epsg(32631), .contour_interval = 0.15});
+  const auto json = nlohmann::json::parse(read_file(files.contours));
+  std::vector<nlohmann::json> lines;
+  for (const auto& feature : json["features"])
+    if (feature["properties"]["height"] == 0.15) lines.push_back(feature["geometry"]);
+  ASSERT_EQ(lines.size(), 1u);
+  const auto& points = lines[0]["coordinates"];
+  ASSERT_GT(points.size(), 50u);
+  EXPECT_EQ(points.front(), points.back());
+  for (const auto& point : points) {
+    const double x = std::abs(point[0].get<double>() - 500000) / 0.2;
+    const double y = std::abs(point[1].get<double>() - 4500000) / 0.15;
+    EXPECT_NEAR(std::max(x, y), 1, 0.011 / 0.15);
+  }
 }
 
 TEST(WriteMaps, FilesThatAreNotAskedForAreNotWritten) {
@@ -98,8 +121,9 @@ TEST(WriteMaps, FilesThatAreNotAskedForAreNotWritten) {
   files.heights = folder / "m.dem.tif";
   write_maps(files, content, {});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
-  EXPECT_THAT(test::error_of([&] { write_maps(files_in(folder), content, {}); }),
-              testing::HasSubstr("no textures"));
+  EXPECT_THAT(
+      test::error_of([&] { write_maps(files_in(folder), content, {.contour_interval = 1}); }),
+      testing::HasSubstr("no textures"));
 }
 
 TEST(WriteMaps, OldFilesStayIfMemoryDoesNotSuffice) {
@@ -107,10 +131,11 @@ TEST(WriteMaps, OldFilesStayIfMemoryDoesNotSuffice) {
   const fs::path folder = test::empty_folder();
   const MapFiles files = files_in(folder);
   write_atomically(files.heights, "old");
-  EXPECT_THAT(test::error_of([&] {
-                write_maps(files, room.content, {.memory = {1, "memory", 0}});
-              }),
-              testing::HasSubstr("memory"));
+  EXPECT_THAT(
+      test::error_of([&] {
+        write_maps(files, room.content, {.contour_interval = 0.15, .memory = {1, "memory", 0}});
+      }),
+      testing::HasSubstr("memory"));
   EXPECT_EQ(read_file(files.heights), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to libs/map: GDAL's errors as Errors.
+// Private to libs/map: GDAL's errors as Errors, its files and lists of options.
 #pragma once
 
 #include <cpl_error.h>
+#include <cpl_string.h>
 #include <gdal.h>
 
-#include <filesystem>
+#include <initializer_list>
+#include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace axial::map {
 
@@ -31,5 +35,26 @@ class GdalErrors {
 
   std::string first_;
 };
+
+// GDAL's words "KEY=VALUE".
+class GdalOptions {
+ public:
+  GdalOptions(std::initializer_list<std::pair<const char*, std::string>> pairs) {
+    for (const auto& [key, value] : pairs) list_ = CSLSetNameValue(list_, key, value.c_str());
+  }
+  ~GdalOptions() { CSLDestroy(list_); }
+  GdalOptions(const GdalOptions&) = delete;
+  GdalOptions& operator=(const GdalOptions&) = delete;
+  char** list() const { return list_; }
+
+ private:
+  char** list_ = nullptr;
+};
+
+// Closes a file of GDAL. Errors while it is closed are those of the last writes.
+struct Close {
+  void operator()(GDALDatasetH file) const { GDALClose(file); }
+};
+using DatasetPtr = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, Close>;
 
 }  // namespace axial::map
