@@ -7,12 +7,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
+#include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -46,10 +48,21 @@ map::MapFiles map_files(const Settings& settings) {
   return files;
 }
 
+// The memory [bytes] that reading the mesh needs, with the textures that a PLY names.
+std::uint64_t bytes_to_read(const fs::path& mesh) {
+  std::uint64_t bytes = io::bytes_to_read_mesh(mesh), largest = 0;
+  if (lower_extension(mesh) != ".ply" || !io::is_textured_mesh(mesh)) return bytes;
+  for (const std::string& texture : io::textures_of_ply(mesh)) {
+    const io::ImageHeader header = io::read_image_header(mesh.parent_path() / texture);
+    bytes += 3 * static_cast<std::uint64_t>(header.size.area());
+    largest = std::max(largest, io::bytes_needed(header));
+  }
+  return bytes + largest;
+}
+
 // The mesh, with its textures if it has some.
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  memory_of(settings).require(io::bytes_to_read_mesh(settings.mesh),
-                              "reading " + settings.mesh.string());
+  memory_of(settings).require(bytes_to_read(settings.mesh), "reading " + settings.mesh.string());
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh))
     mesh = io::read_textured_mesh(settings.mesh, frame);
