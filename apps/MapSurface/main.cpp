@@ -112,12 +112,13 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
                     const std::vector<texture::View>& views) {
+  const bool has_system = !frame.is_world() || settings.epsg > 0;
+  const Eigen::Vector3d up = settings.up  ? *settings.up
+                             : has_system ? Eigen::Vector3d::UnitZ()
+                                          : map::fitted_up(mesh, centres_of(views));
   PlacedMap map;
-  map.is_georeferenced = (!frame.is_world() || settings.epsg > 0) && !settings.up;
-  const Eigen::Vector3d up = settings.up            ? *settings.up
-                             : map.is_georeferenced ? Eigen::Vector3d::UnitZ()
-                                                    : map::fitted_up(mesh, centres_of(views));
   map.frame = map::frame_with_up(up, frame);
+  map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
   map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, views), option_of);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);

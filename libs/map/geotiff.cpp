@@ -75,12 +75,17 @@ GeoTiff::GeoTiff(fs::path path, MapKind kind, const MapGrid& grid, const std::st
   state_.reset(new State{path, facts_of(kind), grid, AtomicFile(blocks_beside(path)), {}});
   State& s = *state_;
   const GdalErrors errors;
-  const GdalOptions options{
-      {"TILED", "YES"},      {"BLOCKXSIZE", "512"},
-      {"BLOCKYSIZE", "512"}, {"COMPRESS", "DEFLATE"},
-      {"ZLEVEL", "1"},       {"SPARSE_OK", "TRUE"},
-      {"BIGTIFF", "YES"},    {"INTERLEAVE", "PIXEL"},
-      {"ALPHA", "YES"},      {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
+  const GdalOptions options{{"TILED", "YES"},
+                            {"BLOCKXSIZE", "512"},
+                            {"BLOCKYSIZE", "512"},
+                            {"COMPRESS", "DEFLATE"},
+                            {"ZLEVEL", "1"},
+                            {"PREDICTOR", s.facts.type == GDT_Float32 ? "3" : "2"},
+                            {"SPARSE_OK", "TRUE"},
+                            {"BIGTIFF", "YES"},
+                            {"INTERLEAVE", "PIXEL"},
+                            {"ALPHA", "YES"},
+                            {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
   s.file.reset(GDALCreate(GDALGetDriverByName("GTiff"), s.blocks.temporary().c_str(), grid.columns,
                           grid.rows, s.facts.bands, s.facts.type, options.list()));
   errors.require(s.file != nullptr, s.name());
