@@ -96,6 +96,7 @@ struct PlacedMap {
 
 std::vector<Eigen::Vector3d> centres_of(const std::vector<texture::View>& views) {
   std::vector<Eigen::Vector3d> centres;
+  centres.reserve(views.size());
   for (const texture::View& view : views) centres.push_back(view.pose.centre);
   return centres;
 }
@@ -104,6 +105,7 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
                 const std::vector<texture::View>& views) {
   if (settings.pixel > 0) return settings.pixel;
   std::vector<map::Photo> photos;
+  photos.reserve(views.size());
   for (const texture::View& view : views) photos.push_back({view.camera, view.pose});
   return map::rounded_width(map::median_pixel_width(mesh, photos));
 }

@@ -62,6 +62,9 @@ std::vector<int> reductions(const MapGrid& grid) {
 }  // namespace
 
 struct GeoTiff::State {
+  State(const fs::path& map, MapKind kind, const MapGrid& map_grid)
+      : path(map), facts(facts_of(kind)), grid(map_grid), blocks(blocks_beside(map)) {}
+
   fs::path path;
   KindFacts facts;
   MapGrid grid;
@@ -71,8 +74,8 @@ struct GeoTiff::State {
   std::string name() const { return path.string(); }
 };
 
-GeoTiff::GeoTiff(fs::path path, MapKind kind, const MapGrid& grid, const std::string& crs) {
-  state_.reset(new State{path, facts_of(kind), grid, AtomicFile(blocks_beside(path)), {}});
+GeoTiff::GeoTiff(const fs::path& path, MapKind kind, const MapGrid& grid, const std::string& crs)
+    : state_(std::make_unique<State>(path, kind, grid)) {
   State& s = *state_;
   const GdalErrors errors;
   const GdalOptions options{{"TILED", "YES"},
