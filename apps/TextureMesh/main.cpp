@@ -15,7 +15,6 @@
 #include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
-#include "photographs.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -49,19 +48,19 @@ fs::path output_of(const Settings& settings, std::size_t tile) {
 }
 
 // Error if a file of a tile's mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const Photographs& photographs, std::size_t tile,
-                 std::size_t textures) {
+void keep_inputs(const Settings& settings, const texture::Photographs& photographs,
+                 std::size_t tile, std::size_t textures) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
   inputs.insert(inputs.end(),
                 {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
-                 io::geo_offset_beside(scene), settings.views_file});
+                 io::geo_offset_beside(scene), settings.photographs.views_file});
   for (const io::TexturedFormat format : settings.formats)
     require_no_inputs(io::textured_files(output_of(settings, tile), format, textures), inputs,
                       "--output-file");
 }
 
-void check_outputs(const Settings& settings, const Photographs& photographs) {
+void check_outputs(const Settings& settings, const texture::Photographs& photographs) {
   std::error_code ignored;
   fs::create_directories(settings.output.parent_path(), ignored);
   for (std::size_t tile = 0; tile < settings.texture.tiles; ++tile) {
@@ -102,7 +101,7 @@ void report(const Written& written, const texture::Report& facts) {
 }
 
 // The options of texture_mesh(), with what is left of the memory after the input was read.
-texture::Options with_memory(const Settings& settings, const Photographs& photographs) {
+texture::Options with_memory(const Settings& settings, const texture::Photographs& photographs) {
   texture::Options options = settings.texture;
   options.max_bytes = std::max<std::uint64_t>(memory_of(settings).left(), 1);  // 0: no limit
   options.image_bytes = photographs.bytes_to_load();
@@ -116,7 +115,7 @@ texture::Options with_memory(const Settings& settings, const Photographs& photog
   return options;
 }
 
-void texture_and_write(const Settings& settings, Mesh mesh, const Photographs& photographs,
+void texture_and_write(const Settings& settings, Mesh mesh, const texture::Photographs& photographs,
                        const LocalFrame& frame, const Eigen::Matrix3d& axes) {
   texture::Options options = with_memory(settings, photographs);
   options.axes = axes;
@@ -149,7 +148,7 @@ int run(int argc, char** argv) {
                                 "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
-  const Photographs photographs(scene.scene, settings);
+  const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
   check_outputs(settings, photographs);
   const LocalFrame frame = scene.frame;
   const Eigen::Matrix3d axes =
