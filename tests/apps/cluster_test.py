@@ -17,7 +17,8 @@ from programs import BIN, main, run
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 RESULTS = ("scene_dense.mvs", "scene_dense.ply", "scene_dense_mesh.ply", "scene_dense_refined.ply",
-           *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")))
+           *(f"scene_textured.tile{tile}-2.{kind}" for tile in (1, 2) for kind in ("glb", "ply")),
+           "scene_map.dem.tif", "scene_map.ortho.tif")
 DENSIFY = "--resolution-level 0 --min-resolution 100 --geometric-iters 1 --plan-parts 2"
 
 # COLMAP's models differ from run to run. This stand-in gives every run the same model.
@@ -164,7 +165,7 @@ class OnThisMachine(Survey):
         self.assertNotIn("rule densify:", said)
         self.check("out")
         # Alone, nothing is left to do.
-        self.assertEqual(self.reconstruct("out").count("done before"), 9)
+        self.assertEqual(self.reconstruct("out").count("done before"), 10)
         self.assertNotIn("\nrule ", self.reconstruct("out", "--cluster", "local"))
 
     def test_uses_complete_depth_maps_for_other_options_of_the_fusion(self):

@@ -19,7 +19,7 @@ from programs import BIN, main, read, run
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 STEPS = ["features", "matches", "poses", "refine", "import", "densify", "mesh",
-         "refine-mesh", "texture", "evaluate"]
+         "refine-mesh", "texture", "map", "evaluate"]
 
 
 def camera_centres(images):
@@ -57,6 +57,7 @@ case "$name $1" in
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
   RefineMesh*) touch out/scene_dense_refined.ply ;;
   TextureMesh*) touch out/scene_textured.glb ;;
+  MapSurface*) touch out/scene_map.dem.tif ;;
 esac
 """
 
@@ -69,7 +70,7 @@ class WithStandIns(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
-                     "ReconstructMesh", "RefineMesh", "TextureMesh"):
+                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface"):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         for name in ("lens", "housing"):
@@ -116,7 +117,7 @@ class WithStandIns(unittest.TestCase):
 
     def test_takes_a_wrappers_child_along_however_it_ends(self):
         """Tried with the first program, a middle one and the last one."""
-        for program in ("colmap", "RefinePoses", "TextureMesh"):
+        for program in ("colmap", "RefinePoses", "MapSurface"):
             for end in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
                 process, pipe = self.held_at(program, "child-pipe")
                 process.send_signal(end)
@@ -147,8 +148,8 @@ class WithStandIns(unittest.TestCase):
 
     def test_prints_the_commands_that_it_runs(self):
         said = self.ended().stdout.splitlines()
-        printed = [said[said.index(f"[{number}/9] {step}") + 1].removeprefix(" " * 4)
-                   for number, step in enumerate(STEPS[:9], 1)]
+        printed = [said[said.index(f"[{number}/10] {step}") + 1].removeprefix(" " * 4)
+                   for number, step in enumerate(STEPS[:10], 1)]
         run_were = (self.folder / "commands").read_text().splitlines()
         self.assertEqual([" ".join([pathlib.Path(program).name, *arguments]) for program, *arguments
                           in map(shlex.split, printed)], run_were)
@@ -167,8 +168,8 @@ class WithStandIns(unittest.TestCase):
             return ended.stdout.count("done before")
 
         self.assertEqual(done_before(), 0)
-        self.assertEqual(done_before(), 9)
-        for option, kept in [("--texture=--outlier-threshold 0.1", 8),
+        self.assertEqual(done_before(), 10)
+        for option, kept in [("--map=--hillshade", 9), ("--texture=--outlier-threshold 0.1", 8),
                              ("--refine-mesh=--scales 1", 7), ("--mesh=--smooth 1", 6),
                              ("--densify=--resolution-level 1", 5)]:
             options.append(option)
@@ -177,14 +178,14 @@ class WithStandIns(unittest.TestCase):
         self.assertEqual(done_before(), 3)
         options += ["--matcher", "spatial"]
         self.assertEqual(done_before(), 1)
-        command = (self.folder / "commands").read_text().splitlines()[-8]
+        command = (self.folder / "commands").read_text().splitlines()[-9]
         self.assertIn(f"colmap spatial_matcher --database_path {self.folder}/out/database.db "
                       "--SpatialMatching.is_gps 0", command)
         positions.write_text(positions.read_text() + "\n")
         self.assertEqual(done_before(), 1)
         options += ["--matcher", "vocabulary", "--vocabulary", "lens"]
         self.assertEqual(done_before(), 1)
-        self.assertEqual(done_before(), 9)
+        self.assertEqual(done_before(), 10)
 
     def test_a_matcher_without_its_input_is_refused_at_once(self):
         for options, said in (
@@ -271,6 +272,8 @@ class Reconstruct(unittest.TestCase):
         self.assertGreater(evaluation["accuracy"]["count"], 50000)
         self.assertLess(evaluation["accuracy"]["median"], 0.002)
         self.assertTrue((out / "scene_textured.glb").read_bytes().startswith(b"glTF"))
+        for kind in ("dem", "ortho", "views"):
+            self.assertTrue((out / f"scene_map.{kind}.tif").read_bytes().startswith(b"II"), kind)
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"

@@ -12,7 +12,8 @@ from .jobs import Survey
 from .running import die_with
 from .steps import Records, is_done, perform
 
-WITH_LIMITS = ("DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh")
+WITH_LIMITS = ("DensifyPointCloud", "ReconstructMesh", "RefineMesh", "TextureMesh",
+               "MapSurface")
 
 
 def limits_of(command, cpus, memory):

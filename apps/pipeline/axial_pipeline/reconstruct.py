@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From photographs taken under water to a dense cloud and a textured mesh, in one command:
+"""From photographs taken under water to a dense cloud, a textured mesh and maps, in one command:
 
     reconstruct --images DIR --lens cameras.txt --housing housing.json -o OUT
 
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
 poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
-cloud into a textured mesh. The command of every step is printed and can be typed by
+cloud into a textured mesh, and MapSurface maps it. The command of every step is printed and can be typed by
 hand. A killed run that is started again with the same options continues with the step that was
 killed; with other options, it continues with the first step that differs. A second run in
 the same folder is refused until the first run ends. With --cluster, a workflow of Snakemake runs the
@@ -26,10 +26,11 @@ from .steps import Step, Tiles, run_all
 
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
-            "TextureMesh")
+            "TextureMesh", "MapSurface")
 # Options whose values are options for a program, and this program.
 MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
-                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh"}
+                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
+                "map": "MapSurface"}
 MOST_TILES = 1000  # as in the programs
 
 
@@ -63,7 +64,7 @@ def options(script_folder):
                         help="make cloud, mesh and textures in this many tiles, so that less memory is "
                         "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
                         "mesh in as many jobs (default: %(default)s)")
-    parser.add_argument("--until", choices=["cloud", "mesh", "texture"], default="texture",
+    parser.add_argument("--until", choices=["cloud", "mesh", "texture", "map"], default="map",
                         help="last result to make (default: %(default)s)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it")
@@ -176,7 +177,7 @@ def mesh_steps(given, out):
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
     textured = out / "scene_textured"
-    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture")}
+    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture", "map")}
     reads = {name: existing_files(words) for name, words in options.items()}
     if given.until == "cloud":
         return
@@ -186,7 +187,7 @@ def mesh_steps(given, out):
     yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
                                                    *options["refine-mesh"]),
                makes=refined, reads=reads["refine-mesh"])
-    if given.until == "texture":
+    if given.until in ("texture", "map"):
         yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
                                                     "glb,ply", *refractive,
                                                     *tile_options("--tiles", given),
@@ -194,6 +195,12 @@ def mesh_steps(given, out):
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                    else textured.with_suffix(".glb"),
                    reads=reads["texture"])
+    if given.until == "map":
+        # MapSurface gives the mesh textures itself if they are in several files.
+        mapped = refined if given.tiles > 1 else textured.with_suffix(".ply")
+        yield Step("map", programs.map_surface(scene, mapped, out / "scene_map", *refractive,
+                                               *options["map"]),
+                   makes=out / "scene_map.dem.tif", reads=reads["map"])
 
 
 def steps(given, out):
@@ -266,8 +273,9 @@ def only_run_in(out):
 
 def mesh_of(given, out):
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
-    name = {"cloud": "", "mesh": "scene_dense_refined.ply", "texture": textured}[given.until]
-    return f"Mesh: {out / name}   " if name else ""
+    name = {"cloud": "", "mesh": "scene_dense_refined.ply"}.get(given.until, textured)
+    maps = f"Maps: {out / 'scene_map.*'}   " if given.until == "map" else ""
+    return f"Mesh: {out / name}   {maps}" if name else ""
 
 
 def reconstruct(given):
