@@ -288,7 +288,7 @@ void check_purpose(const Settings& settings) {
 void take_part(const std::string& part, Settings& settings) {
   if (part.empty()) return;
   constexpr std::size_t kMostParts = 1000000;
-  const Fraction fraction = parse_fraction("part", part, kMostParts);
+  const Fraction fraction = parse_fraction("--part", part, kMostParts);
   settings.part = fraction.part;
   settings.parts = fraction.count;
   if (settings.until.empty()) fail("--part {}: needs --until", part);

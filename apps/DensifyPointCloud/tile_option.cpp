@@ -30,7 +30,7 @@ void take_tiles(const std::string& tile, Options& options) {
   if (settings.fusion_tiles > 1)
     require_fusion(fmt::format("--fusion-tiles {}", settings.fusion_tiles), settings);
   if (!given(options.parsed, "tile")) return;
-  const auto [part, count] = parse_fraction("tile", tile, densify::kMostTiles);
+  const auto [part, count] = parse_fraction("--tile", tile, densify::kMostTiles);
   const std::string option = "--tile " + tile;
   if (given(options.parsed, "fusion-tiles") && settings.fusion_tiles != count)
     fail("{}: contradicts --fusion-tiles {}", option, settings.fusion_tiles);

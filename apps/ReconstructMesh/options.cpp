@@ -145,7 +145,7 @@ void take_tiles(const Raw& raw, Options& options) {
   check_range("tiles", options.tiles, std::size_t{1}, kMostTiles);
   std::string option = fmt::format("--tiles {}", options.tiles);
   if (given(options.parsed, "tile")) {
-    const Fraction fraction = parse_fraction("tile", raw.tile, kMostTiles);
+    const Fraction fraction = parse_fraction("--tile", raw.tile, kMostTiles);
     option = "--tile " + raw.tile;
     if (fraction.count == 1) fail("{}: there must be at least 2 tiles", option);
     if (given(options.parsed, "tiles") && options.tiles != fraction.count)

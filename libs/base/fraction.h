@@ -12,8 +12,8 @@ struct Fraction {
   std::size_t part = 0, count = 0;
 };
 
-// Parses the value "I/N" of the option --`name`. Throws an Error that names the option and the
-// value unless N is from 1 to `most` and I is from 1 to N.
-Fraction parse_fraction(const std::string& name, const std::string& value, std::size_t most);
+// Parses the value "I/N" of the option `option` ("--part"). Throws an Error that names the option
+// and the value unless N is from 1 to `most` and I is from 1 to N.
+Fraction parse_fraction(const std::string& option, const std::string& value, std::size_t most);
 
 }  // namespace axial
