@@ -16,6 +16,7 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 # With the component SuiteSparse, the package defines the targets of its parts, for example
 # SuiteSparse::CHOLMOD.
 find_package(Ceres REQUIRED COMPONENTS SuiteSparse)
+find_package(GDAL REQUIRED)
 find_package(CGAL REQUIRED)
 # CGAL adds -frounding-math to all files of the targets that link it. Here only the files that include
 # CGAL get this option (axial_source_options), so that all other files keep the precompiled headers and

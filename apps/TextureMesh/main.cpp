@@ -15,7 +15,6 @@
 #include "io/cameras/lenses.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
-#include "photographs.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -49,12 +48,13 @@ void report(const TexturedMesh& mesh, const texture::Report& facts) {
 }
 
 // Error if a file of a mesh with `textures` textures is an input.
-void keep_inputs(const Settings& settings, const Photographs& photographs, std::size_t textures) {
+void keep_inputs(const Settings& settings, const texture::Photographs& photographs,
+                 std::size_t textures) {
   const fs::path& scene = settings.scene.scene;
   std::vector<fs::path> inputs = photographs.files();
   inputs.insert(inputs.end(),
                 {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
-                 io::geo_offset_beside(scene), settings.views_file});
+                 io::geo_offset_beside(scene), settings.photographs.views_file});
   for (const io::TexturedFormat format : settings.formats)
     require_no_inputs(io::textured_files(settings.output, format, textures), inputs,
                       "--output-file");
@@ -69,7 +69,7 @@ void require_writable_outputs(const Settings& settings) {
 }
 
 // The options of texture_mesh(), with what is left of the memory after the input was read.
-texture::Options with_memory(const Settings& settings, const Photographs& photographs) {
+texture::Options with_memory(const Settings& settings, const texture::Photographs& photographs) {
   texture::Options options = settings.texture;
   options.max_bytes = std::max<std::uint64_t>(memory_of(settings).left(), 1);  // 0: no limit
   options.image_bytes = photographs.bytes_to_load();
@@ -94,7 +94,7 @@ int run(int argc, char** argv) {
                                 "reading " + settings.scene.scene.string());
   io::SceneWithCameras scene = io::read_scene_with_cameras(settings.scene);
   Mesh mesh = read_mesh(settings, scene.frame);
-  const Photographs photographs(scene.scene, settings);
+  const texture::Photographs photographs(scene.scene, settings.scene.scene, settings.photographs);
   keep_inputs(settings, photographs, 1);
   require_writable_outputs(settings);
   const LocalFrame frame = scene.frame;

@@ -25,7 +25,8 @@ struct Raw {
   int packing_heuristic = 3;
 };
 
-constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"}};
+constexpr SettingName kOptions[] = {
+    {"max_memory", "--max-memory"}, {"mask_folder", "--mask-path"}, {"bit_depth", "--bit-depth"}};
 
 std::string option_of(std::string_view setting) {
   return name_in(kOptions, setting);
@@ -53,7 +54,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
                         "largest memory to use [MB] (0: 70 % of the free memory)")
       .add_with_default("resolution-level", &raw.resolution_level,
                         "how many times the images are halved")
-      .add_with_default("min-resolution", &settings.resolution.min,
+      .add_with_default("min-resolution", &settings.photographs.resolution.min,
                         "the longest side is not halved below this [px]")
       .add_with_default(
           "ignore-mask-label", &raw.ignore_mask_label,
@@ -62,7 +63,7 @@ void declare_io(OptionList& list, Raw& raw, Settings& settings) {
       .add("mask-path", &raw.mask_path,
            "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
            "a.jpg, in the same subfolders as the images");
-  io::declare_bit_depth(list, settings.bit_depth);
+  io::declare_bit_depth(list, settings.photographs.bit_depth);
 }
 
 void declare_texturing(OptionList& list, Raw& raw, texture::Options& options) {
@@ -95,7 +96,7 @@ void check_range(const char* name, T value, T low, T high) {
 
 void check_values(const Raw& raw, const Settings& settings) {
   check_range("resolution-level", raw.resolution_level, 0u, 16u);
-  check_range("min-resolution", settings.resolution.min, 1, 1 << 16);
+  check_range("min-resolution", settings.photographs.resolution.min, 1, 1 << 16);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
   check_range("outlier-threshold", settings.texture.outlier_threshold, 0.0, 0.999);
   check_range("cost-smoothness-ratio", settings.texture.labels.cost_smoothness_ratio, 0.0, 100.0);
@@ -106,7 +107,7 @@ void check_values(const Raw& raw, const Settings& settings) {
               settings.texture.packing.max_size == 0 ? 32768 : settings.texture.packing.max_size);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
   check_range("empty-color", raw.empty_color, 0u, 0xFFFFFFu);
-  io::check_bit_depth(settings.bit_depth, "--bit-depth");
+  io::check_bit_depth(settings.photographs.bit_depth, "--bit-depth");
 }
 
 std::vector<io::TexturedFormat> formats_of(const std::string& list) {
@@ -138,22 +139,22 @@ void take_paths(const CommonOptions& common, const Raw& raw, Settings& settings)
   settings.output = raw.output.empty()
                         ? scene.parent_path() / (scene.stem().string() + "_texture.mvs")
                         : as_scene(output_in_working_folder(common, raw.output, "--output-file"));
-  settings.views_file = path(raw.views_file);
-  settings.mask_folder = path(raw.mask_path);
+  settings.photographs.views_file = path(raw.views_file);
+  settings.photographs.mask_folder = path(raw.mask_path);
 }
 
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   settings.formats = formats_of(raw.export_type);
   take_paths(options.parsed.common, raw, settings);
-  settings.resolution.level = raw.resolution_level;
-  settings.texture.name_of = option_of;
+  settings.photographs.resolution.level = raw.resolution_level;
+  settings.texture.name_of = settings.photographs.name_of = option_of;
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
   const int label = masks_given ? 0 : raw.ignore_mask_label;
-  settings.masks = label >= 0    ? MaskChoice::label
-                   : label == -1 ? MaskChoice::black_border
-                                 : MaskChoice::none;
-  settings.mask_label = label;
+  settings.photographs.masks = label >= 0    ? texture::MaskChoice::label
+                               : label == -1 ? texture::MaskChoice::black_border
+                                             : texture::MaskChoice::none;
+  settings.photographs.mask_label = label;
   for (unsigned k = 0; k < 3; ++k)
     settings.texture.empty_color[k] =
         static_cast<std::uint8_t>(raw.empty_color >> (8 * (2 - k)) & 255u);

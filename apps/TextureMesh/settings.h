@@ -10,29 +10,17 @@
 #include "base/program.h"
 #include "io/openmvs/scene_with_cameras.h"
 #include "io/textured/textured_mesh.h"
-#include "scene/resolution.h"
+#include "texture/photographs.h"
 #include "texture/texture_mesh.h"
 
 namespace axial::apps {
-
-// How pixels are found that must not be used.
-enum class MaskChoice {
-  label,         // pixels whose label in the image's mask is Settings::mask_label
-  black_border,  // pixels of the black borders that undistortion leaves
-  none           // all pixels are used
-};
 
 struct Settings {
   io::SceneFiles scene;
   std::filesystem::path mesh, output;  // the extension of the output is .mvs, as in OpenMVS
   std::vector<io::TexturedFormat> formats;
-  std::filesystem::path views_file;   // list of the images to use; empty: all
-  std::filesystem::path mask_folder;  // empty: masks of the scene, or beside the images
-  MaskChoice masks = MaskChoice::black_border;
-  int mask_label = 0;
-  int bit_depth = 0;
+  texture::PhotographOptions photographs;
   std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
-  ResolutionOptions resolution{0, 640, 1 << 20};
   texture::Options texture;
 };
 

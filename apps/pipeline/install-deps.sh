@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build git help2man
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libcgal-dev libmaxflow-dev libxxhash-dev libboost-dev libboost-program-options-dev
-  libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev
+  libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev
   # to test
   clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   clang libclang-rt-dev

@@ -15,8 +15,8 @@ import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
-            "InterfaceCOLMAP", "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper",
-            "SimulateUnderwater", "TextureMesh", "TransformScene"]
+            "InterfaceCOLMAP", "MapSurface", "ReconstructMesh", "RefineMesh", "RefinePoses",
+            "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene"]
 
 
 def output_of(*command):

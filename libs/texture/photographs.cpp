@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "photographs.h"
+#include "texture/photographs.h"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -17,7 +17,7 @@
 #include "io/images/masks.h"
 #include "texture/black_border.h"
 
-namespace axial::apps {
+namespace axial::texture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,39 +87,41 @@ cv::Mat1b opaque_at(const cv::Mat1b& opaque, cv::Size size) {
 
 }  // namespace
 
-Photographs::Photographs(const Scene& scene, const Settings& settings)
-    : choice_(settings.masks), label_(settings.mask_label) {
+Photographs::Photographs(const Scene& scene, const fs::path& scene_file,
+                         const PhotographOptions& options)
+    : choice_(options.masks), label_(options.mask_label) {
   std::set<std::size_t> wanted;
-  if (!settings.views_file.empty()) wanted = images_in(settings.views_file, scene);
+  if (!options.views_file.empty()) wanted = images_in(options.views_file, scene);
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const SceneImage& image = scene.images[i];
-    if (!image.calibrated || (!settings.views_file.empty() && !wanted.contains(i))) continue;
+    if (!image.calibrated || (!options.views_file.empty() && !wanted.contains(i))) continue;
     const io::ImageHeader& header = headers_.emplace_back(io::read_image_header(image.path));
     if (!same_shape(header.size, {image.camera.width, image.camera.height}))
       fail("{}: is {}x{}, but its camera is {}x{}", image.path, header.size.width,
            header.size.height, image.camera.width, image.camera.height);
-    const cv::Size size = working_size(header.size.width, header.size.height, settings.resolution);
+    const cv::Size size = working_size(header.size.width, header.size.height, options.resolution);
     images_.push_back(i);
     files_.emplace_back(image.path);
     views_.push_back({image.camera.resized(size.width, size.height), image.pose});
   }
-  if (views_.empty()) fail("{}: has no calibrated image to use", settings.scene.scene.string());
-  bit_depth_ = io::common_bit_depth(files_, headers_, settings.bit_depth, "--bit-depth");
+  if (views_.empty()) fail("{}: has no calibrated image to use", scene_file.string());
+  bit_depth_ =
+      io::common_bit_depth(files_, headers_, options.bit_depth, options.name_of("bit_depth"));
   masks_.resize(views_.size());
-  if (choice_ == MaskChoice::label) find_masks(scene, settings);
+  if (choice_ == MaskChoice::label) find_masks(scene, options);
 }
 
-void Photographs::find_masks(const Scene& scene, const Settings& settings) {
+void Photographs::find_masks(const Scene& scene, const PhotographOptions& options) {
   std::vector<io::MaskRequest> requests;
   for (std::size_t v = 0; v < views_.size(); ++v)
     requests.push_back({files_[v], scene.images[images_[v]].mask_path});
-  const std::vector<io::FoundMask> found = io::find_masks(requests, settings.mask_folder);
+  const std::vector<io::FoundMask> found = io::find_masks(requests, options.mask_folder);
   for (std::size_t v = 0; v < views_.size(); ++v) {
     masks_[v] = found[v].path;
     if (!masks_[v].empty()) continue;
-    if (!settings.mask_folder.empty())
-      fail("--mask-path {}: no mask for image {}: looked for {}", settings.mask_folder.string(),
-           files_[v].string(), found[v].looked_for);
+    if (!options.mask_folder.empty())
+      fail("{} {}: no mask for image {}: looked for {}", options.name_of("mask_folder"),
+           options.mask_folder.string(), files_[v].string(), found[v].looked_for);
     log_warning("{}: no mask: looked for {}", files_[v].string(), found[v].looked_for);
   }
 }
@@ -147,17 +149,17 @@ std::uint64_t Photographs::bytes_to_load() const {
   return largest;
 }
 
-texture::ViewImage Photographs::load(std::size_t view) const {
+ViewImage Photographs::load(std::size_t view) const {
   const CameraModel& camera = views_[view].camera;
   const cv::Size size(camera.width, camera.height);
   io::Photograph photograph = io::read_photograph(files_[view]);
   const cv::Size stored = photograph.pixels.size();
-  texture::ViewImage result;
+  ViewImage result;
   result.color = resized_image(io::in_8_bits(photograph.pixels, bit_depth_), size);
   photograph.pixels.release();
   leave_out(opaque_at(photograph.opaque, size), result.usable);
   if (choice_ == MaskChoice::black_border)
-    leave_out(texture::outside_black_border(result.color), result.usable);
+    leave_out(outside_black_border(result.color), result.usable);
   if (masks_[view].empty()) return result;
   const cv::Mat1w labels = io::read_label_image(masks_[view]);
   io::check_mask_shape(masks_[view], labels.size(), stored);
@@ -167,4 +169,4 @@ texture::ViewImage Photographs::load(std::size_t view) const {
   return result;
 }
 
-}  // namespace axial::apps
+}  // namespace axial::texture

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/parse_number.h"
+#include "base/setting_names.h"
+#include "base/split.h"
+#include "base/version.h"
+#include "io/images/bit_depth.h"
+#include "io/openmvs/scene_options.h"
+#include "settings.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The values of the command line before they are checked and converted.
+struct Raw {
+  std::string input, output, mesh, up, mask_path, views_file;
+  io::SceneOptions scene;
+  int ignore_mask_label = -1;
+};
+
+constexpr SettingName kOptions[] = {
+    {"max_memory", "--max-memory"},     {"mask_folder", "--mask-path"},
+    {"bit_depth", "--bit-depth"},       {"ground_sample_distance", "--ground-sample-distance"},
+    {"contour_interval", "--contours"}, {"epsg", "--epsg"}};
+
+void declare_io(OptionList& list, Raw& raw, Settings& settings) {
+  list.add("input-file,i", &raw.input, "scene with cameras and images")
+      .add("mesh-file,m", &raw.mesh,
+           "mesh to map: PLY, textured PLY, OBJ or GLB (<input>.ply); a mesh without textures is "
+           "textured first, as by TextureMesh")
+      .add("output-file,o", &raw.output, "begin of the names of the maps (<input>_map)")
+      .add_with_default("max-memory", &settings.max_memory,
+                        "largest memory to use [MB] (0: 70 % of the free memory)");
+}
+
+void declare_map(OptionList& list, Raw& raw, Settings& settings) {
+  list.add_with_default("ground-sample-distance", &settings.pixel,
+                        "width of a pixel of the maps [m] (0: the median width of a photograph's "
+                        "pixel on the mesh, rounded to two digits)")
+      .add("gsd", &settings.pixel, "the same as --ground-sample-distance")
+      .add("up", &raw.up,
+           "direction of the heights in the world, X,Y,Z (default: z if the scene has an offset or "
+           "with --epsg, otherwise the normal of the plane that fits the mesh best)")
+      .add_with_default("epsg", &settings.epsg,
+                        "EPSG code of the coordinate reference system of the scene, a projected "
+                        "one in metres (0: none)")
+      .add_switch("hillshade", &settings.hillshade, "write a picture of the relief, too")
+      .add_with_default("contours", &settings.contours,
+                        "write contour lines with this difference of heights [m] (0: none)");
+}
+
+void declare_photographs(OptionList& list, Raw& raw, Settings& settings) {
+  list.add_with_default(
+          "ignore-mask-label", &raw.ignore_mask_label,
+          "mask value to leave out; -1: no masks, but the black borders that undistortion leaves "
+          "are left out (default with --mask-path: 0); -2: all pixels are used")
+      .add("mask-path", &raw.mask_path,
+           "folder with a mask for every image: a.mask.png, a.jpg.png, a_mask.png or a.png for "
+           "a.jpg, in the same subfolders as the images");
+  io::declare_bit_depth(list, settings.photographs.bit_depth);
+}
+
+template <class T>
+void check_range(const char* name, T value, T low, T high) {
+  if (!(value >= low && value <= high))
+    fail("--{} {}: must be from {} to {}", name, value, low, high);
+}
+
+void check_values(const Raw& raw, const Settings& settings) {
+  check_range("ground-sample-distance", settings.pixel, 0.0, 1e6);
+  check_range("epsg", settings.epsg, 0, 1 << 20);
+  check_range("contours", settings.contours, 0.0, 1e6);
+  check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
+  check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
+  io::check_bit_depth(settings.photographs.bit_depth, "--bit-depth");
+}
+
+std::optional<Eigen::Vector3d> up_of(const std::string& text, int epsg) {
+  if (text.empty()) return {};
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  const auto parts = split(text, ',');
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto number = parts.size() == 3 ? parse_finite<double>(parts[k]) : std::nullopt;
+    if (!number) fail("--up {}: must be three numbers X,Y,Z", text);
+    up[static_cast<Eigen::Index>(k)] = *number;
+  }
+  if (!(up.norm() > 0) || !std::isfinite(up.norm())) fail("--up {}: is no direction", text);
+  if (epsg > 0 && !(up.z() > 0 && up.head<2>().isZero(0)))
+    fail("--up {}: must be 0,0,1 with --epsg, whose heights are along z", text);
+  return up;
+}
+
+void take_masks(const Options& options, const Raw& raw, texture::PhotographOptions& photographs) {
+  const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
+  const int label = masks_given ? 0 : raw.ignore_mask_label;
+  photographs.masks = label >= 0    ? texture::MaskChoice::label
+                      : label == -1 ? texture::MaskChoice::black_border
+                                    : texture::MaskChoice::none;
+  photographs.mask_label = label;
+  photographs.mask_folder = in_working_folder(options.parsed.common, raw.mask_path);
+  photographs.views_file = in_working_folder(options.parsed.common, raw.views_file);
+  photographs.name_of = option_of;
+}
+
+void convert(const Raw& raw, Options& options) {
+  Settings& settings = options.settings;
+  const CommonOptions& common = options.parsed.common;
+  settings.scene = io::scene_files(raw.scene, raw.input, common);
+  const fs::path& scene = settings.scene.scene;
+  settings.mesh = raw.mesh.empty() ? fs::path(scene).replace_extension(".ply")
+                                   : in_working_folder(common, raw.mesh);
+  settings.output = raw.output.empty()
+                        ? scene.parent_path() / (scene.stem().string() + "_map")
+                        : output_in_working_folder(common, raw.output, "--output-file");
+  settings.up = up_of(raw.up, settings.epsg);
+  take_masks(options, raw, settings.photographs);
+}
+
+}  // namespace
+
+std::string option_of(std::string_view setting) {
+  return name_in(kOptions, setting);
+}
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  Raw raw;
+  ProgramOptions program{
+      "MapSurface",
+      "makes height maps and orthomosaics of a mesh from photographs, in air and "
+      "under water",
+      OptionList("Map options")};
+  program.version = version_line(program.name);
+  declare_io(program.visible, raw, options.settings);
+  io::declare_scene_options(program.visible, raw.scene);
+  declare_map(program.visible, raw, options.settings);
+  declare_photographs(program.visible, raw, options.settings);
+  program.hidden.add("views-file", &raw.views_file,
+                     "text file with the IDs or names of the images to use, one per line");
+  options.parsed = parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  check_values(raw, options.settings);
+  convert(raw, options);
+  return options;
+}
+
+}  // namespace axial::apps

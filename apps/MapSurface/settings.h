@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/program.h"
+#include "io/openmvs/scene_with_cameras.h"
+#include "texture/photographs.h"
+
+namespace axial::apps {
+
+struct Settings {
+  io::SceneFiles scene;
+  std::filesystem::path mesh;
+  std::filesystem::path output;       // the names of the maps without ".dem.tif" and so on
+  std::optional<Eigen::Vector3d> up;  // in the world; empty: see map_frame() in main.cpp
+  double pixel = 0;                   // of the map [m]; 0: from the photographs
+  int epsg = 0;                       // 0: no coordinate reference system
+  bool hillshade = false;
+  double contours = 0;  // height between contour lines [m]; 0: none
+  texture::PhotographOptions photographs;
+  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
+};
+
+struct Options {
+  ParsedOptions parsed;
+  Settings settings;
+};
+
+// Parses and checks the command line. Error for an unknown option and for a value out of range.
+Options parse_command_line(int argc, const char* const* argv);
+
+// The name by which messages call a setting of a library: the name of the option.
+std::string option_of(std::string_view setting);
+
+}  // namespace axial::apps

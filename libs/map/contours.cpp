@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/contours.h"
+
+#include <gdal_alg.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+
+#include <memory>
+
+#include "base/error.h"
+#include "map/geotiff.h"
+#include "private/gdal_calls.h"
+
+namespace axial::map {
+
+void write_contours(const std::filesystem::path& heights, double interval,
+                    const std::filesystem::path& path) {
+  const GdalErrors errors;
+  const DatasetPtr map(GDALOpen(heights.c_str(), GA_ReadOnly));
+  errors.require(map != nullptr, heights.string());
+  DatasetPtr file(
+      GDALCreate(GDALGetDriverByName("GeoJSON"), path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  errors.require(file != nullptr, path.string());
+  const GdalOptions layer_options{{"COORDINATE_PRECISION", "4"}, {"WRITE_NAME", "NO"}};
+  const OGRLayerH layer = GDALDatasetCreateLayer(
+      file.get(), "contours", GDALGetSpatialRef(map.get()), wkbLineString, layer_options.list());
+  errors.require(layer != nullptr, path.string());
+  const auto add_field = [&](const char* name, OGRFieldType type) {
+    const std::unique_ptr<std::remove_pointer_t<OGRFieldDefnH>, void (*)(OGRFieldDefnH)> field(
+        OGR_Fld_Create(name, type), OGR_Fld_Destroy);
+    return OGR_L_CreateField(layer, field.get(), TRUE) == OGRERR_NONE;
+  };
+  errors.require(add_field("ID", OFTInteger) && add_field("height", OFTReal), path.string());
+  const GdalOptions options{{"LEVEL_INTERVAL", fmt::format("{}", interval)},
+                            {"ID_FIELD", "0"},
+                            {"ELEV_FIELD", "1"},
+                            {"NODATA", fmt::format("{}", kNoHeight)}};
+  const CPLErr done = GDALContourGenerateEx(GDALGetRasterBand(map.get(), 1), layer, options.list(),
+                                            nullptr, nullptr);
+  file.reset();
+  errors.require(done == CE_None, path.string());
+}
+
+}  // namespace axial::map

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The axes of a map and its pixel grid.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "base/setting_names.h"
+#include "scene/local_frame.h"
+#include "scene/mesh.h"
+
+namespace axial::map {
+
+// The frame of a map: x to the right, y to the top of the map, z (height) towards the viewer. All
+// lengths are in metres. A georeferenced map has x = east and y = north.
+struct MapFrame {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // rows: x, y and z in the frame of the mesh
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    // the origin of the mesh's frame [map]
+
+  // The map coordinates of the point `x` in the frame of the mesh.
+  Eigen::Vector3d to_map(const Eigen::Vector3d& x) const { return axes * x + origin; }
+};
+
+// The map whose height axis is `up` [frame of the mesh, not 0, of any length]. Let u be `up` with
+// the length 1. The map's x axis is the projection of the world's x axis onto the plane normal to
+// u, or the projection of the world's y axis if u is less than 45 degrees from the world's x axis
+// or from its opposite. The map's y axis is the vector product of u and the map's x axis. So with
+// `up` = (0, 0, 1) the map has the axes of the world. The origin of the map is the origin of the
+// world. `mesh_frame`: the frame of the mesh.
+MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame);
+
+// The unit normal of the plane that is fitted to the mesh by least squares of the distances of all
+// points of its surface, weighted by area. Of the two directions, the one towards the mean of the
+// camera centres `centres` [frame of the mesh] is returned. Error for a mesh whose area is 0, and
+// if the camera centres lie in the plane.
+Eigen::Vector3d fitted_up(const Mesh& mesh, std::span<const Eigen::Vector3d> centres);
+
+// The pixels of a map. Pixel (column, row) covers the square from (left + column * pixel, top - row
+// * pixel) to (left + (column + 1) * pixel, top - (row + 1) * pixel) [map]. Its centre is the
+// middle of this square, and all values of the pixel but its colour belong to the centre.
+struct MapGrid {
+  double left = 0, top = 0;  // the upper left corner of the upper left pixel [map, m]
+  double pixel = 1;          // width of a pixel, the ground sample distance [m]
+  int columns = 0, rows = 0;
+
+  std::int64_t pixels() const { return std::int64_t{columns} * rows; }
+};
+
+// The smallest grid that contains all vertices of the mesh up to a thousandth of a pixel, because
+// vertices are rounded to float. The corners of the grid are at multiples of `pixel` in map
+// coordinates, so that the pixels of maps with the same `pixel` coincide. Error if a side has more
+// than 1,000,000 pixels; it calls `pixel` by name_of("ground_sample_distance"). Precondition: the
+// mesh has vertices, and `pixel` is above 0.
+MapGrid grid_around(const Mesh& mesh, const MapFrame& frame, double pixel,
+                    SettingNames name_of = own_name);
+
+// The coordinate reference system of an EPSG code, as WKT. Error that calls `code` by
+// name_of("epsg") if PROJ does not know the code, and if the system is not a projected one with
+// metres as unit.
+std::string crs_of_epsg(int code, SettingNames name_of = own_name);
+
+}  // namespace axial::map

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/geotiff.h"
+
+#include <ogr_srs_api.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "private/gdal_calls.h"
+
+namespace axial::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kTile = 512;
+
+struct KindFacts {
+  GDALDataType type;
+  int bands, cv_type;
+  std::optional<double> no_value;
+  const char* averaging;  // of reduced copies
+};
+
+KindFacts facts_of(MapKind kind) {
+  switch (kind) {
+    case MapKind::heights:
+      return {GDT_Float32, 1, CV_32FC1, kNoHeight, "AVERAGE"};
+    case MapKind::colors:
+      return {GDT_Byte, 4, CV_8UC4, {}, "AVERAGE"};
+    case MapKind::counts:
+      return {GDT_UInt16, 1, CV_16UC1, kNoCount, "NEAREST"};
+    case MapKind::shades:
+      break;
+  }
+  return {GDT_Byte, 1, CV_8UC1, 0, "AVERAGE"};
+}
+
+// The file beside `path` that gets the blocks.
+fs::path blocks_beside(fs::path path) {
+  return path.replace_extension(".blocks.tif");
+}
+
+void set_georeference(GDALDatasetH file, const MapGrid& grid, const std::string& crs) {
+  std::array<double, 6> transform{grid.left, grid.pixel, 0, grid.top, 0, -grid.pixel};
+  GDALSetGeoTransform(file, transform.data());
+  if (!crs.empty()) GDALSetProjection(file, crs.c_str());
+}
+
+// Factors of the reduced copies: halves until the longest side fits one tile.
+std::vector<int> reductions(const MapGrid& grid) {
+  std::vector<int> factors;
+  const int longest = std::max(grid.columns, grid.rows);
+  for (int factor = 2; longest > kTile * (factor / 2); factor *= 2) factors.push_back(factor);
+  return factors;
+}
+
+}  // namespace
+
+struct GeoTiff::State {
+  fs::path path;
+  KindFacts facts;
+  MapGrid grid;
+  AtomicFile blocks;
+  DatasetPtr file;
+
+  std::string name() const { return path.string(); }
+};
+
+GeoTiff::GeoTiff(fs::path path, MapKind kind, const MapGrid& grid, const std::string& crs) {
+  state_.reset(new State{path, facts_of(kind), grid, AtomicFile(blocks_beside(path)), {}});
+  State& s = *state_;
+  const GdalErrors errors;
+  const GdalOptions options{
+      {"TILED", "YES"},      {"BLOCKXSIZE", "512"},
+      {"BLOCKYSIZE", "512"}, {"COMPRESS", "DEFLATE"},
+      {"ZLEVEL", "1"},       {"SPARSE_OK", "TRUE"},
+      {"BIGTIFF", "YES"},    {"INTERLEAVE", "PIXEL"},
+      {"ALPHA", "YES"},      {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
+  s.file.reset(GDALCreate(GDALGetDriverByName("GTiff"), s.blocks.temporary().c_str(), grid.columns,
+                          grid.rows, s.facts.bands, s.facts.type, options.list()));
+  errors.require(s.file != nullptr, s.name());
+  set_georeference(s.file.get(), grid, crs);
+  for (int band = 1; band <= s.facts.bands && s.facts.no_value; ++band)
+    GDALSetRasterNoDataValue(GDALGetRasterBand(s.file.get(), band), *s.facts.no_value);
+  errors.require(true, s.name());
+}
+
+GeoTiff::~GeoTiff() {
+  const GdalErrors unreported;  // without finish() the blocks are not needed
+  state_.reset();
+}
+
+void GeoTiff::write(const cv::Rect& at, const cv::Mat& pixels) {
+  State& s = *state_;
+  if (pixels.type() != s.facts.cv_type || pixels.size() != at.size())
+    fail("{}: a block has the wrong type or size", s.name());
+  const GdalErrors errors;
+  const auto bytes = static_cast<GSpacing>(pixels.elemSize1());
+  const CPLErr done = GDALDatasetRasterIOEx(s.file.get(), GF_Write, at.x, at.y, at.width, at.height,
+                                            pixels.data, at.width, at.height, s.facts.type,
+                                            s.facts.bands, nullptr, bytes * s.facts.bands,
+                                            static_cast<GSpacing>(pixels.step[0]), bytes, nullptr);
+  errors.require(done == CE_None, s.name());
+}
+
+void GeoTiff::finish() {
+  State& s = *state_;
+  const GdalErrors errors;
+  std::vector<int> factors = reductions(s.grid);
+  const bool reduced =
+      factors.empty() ||
+      GDALBuildOverviews(s.file.get(), s.facts.averaging, static_cast<int>(factors.size()),
+                         factors.data(), 0, nullptr, nullptr, nullptr) == CE_None;
+  GDALFlushCache(s.file.get());
+  errors.require(reduced, s.name());
+  const GdalOptions options{{"COMPRESS", "DEFLATE"},      {"PREDICTOR", "YES"},
+                            {"BLOCKSIZE", "512"},         {"BIGTIFF", "IF_SAFER"},
+                            {"OVERVIEWS", "AUTO"},        {"OVERVIEW_COMPRESS", "DEFLATE"},
+                            {"OVERVIEW_PREDICTOR", "YES"}};
+  DatasetPtr map(GDALCreateCopy(GDALGetDriverByName("COG"), s.path.c_str(), s.file.get(), 1,
+                                options.list(), nullptr, nullptr));
+  errors.require(map != nullptr, s.name());
+  map.reset();
+  errors.require(true, s.name());
+  s.file.reset();
+}
+
+StoredMap read_map(const fs::path& path, int longest_side) {
+  const GdalErrors errors;
+  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
+  errors.require(file != nullptr, path.string());
+  StoredMap map;
+  std::array<double, 6> transform{};
+  GDALGetGeoTransform(file.get(), transform.data());
+  map.grid = {transform[0], transform[3], transform[1], GDALGetRasterXSize(file.get()),
+              GDALGetRasterYSize(file.get())};
+  map.crs = GDALGetProjectionRef(file.get());
+  const int bands = GDALGetRasterCount(file.get());
+  const GDALRasterBandH first = GDALGetRasterBand(file.get(), 1);
+  const GDALDataType type = GDALGetRasterDataType(first);
+  int is_stated = 0;
+  const double no_value = GDALGetRasterNoDataValue(first, &is_stated);
+  if (is_stated) map.no_value = no_value;
+  const int depth = type == GDT_Float32 ? CV_32F : type == GDT_UInt16 ? CV_16U : CV_8U;
+  const int longest = std::max(map.grid.columns, map.grid.rows);
+  const double scale = std::min(1.0, static_cast<double>(longest_side) / longest);
+  const auto reduced = [&](int side) { return std::max(1, static_cast<int>(side * scale + 0.5)); };
+  map.pixels.create(reduced(map.grid.rows), reduced(map.grid.columns), CV_MAKETYPE(depth, bands));
+  GDALRasterIOExtraArg how;
+  INIT_RASTERIO_EXTRA_ARG(how);
+  if (bands == 4) how.eResampleAlg = GRIORA_Average;
+  const auto bytes = static_cast<GSpacing>(map.pixels.elemSize1());
+  const CPLErr done = GDALDatasetRasterIOEx(
+      file.get(), GF_Read, 0, 0, map.grid.columns, map.grid.rows, map.pixels.data, map.pixels.cols,
+      map.pixels.rows,
+      depth == CV_32F   ? GDT_Float32
+      : depth == CV_16U ? GDT_UInt16
+                        : GDT_Byte,
+      bands, nullptr, bytes * bands, static_cast<GSpacing>(map.pixels.step[0]), bytes, &how);
+  errors.require(done == CE_None, path.string());
+  return map;
+}
+
+}  // namespace axial::map

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "scene/camera_model.h"
+#include "scene/mesh.h"
+#include "scene/pose.h"
+
+namespace axial::map {
+
+// A photograph: its camera, and its pose in the frame of the mesh.
+struct Photo {
+  CameraModel camera;
+  Pose pose;
+};
+
+// The median width [m] of a photograph's pixel on the mesh, to choose the pixel of a map. The
+// places are `places` points that are spread evenly over the area of the mesh. At each place the
+// photograph counts that shows the place best: with the largest product of the area of a piece of
+// surface in the image and the squared cosine of the angle between its normal and the path of
+// light, which is the measure of TextureMesh. The width is the square root of the area on the
+// surface that a pixel shows, as the exact camera projects it. Photographs that other parts of the
+// mesh hide from the place count, too. Error if no place is in a photograph that faces it.
+double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int places = 2000);
+
+// `width` rounded to two significant digits. Precondition: `width` is above 0.
+double rounded_width(double width);
+
+}  // namespace axial::map

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to libs/map: GDAL's errors as Errors, its files and lists of options.
+#pragma once
+
+#include <cpl_error.h>
+#include <cpl_string.h>
+#include <gdal.h>
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace axial::map {
+
+// Registers GDAL's drivers and limits its cache, once.
+void start_gdal();
+
+// Collects the errors of GDAL's calls on this thread while it exists, instead of printing them.
+class GdalErrors {
+ public:
+  GdalErrors();
+  ~GdalErrors();
+  GdalErrors(const GdalErrors&) = delete;
+  GdalErrors& operator=(const GdalErrors&) = delete;
+
+  // The first error since the object exists; empty if there was none.
+  const std::string& first() const { return first_; }
+  // Throws an Error "<subject>: <first error>" if there was an error, or if `works` is false.
+  void require(bool works, const std::string& subject) const;
+
+ private:
+  static void CPL_STDCALL collect(CPLErr level, CPLErrorNum number, const char* message);
+
+  std::string first_;
+};
+
+// GDAL's words "KEY=VALUE".
+class GdalOptions {
+ public:
+  GdalOptions(std::initializer_list<std::pair<const char*, std::string>> pairs) {
+    for (const auto& [key, value] : pairs) list_ = CSLSetNameValue(list_, key, value.c_str());
+  }
+  ~GdalOptions() { CSLDestroy(list_); }
+  GdalOptions(const GdalOptions&) = delete;
+  GdalOptions& operator=(const GdalOptions&) = delete;
+  char** list() const { return list_; }
+
+ private:
+  char** list_ = nullptr;
+};
+
+// Closes a file of GDAL. Errors while it is closed are those of the last writes.
+struct Close {
+  void operator()(GDALDatasetH file) const { GDALClose(file); }
+};
+using DatasetPtr = std::unique_ptr<std::remove_pointer_t<GDALDatasetH>, Close>;
+
+}  // namespace axial::map

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/write_maps.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/images/image.h"
+#include "map/contours.h"
+#include "map/geotiff.h"
+#include "map/overview.h"
+
+namespace axial::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kJpegQuality = 92;
+
+// In the order of MapFiles::all().
+constexpr fs::path MapFiles::*kMembers[] = {&MapFiles::heights,  &MapFiles::colors,
+                                            &MapFiles::counts,   &MapFiles::shades,
+                                            &MapFiles::contours, &MapFiles::picture};
+
+// The open maps. Blocks are written by one thread at a time.
+class OpenMaps {
+ public:
+  OpenMaps(const MapFiles& files, const MapGrid& grid, const std::string& crs) {
+    const auto open = [&](const fs::path& path, MapKind kind) {
+      return path.empty() ? nullptr : std::make_unique<GeoTiff>(path, kind, grid, crs);
+    };
+    heights_ = open(files.heights, MapKind::heights);
+    colors_ = open(files.colors, MapKind::colors);
+    counts_ = open(files.counts, MapKind::counts);
+    shades_ = open(files.shades, MapKind::shades);
+  }
+
+  void write(const MapBlock& block) {
+    const std::lock_guard lock(mutex_);
+    if (block.is_empty) return;
+    if (heights_) heights_->write(block.pixels, block.heights);
+    if (colors_) colors_->write(block.pixels, block.colors);
+    if (counts_) counts_->write(block.pixels, block.counts);
+    if (shades_) shades_->write(block.pixels, block.shades);
+    report_.surface += cv::countNonZero(block.heights != kNoHeight);
+    if (block.colors.empty()) return;
+    cv::Mat1b alpha;
+    cv::extractChannel(block.colors, alpha, 3);
+    report_.colored += cv::countNonZero(alpha);
+  }
+
+  // One file after the other: GDAL shares its cache between open files, and a thread that needs
+  // room in the cache writes blocks of the files of other threads.
+  MapReport finish(const ProgressSink& progress) {
+    std::vector<std::unique_ptr<GeoTiff>*> maps;
+    for (auto* map : {&heights_, &colors_, &counts_, &shades_})
+      if (*map) maps.push_back(map);
+    ProgressCounter counter(progress, maps.size());
+    for (auto* map : maps) {
+      (*map)->finish();
+      map->reset();
+      counter.add();
+    }
+    return report_;
+  }
+
+ private:
+  std::unique_ptr<GeoTiff> heights_, colors_, counts_, shades_;
+  std::mutex mutex_;
+  MapReport report_;
+};
+
+// How many blocks fit into memory at the same time, with the lists of the faces.
+std::size_t blocks_at_once(const MapContent& content, const WriteOptions& options, int samples) {
+  const std::uint64_t fixed = kCacheBytes + FaceBins::bytes(content.mesh.mesh, content.frame,
+                                                            content.grid, options.block_size);
+  const std::uint64_t each = bytes_of_block(options.block_size, samples);
+  options.memory.require(fixed + each, fmt::format("a map of {} x {} pixels", content.grid.columns,
+                                                   content.grid.rows));
+  const std::uint64_t left = options.memory.left();
+  const std::uint64_t fit = left > fixed ? (left - fixed) / each : 1;
+  return static_cast<std::size_t>(std::clamp<std::uint64_t>(fit, 1, thread_count()));
+}
+
+void write_picture(const fs::path& path, const fs::path& colors, const WriteOptions& options) {
+  const StoredMap map = read_map(colors, options.longest_side);
+  const double reduction =
+      static_cast<double>(map.grid.columns) / static_cast<double>(map.pixels.cols);
+  io::write_jpeg(path,
+                 draw_overview(map.pixels, {map.grid.pixel * reduction, options.is_georeferenced}),
+                 kJpegQuality);
+}
+
+MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
+                    const StageProgress& progress) {
+  const auto sink = [&](const char* stage) { return progress ? progress(stage) : ProgressSink{}; };
+  const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
+  const std::size_t at_once = blocks_at_once(content, options, samples);
+  OpenMaps maps(files, content.grid, options.crs);
+  {
+    const FaceBins bins(content.mesh.mesh, content.frame, content.grid, options.block_size);
+    ProgressCounter counter(sink("Maps"), bins.blocks());
+    for_each_in_flight(bins.blocks(), at_once, [&](std::size_t b) {
+      maps.write(make_block(content, bins, b, samples));
+      counter.add();
+    });
+  }
+  const MapReport report = maps.finish(sink("Files"));
+  if (!files.contours.empty())
+    write_contours(files.heights, options.contour_interval, files.contours);
+  if (!files.picture.empty()) write_picture(files.picture, files.colors, options);
+  return report;
+}
+
+}  // namespace
+
+std::vector<fs::path> MapFiles::all() const {
+  std::vector<fs::path> paths;
+  for (const auto member : kMembers)
+    if (!(this->*member).empty()) paths.push_back(this->*member);
+  return paths;
+}
+
+MapReport write_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
+                     const StageProgress& progress) {
+  check_content(content);
+  if (!files.colors.empty() && content.mesh.textures.empty()) fail("the mesh has no textures");
+  if (!files.counts.empty() && content.views.empty()) fail("the numbers of views are missing");
+  if (!files.contours.empty() && (files.heights.empty() || !(options.contour_interval > 0)))
+    fail("{} {}: contour lines need an interval above 0 and the map of heights",
+         options.name_of("contour_interval"), options.contour_interval);
+  if (!files.picture.empty() && files.colors.empty()) fail("a picture needs the map of colours");
+  for (const fs::path& path : files.all())  // of the blocks, too
+    remove_abandoned(path.parent_path(), path.stem().string());
+  MapReport report;
+  write_together(files.all(), [&](const std::vector<fs::path>& temporaries) {
+    MapFiles renamed = files;
+    auto next = temporaries.begin();
+    for (const auto member : kMembers)
+      if (!(renamed.*member).empty()) renamed.*member = *next++;
+    report = make_maps(renamed, content, options, progress);
+  });
+  return report;
+}
+
+}  // namespace axial::map

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/frame.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "support/error_of.h"
+
+namespace axial::map {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(MapFrame, HasTheAxesOfTheWorldIfZIsUp) {
+  const MapFrame frame = frame_with_up({0, 0, 5}, {{500000, 4500000, -20}});
+  EXPECT_EQ(frame.axes, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(frame.origin, Eigen::Vector3d(500000, 4500000, -20));
+}
+
+TEST(MapFrame, IsRightHandedWithUpAsHeight) {
+  for (const Eigen::Vector3d& up :
+       {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(1, 0, 0),
+        Eigen::Vector3d(-1, 0.2, 0.3), Eigen::Vector3d(0.3, 0.5, -2)}) {
+    const MapFrame frame = frame_with_up(up, {{1, 2, 3}});
+    EXPECT_LT((frame.axes * frame.axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_NEAR(frame.axes.determinant(), 1, 1e-14);
+    EXPECT_LT((frame.axes.row(2).transpose() - up.normalized()).norm(), 1e-14);
+    // The origin of the world is at the origin of the map.
+    EXPECT_LT(frame.to_map({-1, -2, -3}).norm(), 1e-14);
+    const bool along_x = std::abs(up.normalized().x()) > std::sqrt(0.5);
+    EXPECT_GT(frame.axes(0, along_x ? 1 : 0), 0.1);
+  }
+}
+
+// A plate with a finely meshed corner. The plane of its vertices would be tilted, that of its
+// surface is not.
+TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1).normalized();
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+  const auto height = [](double x, double y) { return 0.2 * std::sin(8 * x) * std::cos(9 * y); };
+  Mesh mesh;
+  const auto add_patch = [&](double x0, double x1, int cells) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto n = static_cast<std::uint32_t>(cells);
+    for (std::uint32_t j = 0; j <= n; ++j)
+      for (std::uint32_t i = 0; i <= n; ++i) {
+        const double x = x0 + (x1 - x0) * i / n, y = -1 + 2.0 * j / n;
+        mesh.vertices.push_back((turn * Eigen::Vector3d(x, y, 0.01 * height(x, y))).cast<float>());
+      }
+    for (std::uint32_t j = 0; j < n; ++j)
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t a = first + j * (n + 1) + i;
+        mesh.faces.push_back({a, a + 1, a + n + 2});
+        mesh.faces.push_back({a, a + n + 2, a + n + 1});
+      }
+  };
+  add_patch(-1, 0.8, 20), add_patch(0.8, 1, 60);
+  const std::vector<Eigen::Vector3d> above{5 * normal}, below{-5 * normal};
+  const double angle = std::acos(std::min(1.0, fitted_up(mesh, above).dot(normal)));
+  EXPECT_LT(angle, 2e-3);
+  EXPECT_LT((fitted_up(mesh, above) + fitted_up(mesh, below)).norm(), 1e-12);
+}
+
+TEST(MapGrid, IsTheSmallestGridOnMultiplesOfThePixel) {
+  Mesh mesh;
+  mesh.vertices = {{0.15f, 0.25f, 0}, {1.05f, 0.25f, 1}, {0.5f, 2.55f, 0}};
+  const MapFrame frame = frame_with_up({0, 0, 1}, {{500000, 4500000, 0}});
+  const MapGrid grid = grid_around(mesh, frame, 0.1);
+  EXPECT_NEAR(grid.left, 500000.1, 1e-9);
+  EXPECT_NEAR(grid.top, 4500002.6, 1e-9);
+  EXPECT_EQ(grid.columns, 10);
+  EXPECT_EQ(grid.rows, 24);
+  EXPECT_THAT(test::error_of([&] { grid_around(mesh, frame, 1e-6); }),
+              HasSubstr("ground_sample_distance 1e-06: the map would have 900000 x 2300000"));
+}
+
+TEST(Crs, IsAProjectedSystemInMetres) {
+  EXPECT_THAT(crs_of_epsg(32631), HasSubstr("UTM zone 31N"));
+  EXPECT_THAT(test::error_of([] { crs_of_epsg(4326); }), HasSubstr("epsg 4326: is no projected"));
+  EXPECT_THAT(test::error_of([] { crs_of_epsg(2263); }), HasSubstr("epsg 2263: is no projected"));
+  EXPECT_THAT(test::error_of([] { crs_of_epsg(99); }), HasSubstr("epsg 99: is no coordinate"));
+}
+
+}  // namespace
+}  // namespace axial::map
