@@ -7,12 +7,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
+#include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
@@ -46,10 +48,21 @@ map::MapFiles map_files(const Settings& settings) {
   return files;
 }
 
+// The memory [bytes] that reading the mesh needs, with the textures that a PLY names.
+std::uint64_t bytes_to_read(const fs::path& mesh) {
+  std::uint64_t bytes = io::bytes_to_read_mesh(mesh), largest = 0;
+  if (lower_extension(mesh) != ".ply" || !io::is_textured_mesh(mesh)) return bytes;
+  for (const std::string& texture : io::textures_of_ply(mesh)) {
+    const io::ImageHeader header = io::read_image_header(mesh.parent_path() / texture);
+    bytes += 3 * static_cast<std::uint64_t>(header.size.area());
+    largest = std::max(largest, io::bytes_needed(header));
+  }
+  return bytes + largest;
+}
+
 // The mesh, with its textures if it has some.
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  memory_of(settings).require(io::bytes_to_read_mesh(settings.mesh),
-                              "reading " + settings.mesh.string());
+  memory_of(settings).require(bytes_to_read(settings.mesh), "reading " + settings.mesh.string());
   TexturedMesh mesh;
   if (io::is_textured_mesh(settings.mesh))
     mesh = io::read_textured_mesh(settings.mesh, frame);
@@ -83,6 +96,7 @@ struct PlacedMap {
 
 std::vector<Eigen::Vector3d> centres_of(const std::vector<texture::View>& views) {
   std::vector<Eigen::Vector3d> centres;
+  centres.reserve(views.size());
   for (const texture::View& view : views) centres.push_back(view.pose.centre);
   return centres;
 }
@@ -91,6 +105,7 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
                 const std::vector<texture::View>& views) {
   if (settings.pixel > 0) return settings.pixel;
   std::vector<map::Photo> photos;
+  photos.reserve(views.size());
   for (const texture::View& view : views) photos.push_back({view.camera, view.pose});
   return map::rounded_width(map::median_pixel_width(mesh, photos));
 }
@@ -99,12 +114,13 @@ double pixel_of(const Settings& settings, const Mesh& mesh,
 // has an offset, or if the user names the system.
 PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame,
                     const std::vector<texture::View>& views) {
+  const bool has_system = !frame.is_world() || settings.epsg > 0;
+  const Eigen::Vector3d up = settings.up  ? *settings.up
+                             : has_system ? Eigen::Vector3d::UnitZ()
+                                          : map::fitted_up(mesh, centres_of(views));
   PlacedMap map;
-  map.is_georeferenced = (!frame.is_world() || settings.epsg > 0) && !settings.up;
-  const Eigen::Vector3d up = settings.up            ? *settings.up
-                             : map.is_georeferenced ? Eigen::Vector3d::UnitZ()
-                                                    : map::fitted_up(mesh, centres_of(views));
   map.frame = map::frame_with_up(up, frame);
+  map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
   map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, views), option_of);
   const auto& axes = map.frame.axes;
   log_info("map of {} x {} pixels of {:.4g} m", map.grid.columns, map.grid.rows, map.grid.pixel);

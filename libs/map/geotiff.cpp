@@ -64,6 +64,9 @@ std::vector<int> reductions(const MapGrid& grid) {
 }  // namespace
 
 struct GeoTiff::State {
+  State(const fs::path& map, MapKind kind, const MapGrid& map_grid)
+      : path(map), facts(facts_of(kind)), grid(map_grid), blocks(blocks_beside(map)) {}
+
   fs::path path;
   KindFacts facts;
   MapGrid grid;
@@ -73,16 +76,21 @@ struct GeoTiff::State {
   std::string name() const { return path.string(); }
 };
 
-GeoTiff::GeoTiff(fs::path path, MapKind kind, const MapGrid& grid, const std::string& crs) {
-  state_.reset(new State{path, facts_of(kind), grid, AtomicFile(blocks_beside(path)), {}});
+GeoTiff::GeoTiff(const fs::path& path, MapKind kind, const MapGrid& grid, const std::string& crs)
+    : state_(std::make_unique<State>(path, kind, grid)) {
   State& s = *state_;
   const GdalErrors errors;
-  const GdalOptions options{
-      {"TILED", "YES"},      {"BLOCKXSIZE", "512"},
-      {"BLOCKYSIZE", "512"}, {"COMPRESS", "DEFLATE"},
-      {"ZLEVEL", "1"},       {"SPARSE_OK", "TRUE"},
-      {"BIGTIFF", "YES"},    {"INTERLEAVE", "PIXEL"},
-      {"ALPHA", "YES"},      {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
+  const GdalOptions options{{"TILED", "YES"},
+                            {"BLOCKXSIZE", "512"},
+                            {"BLOCKYSIZE", "512"},
+                            {"COMPRESS", "DEFLATE"},
+                            {"ZLEVEL", "1"},
+                            {"PREDICTOR", s.facts.type == GDT_Float32 ? "3" : "2"},
+                            {"SPARSE_OK", "TRUE"},
+                            {"BIGTIFF", "YES"},
+                            {"INTERLEAVE", "PIXEL"},
+                            {"ALPHA", "YES"},
+                            {"PHOTOMETRIC", s.facts.bands == 4 ? "RGB" : "MINISBLACK"}};
   s.file.reset(GDALCreate(GDALGetDriverByName("GTiff"), s.blocks.temporary().c_str(), grid.columns,
                           grid.rows, s.facts.bands, s.facts.type, options.list()));
   errors.require(s.file != nullptr, s.name());

@@ -40,7 +40,8 @@ class GeoTiff {
  public:
   // `path`: the file to write. `crs`: the coordinate reference system as WKT; empty: none. The
   // geotransform of the file has the upper left corner of `grid` (not the centre of the pixel).
-  GeoTiff(std::filesystem::path path, MapKind kind, const MapGrid& grid, const std::string& crs);
+  GeoTiff(const std::filesystem::path& path, MapKind kind, const MapGrid& grid,
+          const std::string& crs);
   ~GeoTiff();
   GeoTiff(const GeoTiff&) = delete;
   GeoTiff& operator=(const GeoTiff&) = delete;

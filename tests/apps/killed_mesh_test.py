@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ReconstructMesh, RefineMesh and TextureMesh that are killed at several moments: each output is
-complete or absent, and the next run writes the bytes of a run that was not killed."""
+"""ReconstructMesh, RefineMesh, TextureMesh and MapSurface that are killed at several moments: each
+output is complete or absent, and the next run writes the bytes of a run that was not killed."""
 
 import os
 import shutil
@@ -95,6 +95,13 @@ class Killed(Scene):
         folder, other = self.with_mesh()
         self.check(folder, other, "TextureMesh", "-m", "scene_dense_mesh.ply", "--export-type",
                    "ply,glb", "--max-texture-size", "256")
+
+    def test_map(self):
+        folder, other = self.with_mesh()
+        for name in ("dem", "ortho", "views"):  # the blocks of a map, as a killed process leaves them
+            dead = dead_process()
+            write(os.path.join(folder, f"map.{name}.{dead}.tmp.blocks.{dead}.tmp.tif"), b"half")
+        self.check(folder, other, "MapSurface", "-m", "scene_dense_mesh.ply", "-o", "map")
 
     def test_refine(self):
         folder, other = self.with_mesh()

@@ -25,15 +25,17 @@ MapFiles files_in(const fs::path& folder) {
           folder / "m.hillshade.tif", folder / "m.contours.geojson", folder / "m.jpg"};
 }
 
-// The room seen from above, with colours from eight photographs through a flat port.
+// The room seen from above, with colours from eight photographs through a flat port. `levels`: of
+// refined().
 struct RoomMap {
   TexturedMesh mesh;
   std::vector<std::uint16_t> views;
   MapContent content;
 
-  explicit RoomMap(double pixel) : content{mesh, views, {}, {}} {
+  explicit RoomMap(double pixel, int levels = 3) : content{mesh, views, {}, {}} {
     const test::Room room = test::photograph_room(8);
-    mesh = texture::texture_mesh(test::refined(test::room_mesh(), 5), room.views, room.source());
+    mesh =
+        texture::texture_mesh(test::refined(test::room_mesh(), levels), room.views, room.source());
     views.assign(mesh.mesh.faces.size(), 8);
     content.views = views;
     content.frame = frame_with_up({0, 0, 1}, {{500000, 4500000, 0}});
@@ -44,7 +46,7 @@ struct RoomMap {
 // Interpolation changes the waves of the pattern by up to 2 % of their amplitude of 51 levels, as
 // in texture_mesh_test. Half a pixel of displacement of the map would give a PSNR of 36 dB.
 TEST(WriteMaps, ShowTheRoomThroughThePort) {
-  const RoomMap room(0.004);
+  const RoomMap room(0.004, 5);
   const MapFiles files = files_in(test::empty_folder());
   const MapReport report =
       write_maps(files, room.content, {.crs = crs_of_epsg(32631), .contour_interval = 0.15});

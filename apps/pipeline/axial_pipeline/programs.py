@@ -42,6 +42,10 @@ class Programs:
         """`textured`: without extension; see --export-type."""
         return [self.folder / "TextureMesh", "-i", scene, "-m", mesh, "-o", textured, *options]
 
+    def map_surface(self, scene, mesh, output, *options):
+        """`output`: the begin of the names of the maps."""
+        return [self.folder / "MapSurface", "-i", scene, "-m", mesh, "-o", output, *options]
+
     def refine_poses(self, model, lens, housing, output, *options):
         return [self.folder / "RefinePoses", "-i", model, "--lens", lens, "--housing", housing, "-o",
                 output, *options]
