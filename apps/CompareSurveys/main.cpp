@@ -66,16 +66,16 @@ void keep_inputs(const Settings& settings) {
   for (const fs::path& file : outputs) require_writable(file);
 }
 
-bool is_georeferenced(const Settings& settings, const LocalFrame& frame) {
-  return (!frame.is_world() || settings.epsg > 0) && !settings.up;
+// True if the coordinates of the surveys are those of a reference system: if they are far from the
+// origin, or if the user names the system.
+bool has_system(const Settings& settings, const LocalFrame& frame) {
+  return !frame.is_world() || settings.epsg > 0;
 }
 
-// Heights are along z if the coordinates of the surveys are those of a reference system: if they
-// are far from the origin, or if the user names the system.
 map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame) {
   const Eigen::Vector3d up =
       settings.up ? *settings.up
-      : is_georeferenced(settings, frame)
+      : has_system(settings, frame)
           ? Eigen::Vector3d::UnitZ()
           : naming(settings.before, [&] { return compare::upward_direction(mesh); });
   return map::frame_with_up(up, frame);
@@ -93,6 +93,11 @@ void report_registration(const compare::Comparison& comparison) {
   if (r.determined < 6)
     log_warning("the ground determines only {} of 6 directions of motion: it is too level",
                 r.determined);
+  if (r.share_used < 0.5)
+    log_warning(
+        "--align icp: less than half of the ground agrees: are the surveys nearly in one frame, "
+        "and "
+        "of the same scale?");
   if (!r.converged) log_warning("--align icp: did not converge after {} steps", r.iterations);
 }
 
@@ -123,10 +128,10 @@ int run(int argc, char** argv) {
   const LocalFrame frame = frame_of_survey(settings.before);
   const Mesh before = read_survey(settings, settings.before, frame);
   const Mesh after = read_survey(settings, settings.after, frame);
-  facts.is_georeferenced = is_georeferenced(settings, frame);
   facts.aligned = settings.compare.align;
   settings.compare.memory = memory_of(settings);
   const map::MapFrame map_frame = place_map(settings, before, frame);
+  facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);
   const compare::Comparison comparison = naming(settings.after, [&] {
     return compare::compare_surveys(before, after, map_frame, settings.compare);

@@ -10,15 +10,16 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
+#include "map/geotiff.h"
 #include "map/pixel_width.h"
 #include "scene/check_mesh.h"
 
 namespace axial::compare {
 namespace {
 
-// Of all maps at the same time: heights of both surveys, difference, steepness, bend, standard
-// deviation, class, and lists of pixels of a region.
-constexpr std::uint64_t kBytesPerPixel = 36;
+// The most at the same time: height, difference, standard deviation and class, and a list of the
+// pixels of one region, which grows by doubling.
+constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 24;
 
 // The standard deviation of a height is this part of the bend of the surface: meshes with vertices
 // at other places cut off other parts of edges and of furrows.
@@ -64,8 +65,9 @@ void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& 
                     const map::MapGrid& grid, const MemoryAllowance& memory) {
   const std::uint64_t mesh =
       std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
-  memory.require(mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
-                 fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
+  memory.require(
+      map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
+      fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
 }
 
 // The maps of a comparison before the noise is known.
@@ -118,10 +120,9 @@ void fill_sigma(const Maps& maps, Comparison& comparison) {
       comparison.sigma(y, x) = static_cast<float>(std::sqrt(
           noise + kOfBend * kOfBend * std::max(0.0, bend) + squared(maps.registration(y, x))));
     }
-  std::vector<double> parts;
-  for (const float part : maps.registration)
-    if (!std::isnan(part)) parts.push_back(static_cast<double>(part));
-  if (parts.empty()) fail("the surveys do not overlap");
+  std::vector<double> parts = spread_values(maps.registration.size(), [&](int y, int x) {
+    return static_cast<double>(maps.registration(y, x));
+  });
   comparison.registration_sigma = median_of(parts);
 }
 
@@ -166,13 +167,16 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   }
   result.before = height_map(before, frame, result.grid, result.base);
   result.difference = height_map(after, after_frame, result.grid, result.base);
-  const Maps maps = subtract(result);
+  Maps maps = subtract(result);
+  if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
+    fail("the surveys do not overlap");
   const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
   result.noise = options.sigmas
                      ? given_noise(result.difference, maps.steepness,
                                    std::hypot(options.sigmas->before, options.sigmas->after))
                      : estimate_noise(result.difference, maps.steepness, least);
   fill_sigma(maps, result);
+  maps = {};
   result.changes =
       find_changes(result.difference, result.sigma,
                    {result.grid, result.registration, result.noise.correlation}, options.changes);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -34,6 +36,20 @@ Eigen::Vector2d slope_at(const cv::Mat1f& heights, int y, int x, double pixel);
 // differences of heights along both axes [m]. 0 along an axis if a neighbour has no surface.
 // Precondition: the pixel has a height.
 double bend_at(const cv::Mat1f& heights, int y, int x);
+
+// The values of `value_at`(y, x) that are not NaN, at no more than about a million pixels that are
+// spread evenly over a map: for statistics of the whole map.
+template <class ValueAt>
+std::vector<double> spread_values(const cv::Size& size, const ValueAt& value_at) {
+  constexpr double kMost = 1e6;
+  const double pixels = static_cast<double>(size.width) * size.height;
+  const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / kMost))));
+  std::vector<double> values;
+  for (int y = stride / 2; y < size.height; y += stride)
+    for (int x = stride / 2; x < size.width; x += stride)
+      if (const double value = value_at(y, x); !std::isnan(value)) values.push_back(value);
+  return values;
+}
 
 // The median of `values`: of an even number, the upper one of the two in the middle. `values` is
 // reordered. 0 for an empty vector.

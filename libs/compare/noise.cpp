@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kReach = 4;    // of the pixels that the noise of a cell is measured against [px]
 constexpr int kSquare = 16;  // side of the squares that show the correlation of pixels [px]
-constexpr double kMostValues = 1e6;  // of a statistic of the whole map
 
 double level(const cv::Mat1f& difference, const cv::Mat1f& steepness, int y, int x) {
   return static_cast<double>(difference(y, x)) / static_cast<double>(steepness(y, x));
@@ -28,18 +27,6 @@ double roughness(const cv::Mat1f& difference, const cv::Mat1f& steepness, int y,
   const double mean =
       (at(y - kReach, x) + at(y + kReach, x) + at(y, x - kReach) + at(y, x + kReach)) / 4;
   return (at(y, x) - mean) / static_cast<double>(steepness(y, x));
-}
-
-// Values at pixels that are spread evenly over the map, and that have one.
-template <class ValueAt>
-std::vector<double> spread_values(const cv::Size& size, const ValueAt& value_at) {
-  const double pixels = static_cast<double>(size.width) * size.height;
-  const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / kMostValues))));
-  std::vector<double> values;
-  for (int y = stride / 2; y < size.height; y += stride)
-    for (int x = stride / 2; x < size.width; x += stride)
-      if (const double value = value_at(y, x); !std::isnan(value)) values.push_back(value);
-  return values;
 }
 
 struct Spread {
