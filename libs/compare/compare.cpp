@@ -21,6 +21,9 @@ namespace {
 // pixels of one region, which grows by doubling.
 constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 24;
 
+// For each face of the earlier survey, the copy and the hierarchy of evaluate::Surface.
+constexpr std::uint64_t kRegistrationBytes = 160;
+
 // The standard deviation of a height is this part of the bend of the surface: meshes with vertices
 // at other places cut off other parts of edges and of furrows.
 constexpr double kOfBend = 0.25;
@@ -160,6 +163,7 @@ Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::Map
   require_memory(before, after, frame, result.grid, options.memory);
   map::MapFrame after_frame = frame;
   if (options.align) {
+    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
     result.registration = register_surveys(before, after, frame, result.grid, options.registration);
     after_frame = moved(frame, result.registration.motion);
     result.grid = common(after_frame);

@@ -26,8 +26,8 @@ void fill_block(const map::SurfaceBlock& block, double lift, cv::Mat1f& heights)
 
 // The slope from the neighbours `low` and `high` of `middle`, in direction of `high`.
 double slope_between(float low, float middle, float high, double pixel) {
-  const double a = static_cast<double>(low), b = static_cast<double>(middle),
-               c = static_cast<double>(high);
+  const auto a = static_cast<double>(low), b = static_cast<double>(middle),
+             c = static_cast<double>(high);
   if (std::isnan(a)) return std::isnan(c) ? 0 : (c - b) / pixel;
   return std::isnan(c) ? (b - a) / pixel : (c - a) / (2 * pixel);
 }

@@ -8,12 +8,15 @@
 
 #include "base/error.h"
 #include "compare/height_map.h"
+#include "evaluate/icp.h"
+#include "evaluate/surface.h"
 
 namespace axial::compare {
 namespace {
 
 constexpr int kSamplesOfPixel = 3, kCellsAlong = 20;
-constexpr int kLeastSamples = 100, kLeastCells = 12;
+constexpr std::size_t kLeastSamples = 100;
+constexpr int kLeastCells = 12;
 constexpr double kLeastWeight = 1e-4;  // of a direction, relative to the best one
 
 // A place where both surveys have a surface.
@@ -52,7 +55,7 @@ Samples samples_of(const cv::Mat1f& before, const cv::Mat1f& after, const map::M
   double sum = 0;
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x) {
-      const double low = static_cast<double>(before(y, x)), high = static_cast<double>(after(y, x));
+      const auto low = static_cast<double>(before(y, x)), high = static_cast<double>(after(y, x));
       if (std::isnan(low) || std::isnan(high)) continue;
       Sample sample{y,
                     x,
@@ -109,7 +112,7 @@ System system_of(const Samples& samples, const map::MapGrid& grid) {
   std::vector<Vector6d> cells(static_cast<std::size_t>(cells_along * (grid.rows / side + 1)),
                               Vector6d::Zero());
   System system;
-  int used = 0;
+  std::size_t used = 0;
   for (const Sample& sample : samples.all) {
     if (!sample.used) continue;
     const Vector6d a = scaled_row(sample, sample.before, samples.radius);
@@ -157,6 +160,41 @@ Step solve(const Samples& samples, const map::MapGrid& grid) {
   return step;
 }
 
+// The vertices of `mesh` that are over the grid.
+std::vector<Eigen::Vector3f> vertices_over(const Mesh& mesh, const map::MapFrame& frame,
+                                           const map::MapGrid& grid) {
+  std::vector<Eigen::Vector3f> vertices;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d at = frame.to_map(vertex.cast<double>());
+    const double column = (at.x() - grid.left) / grid.pixel, row = (grid.top - at.y()) / grid.pixel;
+    if (column >= 0 && column <= grid.columns && row >= 0 && row <= grid.rows)
+      vertices.push_back(vertex);
+  }
+  return vertices;
+}
+
+// The motion that brings the vertices of `after` near to the surface of `before`.
+RigidMotion first_motion(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                         const map::MapGrid& grid) {
+  const std::vector<Eigen::Vector3f> points = vertices_over(after, frame, grid);
+  if (points.size() < kLeastSamples)
+    fail(
+        "the later survey has only {} vertices over the earlier one to align by, and {} are needed",
+        points.size(), kLeastSamples);
+  const Similarity found =
+      evaluate::refine_rigid(points, evaluate::Surface(before), {.samples = 5000, .stop = 1e-4})
+          .transform;
+  return {frame.axes * found.rotation * frame.axes.transpose(), frame.axes * found.translation,
+          frame.origin};
+}
+
+// The same motion about another centre.
+RigidMotion about(const Eigen::Vector3d& centre, const RigidMotion& motion) {
+  return {motion.rotation,
+          motion.rotation * (centre - motion.centre) + motion.centre + motion.translation - centre,
+          centre};
+}
+
 void apply(const Vector6d& change, RigidMotion& motion) {
   const Eigen::Vector3d turn = change.head<3>();
   const Eigen::Matrix3d rotation =
@@ -177,6 +215,52 @@ double share_used(const Samples& samples) {
   const auto used = std::ranges::count_if(samples.all, [](const Sample& s) { return s.used; });
   return static_cast<double>(used) / static_cast<double>(samples.all.size());
 }
+
+// The second part of the registration.
+class Refinement {
+ public:
+  Refinement(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+             const map::MapGrid& grid, const RegistrationOptions& options)
+      : after_(after),
+        frame_(frame),
+        grid_(coarse_grid(grid, options.longest_side)),
+        options_(options),
+        earlier_(height_map(before, frame, grid_, frame.origin.z(), kSamplesOfPixel)) {}
+
+  Registration from(const RigidMotion& start) const {
+    constexpr double kStop = 0.01;  // squared length of a step, in standard deviations
+    Registration result;
+    result.motion = about(start.centre + centre_of(samples_at(start)), start);
+    for (;;) {
+      Samples samples = samples_at(result.motion);
+      leave_out(samples, grid_, options_.outlier);
+      const Step step = solve(samples, grid_);
+      result.covariance = step.covariance;
+      result.determined = step.determined;
+      result.share_used = share_used(samples);
+      result.residual_sigma = samples.sigma;
+      const double length =
+          step.change.head<3>().norm() * samples.radius + step.change.tail<3>().norm();
+      result.converged = step.squared_length < kStop || length < 1e-6 * grid_.pixel;
+      if (result.converged || result.iterations == options_.max_iterations) return result;
+      apply(step.change, result.motion);
+      ++result.iterations;
+    }
+  }
+
+ private:
+  Samples samples_at(const RigidMotion& motion) const {
+    const double base = frame_.origin.z();
+    const cv::Mat1f later = height_map(after_, moved(frame_, motion), grid_, base, kSamplesOfPixel);
+    return samples_of(earlier_, later, grid_, base, motion.centre);
+  }
+
+  const Mesh& after_;
+  const map::MapFrame& frame_;
+  map::MapGrid grid_;
+  const RegistrationOptions& options_;
+  cv::Mat1f earlier_;
+};
 
 }  // namespace
 
@@ -206,33 +290,9 @@ double Registration::height_variance(const Eigen::Vector3d& place,
 
 Registration register_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                               const map::MapGrid& grid, const RegistrationOptions& options) {
-  constexpr double kStop = 1e-4;  // squared length of a step, in standard deviations
-  const map::MapGrid coarse = coarse_grid(grid, options.longest_side);
-  const double base = frame.origin.z();
-  const cv::Mat1f earlier = height_map(before, frame, coarse, base, kSamplesOfPixel);
-  Registration result;
-  result.converged = false;
-  for (;;) {
-    const cv::Mat1f later =
-        height_map(after, moved(frame, result.motion), coarse, base, kSamplesOfPixel);
-    Samples samples = samples_of(earlier, later, coarse, base, result.motion.centre);
-    if (result.iterations == 0) {
-      result.motion.centre = centre_of(samples);
-      samples = samples_of(earlier, later, coarse, base, result.motion.centre);
-    }
-    leave_out(samples, coarse, options.outlier);
-    const Step step = solve(samples, coarse);
-    result.covariance = step.covariance;
-    result.determined = step.determined;
-    result.share_used = share_used(samples);
-    result.residual_sigma = samples.sigma;
-    const double length =
-        step.change.head<3>().norm() * samples.radius + step.change.tail<3>().norm();
-    result.converged = step.squared_length < kStop || length < 1e-6 * coarse.pixel;
-    if (result.converged || result.iterations == options.max_iterations) return result;
-    apply(step.change, result.motion);
-    ++result.iterations;
-  }
+  const Refinement refinement(before, after, frame, grid, options);
+  const Registration result = refinement.from(first_motion(before, after, frame, grid));
+  return result.determined == 6 ? result : refinement.from({});
 }
 
 }  // namespace axial::compare

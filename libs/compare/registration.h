@@ -57,7 +57,13 @@ Vector6d height_row(const Eigen::Vector3d& offset, const Eigen::Vector2d& slope)
 // Finds the rigid motion of `after` that aligns it with `before`. Starts from the given positions.
 // `frame`: of both meshes. `grid`: the part of the map in which both are compared.
 //
-// The distance between both surfaces is measured along the height axis at a regular grid of
+// The first motion is that of refine_rigid() (evaluate/icp.h), by the distances of the vertices of
+// `after` over the grid from the nearest points of `before`. As long as the positions differ much,
+// it leaves out less of steep ground than differences of heights would. If the surface does not
+// determine all six directions (see below), the given positions are the start instead, because
+// noise moves the nearest points along level ground.
+//
+// Then the distance between both surfaces is measured along the height axis at a regular grid of
 // samples, divided by sqrt(1 + slope^2), which is the distance to the tangent plane. Gauss-Newton
 // steps minimise the sum of the squared distances of the samples that are not left out. The
 // derivatives are products of the slopes of both surveys. The noise of both surveys is independent,
@@ -69,7 +75,8 @@ Vector6d height_row(const Eigen::Vector3d& offset, const Eigen::Vector2d& slope)
 // map take the place of independent residuals. So it holds for residuals that are correlated over
 // distances shorter than a cell, which is 1/20 of the longer side of the map.
 //
-// Error if both have surface at fewer than 100 samples or in fewer than 12 cells.
+// Error if `after` has fewer than 100 vertices over the grid, or if both have surface at fewer than
+// 100 samples or in fewer than 12 cells.
 Registration register_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                               const map::MapGrid& grid, const RegistrationOptions& options = {});
 

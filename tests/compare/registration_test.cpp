@@ -100,8 +100,29 @@ TEST(Registration, InWorldMovesPointsAsInTheMap) {
 
 TEST(Registration, NeedsCommonGround) {
   const Mesh before = survey_before();
-  const Mesh after = surveyed({.low = {3.95, 2.95}, .high = {5, 4}}, hills);
-  EXPECT_THAT(error_of([&] { registered(before, after); }), HasSubstr("places in common"));
+  const Mesh beside = surveyed({.low = {3.95, 2.95}, .high = {5, 4}}, hills);
+  EXPECT_THAT(error_of([&] { registered(before, beside); }), HasSubstr("only 31 vertices over"));
+  Mesh torn = before;
+  torn.faces.resize(60);
+  EXPECT_THAT(error_of([&] { registered(before, torn); }), HasSubstr("places in common"));
+}
+
+// A wrong position hides the flanks of the rocks among the changes.
+TEST(Registration, StartsFarAway) {
+  RigidMotion truth = small_motion({2, 1.5, 0});
+  truth.translation *= 6;
+  truth.rotation = Eigen::AngleAxisd(0.06, Eigen::Vector3d(0.3, -0.2, 0.9).normalized());
+  const auto rocks = [](double x, double y) {
+    double height = 0.2 * hills(x, y);
+    for (const Boulder& rock : {Boulder{0.7, 0.8}, Boulder{2.9, 0.6}, Boulder{1.8, 2.2}})
+      height += 2 * rock(x, y);
+    return height;
+  };
+  const Mesh before = surveyed({.spacing = 0.025}, rocks);
+  const Mesh after = surveyed({.spacing = 0.025, .seed = 9}, rocks);
+  const Registration found = registered(before, moved_back(after, truth));
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(error_of_motion(found.motion, truth).tail<3>().norm(), 0.001);
 }
 
 }  // namespace
