@@ -111,6 +111,29 @@ TEST(Compare, FindsLittleWhereNothingChanged) {
   }
 }
 
+TEST(Compare, StatesTheUncertaintyOfVolumes) {
+  constexpr int kRuns = 40;
+  const Boulder boulder{0.8, 0.7};
+  double sum = 0, squares = 0, stated = 0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const Plot plot{.high = {1.6, 1.4}, .spacing = 0.02, .noise = 0.003, .seed = 200 + 2 * run};
+    Plot later = plot;
+    later.low += Eigen::Vector2d(0.007, 0.003), later.seed += 1;
+    const Comparison comparison = compare_surveys(
+        surveyed(plot, [&](double x, double y) { return hills(x, y) + boulder(x, y); }),
+        surveyed(later, hills), kFrame, options_of(false));
+    const Volume& gone = comparison.changes.regions.at(0).size;
+    sum += gone.volume, squares += gone.volume * gone.volume, stated += gone.sigma / kRuns;
+  }
+  const double mean = sum / kRuns;
+  const double scatter = std::sqrt((squares - kRuns * mean * mean) / (kRuns - 1));
+  EXPECT_NEAR(mean, boulder.volume(), 0.02 * boulder.volume());
+  // The scatter of 40 values is known to 11 %. The stated one includes what meshes cut off at the
+  // edge of the boulder, which does not differ from run to run.
+  EXPECT_GT(scatter, 0.3 * stated);
+  EXPECT_LT(scatter, 1.5 * stated);
+}
+
 // Both meshes cut off the edge of a roof, each at its own vertices.
 TEST(Compare, EdgesDoNotChange) {
   const auto roofs = [](double x, double) { return std::abs(std::remainder(x, 0.5)); };
