@@ -34,6 +34,8 @@ KindFacts facts_of(MapKind kind) {
       return {GDT_Byte, 4, CV_8UC4, {}, "AVERAGE"};
     case MapKind::counts:
       return {GDT_UInt16, 1, CV_16UC1, kNoCount, "NEAREST"};
+    case MapKind::classes:
+      return {GDT_Byte, 1, CV_8UC1, kNoClass, "NEAREST"};
     case MapKind::shades:
       break;
   }

@@ -18,11 +18,13 @@ enum class MapKind {
   heights,  // one band of float [m]; kNoHeight: no surface
   colors,   // bands red, green, blue and alpha of 8 bits; alpha 0: no colour
   counts,   // one band of 16 bits; kNoCount: no surface
-  shades    // one band of 8 bits, grey; 0: no surface
+  shades,   // one band of 8 bits, grey; 0: no surface
+  classes   // one band of 8 bits, numbers of classes; kNoClass: none
 };
 
 inline constexpr float kNoHeight = -9999;
 inline constexpr std::uint16_t kNoCount = 65535;
+inline constexpr std::uint8_t kNoClass = 255;
 
 // The memory [bytes] that GDAL keeps for blocks of all open files. It is the same for all maps.
 inline constexpr std::uint64_t kCacheBytes = 64'000'000;

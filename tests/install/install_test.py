@@ -14,9 +14,9 @@ import tempfile
 import unittest
 
 BUILD, SOURCE, VERSION = sys.argv[1:4]
-PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
-            "InterfaceCOLMAP", "MapSurface", "ReconstructMesh", "RefineMesh", "RefinePoses",
-            "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene"]
+PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
+            "EvaluateReconstruction", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh", "RefineMesh",
+            "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene"]
 
 
 def output_of(*command):

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds what changed between two surveys of the same place: maps of differences, volumes.
+
+#include <numbers>
+#include <system_error>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_extension.h"
+#include "base/log.h"
+#include "base/naming.h"
+#include "base/parallel.h"
+#include "base/same_file.h"
+#include "compare/write_changes.h"
+#include "io/openmvs/point_source.h"
+#include "io/ply/ply.h"
+#include "io/textured/textured_mesh.h"
+#include "scene/check_mesh.h"
+#include "settings.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The memory of the program itself: code and libraries, stacks, small blocks.
+constexpr std::uint64_t kProgramBytes = 96 * kMegabyte;
+
+MemoryAllowance memory_of(const Settings& settings) {
+  return {settings.max_memory, "--max-memory", kProgramBytes};
+}
+
+compare::ChangeFiles change_files(const Settings& settings) {
+  const auto named = [&](const char* end) { return fs::path(settings.output.string() + end); };
+  return {named(".difference.tif"), named(".significant.tif"), named(".sigma.tif"), named(".json"),
+          named(".jpg")};
+}
+
+bool is_ply(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension != ".obj" && extension != ".glb";
+}
+
+Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
+  memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
+  Mesh mesh = is_ply(path) ? io::read_mesh_ply(path, frame)
+                           : std::move(io::read_textured_mesh(path, frame).mesh);
+  mesh.colors = {};
+  naming(path, [&] { check_mesh(mesh); });
+  log_info("{}: {} vertices, {} faces", path.string(), mesh.vertices.size(), mesh.faces.size());
+  return_freed_memory();
+  return mesh;
+}
+
+// A frame near the mesh of the earlier survey.
+LocalFrame frame_of_survey(const fs::path& path) {
+  return is_ply(path) ? frame_near(io::ply_place(path).first_vertex) : LocalFrame{};
+}
+
+void keep_inputs(const Settings& settings) {
+  const std::vector<fs::path> outputs = change_files(settings).all();
+  require_no_inputs(outputs, std::vector{settings.before, settings.after}, "--output-file");
+  std::error_code ignored;
+  fs::create_directories(settings.output.parent_path(), ignored);
+  for (const fs::path& file : outputs) require_writable(file);
+}
+
+// True if the coordinates of the surveys are those of a reference system: if they are far from the
+// origin, or if the user names the system.
+bool has_system(const Settings& settings, const LocalFrame& frame) {
+  return !frame.is_world() || settings.epsg > 0;
+}
+
+map::MapFrame place_map(const Settings& settings, const Mesh& mesh, const LocalFrame& frame) {
+  const Eigen::Vector3d up =
+      settings.up ? *settings.up
+      : has_system(settings, frame)
+          ? Eigen::Vector3d::UnitZ()
+          : naming(settings.before, [&] { return compare::upward_direction(mesh); });
+  return map::frame_with_up(up, frame);
+}
+
+void report_registration(const compare::Comparison& comparison) {
+  const compare::Registration& r = comparison.registration;
+  const Eigen::Vector3d shift = r.motion.translation * 1e3;
+  const Eigen::Vector3d sigma = r.covariance.diagonal().tail<3>().cwiseMax(0).cwiseSqrt() * 1e3;
+  const double angle = Eigen::AngleAxisd(r.motion.rotation).angle() * 180 / std::numbers::pi;
+  log_info(
+      "later survey moved by ({:.3f}, {:.3f}, {:.3f}) +- ({:.3f}, {:.3f}, {:.3f}) mm along the "
+      "map's axes and by {:.4f} degrees, with {:.1f} % of the ground",
+      shift.x(), shift.y(), shift.z(), sigma.x(), sigma.y(), sigma.z(), angle, 100 * r.share_used);
+  if (r.determined < 6)
+    log_warning("the ground determines only {} of 6 directions of motion: it is too level",
+                r.determined);
+  if (r.share_used < 0.5)
+    log_warning(
+        "--align icp: less than half of the ground agrees: are the surveys nearly in one frame, "
+        "and "
+        "of the same scale?");
+  if (!r.converged) log_warning("--align icp: did not converge after {} steps", r.iterations);
+}
+
+void report(const compare::Comparison& comparison) {
+  const compare::Changes& changes = comparison.changes;
+  log_info("map of {} x {} pixels of {:.4g} m, {:.4g} m^2 compared", comparison.grid.columns,
+           comparison.grid.rows, comparison.grid.pixel, changes.area_compared);
+  log_info("noise of the difference {:.3f} mm ({:.3f} to {:.3f} mm), registration {:.3f} mm",
+           comparison.noise.typical * 1e3, comparison.noise.lowest * 1e3,
+           comparison.noise.highest * 1e3, comparison.registration_sigma * 1e3);
+  const auto line = [&](const char* what, const compare::Volume& volume) {
+    log_info("{}: {:.6g} +- {:.2g} m^3 on {:.4g} m^2 ({:.2f} % of the area)", what, volume.volume,
+             volume.sigma, volume.area, 100 * volume.area / changes.area_compared);
+  };
+  line("came", changes.came);
+  line("gone", changes.gone);
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse_command_line(argc, argv);
+  if (!options.parsed.run) return options.parsed.exit_code;
+  share_one_heap();
+  Settings settings = options.settings;
+  const ThreadLimit limit(options.parsed.common.max_threads);
+  compare::ChangeFacts facts{settings.before.filename().string(),
+                             settings.after.filename().string()};
+  if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
+  const LocalFrame frame = frame_of_survey(settings.before);
+  const Mesh before = read_survey(settings, settings.before, frame);
+  const Mesh after = read_survey(settings, settings.after, frame);
+  facts.aligned = settings.compare.align;
+  settings.compare.memory = memory_of(settings);
+  const map::MapFrame map_frame = place_map(settings, before, frame);
+  facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
+  keep_inputs(settings);
+  const compare::Comparison comparison = naming(settings.after, [&] {
+    return compare::compare_surveys(before, after, map_frame, settings.compare);
+  });
+  if (settings.compare.align) report_registration(comparison);
+  report(comparison);
+  const compare::ChangeFiles files = change_files(settings);
+  compare::write_changes(files, comparison, facts);
+  for (const fs::path& file : files.all()) log_info("wrote {}", file.string());
+  return 0;
+}
+
+}  // namespace
+}  // namespace axial::apps
+
+int main(int argc, char** argv) {
+  return axial::run_program("CompareSurveys", [&] { return axial::apps::run(argc, argv); });
+}

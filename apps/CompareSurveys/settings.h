@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/program.h"
+#include "compare/compare.h"
+
+namespace axial::apps {
+
+struct Settings {
+  std::filesystem::path before, after;
+  std::filesystem::path output;       // the names of the files without ".difference.tif" and so on
+  std::optional<Eigen::Vector3d> up;  // in the world; empty: see place_map() in main.cpp
+  int epsg = 0;                       // 0: no coordinate reference system
+  compare::CompareOptions compare;
+  std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
+};
+
+struct Options {
+  ParsedOptions parsed;
+  Settings settings;
+};
+
+// Parses and checks the command line. Error for an unknown option, a missing survey and a value out
+// of range.
+Options parse_command_line(int argc, const char* const* argv);
+
+// The name by which messages call a setting of a library: the name of the option.
+std::string option_of(std::string_view setting);
+
+}  // namespace axial::apps

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compare/compare.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "compare/height_map.h"
+#include "map/geotiff.h"
+#include "map/pixel_width.h"
+#include "scene/check_mesh.h"
+
+namespace axial::compare {
+namespace {
+
+// The most at the same time: height, difference, standard deviation and class, and a list of the
+// pixels of one region, which grows by doubling.
+constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 4 + 1 + 24;
+
+// For each face of the earlier survey, the copy and the hierarchy of evaluate::Surface.
+constexpr std::uint64_t kRegistrationBytes = 160;
+
+// The standard deviation of a height is this part of the bend of the surface: meshes with vertices
+// at other places cut off other parts of edges and of furrows.
+constexpr double kOfBend = 0.25;
+// The largest of four bends of a level surface with noise, squared, divided by the variance of the
+// difference of two such surfaces.
+constexpr double kNoisyBend = 12;
+
+struct Moments {
+  double area = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // sum of the faces' normals times areas
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+Moments moments_of(const Mesh& mesh) {
+  Moments moments;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Eigen::Vector3d x = mesh.vertices[a].cast<double>(), y = mesh.vertices[b].cast<double>(),
+                          z = mesh.vertices[c].cast<double>();
+    const Eigen::Vector3d normal = 0.5 * (y - x).cross(z - x);
+    moments.normal += normal;
+    moments.area += normal.norm();
+    moments.centre += normal.norm() * (x + y + z) / 3;
+  }
+  if (!(moments.area > 0)) fail("the mesh has no area");
+  moments.centre /= moments.area;
+  return moments;
+}
+
+// The pixels that both grids have. Both have corners at multiples of the same pixel width.
+map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
+  const double pixel = a.pixel;
+  const double left = std::max(a.left, b.left), top = std::min(a.top, b.top);
+  const double right = std::min(a.left + a.columns * pixel, b.left + b.columns * pixel);
+  const double bottom = std::max(a.top - a.rows * pixel, b.top - b.rows * pixel);
+  const double columns = std::round((right - left) / pixel),
+               rows = std::round((top - bottom) / pixel);
+  if (!(columns >= 1 && rows >= 1)) fail("the surveys do not overlap");
+  return {left, top, pixel, static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                    const map::MapGrid& grid, const MemoryAllowance& memory) {
+  const std::uint64_t mesh =
+      std::max(bytes_of_height_map(before, frame, grid), bytes_of_height_map(after, frame, grid));
+  memory.require(
+      map::kCacheBytes + mesh + kBytesPerPixel * static_cast<std::uint64_t>(grid.pixels()),
+      fmt::format("a map of {} x {} pixels", grid.columns, grid.rows));
+}
+
+// The maps of a comparison before the noise is known.
+struct Maps {
+  cv::Mat1f steepness;     // sqrt(1 + slope^2) of the steeper surface
+  cv::Mat1f bend;          // bend_at() of the surface that bends more [m]
+  cv::Mat1f registration;  // standard deviation by the registration [m]
+};
+
+// Fills `difference`, whose pixels are at first the heights of the later survey.
+Maps subtract(Comparison& comparison) {
+  const cv::Mat1f after = comparison.difference;
+  comparison.difference = cv::Mat1f(after.size(), std::numeric_limits<float>::quiet_NaN());
+  Maps maps{comparison.difference.clone(), comparison.difference.clone(),
+            comparison.difference.clone()};
+  const map::MapGrid& grid = comparison.grid;
+  parallel_for(static_cast<std::size_t>(after.rows), [&](std::size_t row) {
+    const auto y = static_cast<int>(row);
+    for (int x = 0; x < after.cols; ++x) {
+      const float low = comparison.before(y, x), high = after(y, x);
+      if (std::isnan(low) || std::isnan(high)) continue;
+      const Eigen::Vector2d a = slope_at(comparison.before, y, x, grid.pixel);
+      const Eigen::Vector2d b = slope_at(after, y, x, grid.pixel);
+      const Eigen::Vector3d place(grid.left + (x + 0.5) * grid.pixel,
+                                  grid.top - (y + 0.5) * grid.pixel,
+                                  comparison.base + static_cast<double>(high));
+      const Registration& registration = comparison.registration;
+      comparison.difference(y, x) = high - low;
+      maps.steepness(y, x) =
+          static_cast<float>(std::sqrt(1 + std::max(a.squaredNorm(), b.squaredNorm())));
+      maps.bend(y, x) =
+          static_cast<float>(std::max(bend_at(comparison.before, y, x), bend_at(after, y, x)));
+      maps.registration(y, x) = static_cast<float>(
+          std::sqrt(std::max(0.0, registration.height_variance(place, 0.5 * (a + b)))));
+    }
+  });
+  return maps;
+}
+
+void fill_sigma(const Maps& maps, Comparison& comparison) {
+  comparison.sigma = cv::Mat1f(comparison.difference.size(), 0.f);
+  for (int y = 0; y < comparison.sigma.rows; ++y)
+    for (int x = 0; x < comparison.sigma.cols; ++x) {
+      const auto squared = [](float value) {
+        return static_cast<double>(value) * static_cast<double>(value);
+      };
+      const double noise = squared(comparison.noise.at(y, x) * maps.steepness(y, x));
+      const double bend = squared(maps.bend(y, x)) - kNoisyBend * noise;
+      // NaN where there is no difference.
+      comparison.sigma(y, x) = static_cast<float>(std::sqrt(
+          noise + kOfBend * kOfBend * std::max(0.0, bend) + squared(maps.registration(y, x))));
+    }
+  std::vector<double> parts = spread_values(maps.registration.size(), [&](int y, int x) {
+    return static_cast<double>(maps.registration(y, x));
+  });
+  comparison.registration_sigma = median_of(parts);
+}
+
+}  // namespace
+
+double vertex_distance(const Mesh& mesh) {
+  return std::sqrt(moments_of(mesh).area / static_cast<double>(mesh.vertices.size()));
+}
+
+Eigen::Vector3d upward_direction(const Mesh& mesh) {
+  const Moments moments = moments_of(mesh);
+  const double open = moments.normal.norm() / moments.area;
+  if (!(open > 1e-6)) fail("the mesh does not show which side of it is up");
+  const Eigen::Vector3d above =
+      moments.centre + std::sqrt(moments.area) * moments.normal.normalized();
+  return map::fitted_up(mesh, {&above, 1});
+}
+
+Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                           const CompareOptions& options) {
+  check_mesh(before);
+  check_mesh(after);
+  const double pixel =
+      options.pixel > 0
+          ? options.pixel
+          : map::rounded_width(std::max(vertex_distance(before), vertex_distance(after)));
+  Comparison result;
+  result.frame = frame;
+  result.base = frame.origin.z();
+  const map::MapGrid of_before = map::grid_around(before, frame, pixel, options.name_of);
+  const auto common = [&](const map::MapFrame& after_frame) {
+    return common_grid(of_before, map::grid_around(after, after_frame, pixel, options.name_of));
+  };
+  result.grid = common(frame);
+  require_memory(before, after, frame, result.grid, options.memory);
+  map::MapFrame after_frame = frame;
+  if (options.align) {
+    options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
+    result.registration = register_surveys(before, after, frame, result.grid, options.registration);
+    after_frame = moved(frame, result.registration.motion);
+    result.grid = common(after_frame);
+    require_memory(before, after, after_frame, result.grid, options.memory);
+  }
+  result.before = height_map(before, frame, result.grid, result.base);
+  result.difference = height_map(after, after_frame, result.grid, result.base);
+  Maps maps = subtract(result);
+  if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
+    fail("the surveys do not overlap");
+  const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
+  result.noise = options.sigmas
+                     ? given_noise(result.difference, maps.steepness,
+                                   std::hypot(options.sigmas->before, options.sigmas->after))
+                     : estimate_noise(result.difference, maps.steepness, least);
+  fill_sigma(maps, result);
+  maps = {};
+  result.changes =
+      find_changes(result.difference, result.sigma,
+                   {result.grid, result.registration, result.noise.correlation}, options.changes);
+  return result;
+}
+
+}  // namespace axial::compare

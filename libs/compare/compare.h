@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What changed between two surveys of the same place.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "base/memory.h"
+#include "base/setting_names.h"
+#include "compare/changes.h"
+#include "compare/noise.h"
+#include "compare/registration.h"
+#include "map/frame.h"
+#include "scene/mesh.h"
+
+namespace axial::compare {
+
+struct CompareOptions {
+  double pixel = 0;    // width of a pixel of the map [m]; 0: vertex_distance() of the coarser mesh
+  bool align = false;  // move the later survey onto the ground that did not change
+  RegistrationOptions registration = {};
+  // Standard deviations of both surfaces along their normals [m], above 0. Empty: estimated.
+  struct Sigmas {
+    double before, after;
+  };
+  std::optional<Sigmas> sigmas = {};
+  ChangeOptions changes = {};
+  // The memory that may be used. The need is checked before the maps are made.
+  MemoryAllowance memory = {};
+  SettingNames name_of = own_name;  // for the field `pixel`, "ground_sample_distance"
+};
+
+// The maps have one value for each pixel of `grid`. NaN: not compared, because one of the surveys
+// has no surface there.
+struct Comparison {
+  map::MapFrame frame;            // of the earlier survey
+  map::MapGrid grid;              // the common part of the smallest grids around both surveys
+  double base = 0;                // the height above which `before` is stated [map, m]
+  cv::Mat1f before;               // height of the earlier survey; NaN only where it has no surface
+  cv::Mat1f difference;           // later minus earlier height [m]
+  cv::Mat1f sigma;                // standard deviation of the difference [m]
+  double registration_sigma = 0;  // median of its part of the standard deviations [m]
+  Registration registration;
+  Noise noise;
+  Changes changes;
+};
+
+// The square root of the area of the mesh per vertex [m]. Error for a mesh without area.
+double vertex_distance(const Mesh& mesh);
+
+// The unit normal of the plane that fits the mesh best, on the side to which more of the mesh is
+// turned. Error for a mesh without area, and for a closed mesh.
+Eigen::Vector3d upward_direction(const Mesh& mesh);
+
+// Compares two surveys. `frame`: of both meshes.
+//
+// The variance of a difference is the sum of three parts. The first one is the variance of the
+// noise (Noise), times the squared steepness of the steeper surface. The second one is the square
+// of a quarter of the bend of the surface that bends more (bend_at() in compare/height_map.h):
+// meshes with vertices at other places cut off other parts of edges and of furrows. The bend that
+// noise alone gives is subtracted first. The third one is the variance by the uncertain
+// registration.
+//
+// Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
+// aligned (register_surveys()), if the map has too many pixels (grid_around()), and if the memory
+// does not suffice. The result does not depend on the number of threads.
+Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                           const CompareOptions& options);
+
+}  // namespace axial::compare

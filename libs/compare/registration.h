@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Aligns the mesh of a survey with the mesh of an earlier one by the surface that did not change.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "map/frame.h"
+#include "scene/decompositions.h"
+#include "scene/mesh.h"
+
+namespace axial::compare {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+// The map x -> rotation * (x - centre) + centre + translation, in map coordinates [m].
+struct RigidMotion {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+// The frame that gives a point of the mesh the map coordinates motion(frame.to_map(point)).
+map::MapFrame moved(const map::MapFrame& frame, const RigidMotion& motion);
+
+// The motion in world coordinates, for a map with the axes `axes` (MapFrame::axes).
+Similarity in_world(const RigidMotion& motion, const Eigen::Matrix3d& axes);
+
+struct RegistrationOptions {
+  int max_iterations = 60;  // largest number of steps
+  int longest_side = 300;   // largest number of samples along the longer side of the map
+  // Samples are left out whose residual is farther from the median than this number of robust
+  // standard deviations, and so are the samples beside them.
+  double outlier = 3;
+};
+
+struct Registration {
+  RigidMotion motion;  // of the later survey
+  // Covariance of a small further motion about the centre: rotation vector [rad], translation [m].
+  // Zero along directions that the surface does not determine, and without registration.
+  Matrix6d covariance = Matrix6d::Zero();
+  int determined = 0;         // number of directions that the surface determines, at most 6
+  int iterations = 0;         // number of steps
+  bool converged = true;      // false: the iteration ended only because of `max_iterations`
+  double share_used = 1;      // share of the samples with both surfaces that are not left out
+  double residual_sigma = 0;  // robust standard deviation of the residuals [m]
+
+  // The variance [m^2] of the height of the later survey at the point `place` [map], where the
+  // surface has the slope `slope`, because of the uncertainty of the motion.
+  double height_variance(const Eigen::Vector3d& place, const Eigen::Vector2d& slope) const;
+};
+
+// The row of derivatives of the height at a fixed place of the map by a motion of the surface
+// (rotation vector, translation). `offset`: the place minus the centre of the motion.
+Vector6d height_row(const Eigen::Vector3d& offset, const Eigen::Vector2d& slope);
+
+// Finds the rigid motion of `after` that aligns it with `before`. Starts from the given positions.
+// `frame`: of both meshes. `grid`: the part of the map in which both are compared.
+//
+// The first motion is that of refine_rigid() (evaluate/icp.h), by the distances of the vertices of
+// `after` over the grid from the nearest points of `before`. As long as the positions differ much,
+// it leaves out less of steep ground than differences of heights would. If the surface does not
+// determine all six directions (see below), the given positions are the start instead, because
+// noise moves the nearest points along level ground.
+//
+// Then the distance between both surfaces is measured along the height axis at a regular grid of
+// samples, divided by sqrt(1 + slope^2), which is the distance to the tangent plane. Gauss-Newton
+// steps minimise the sum of the squared distances of the samples that are not left out. The
+// derivatives are products of the slopes of both surveys. The noise of both surveys is independent,
+// so noise does not count as relief that would determine the horizontal position. Directions with a
+// weight below 1e-4 of the best one are not determined and get no motion: horizontal directions, if
+// the root mean square of the slopes along them is below 0.01.
+//
+// The covariance is that of the normal equations, in which the sums of residuals over cells of the
+// map take the place of independent residuals. So it holds for residuals that are correlated over
+// distances shorter than a cell, which is 1/20 of the longer side of the map.
+//
+// Error if `after` has fewer than 100 vertices over the grid, or if both have surface at fewer than
+// 100 samples or in fewer than 12 cells.
+Registration register_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
+                              const map::MapGrid& grid, const RegistrationOptions& options = {});
+
+}  // namespace axial::compare

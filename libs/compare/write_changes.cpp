@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "compare/write_changes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/atomic_file.h"
+#include "compare/draw_changes.h"
+#include "io/bytes/json.h"
+#include "io/images/image.h"
+#include "map/geotiff.h"
+
+namespace axial::compare {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostRegions = 1000;  // in the report
+constexpr int kJpegQuality = 92;
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Json list_of(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+Json json_of(const Volume& volume, std::size_t regions) {
+  return {{"volume", volume.volume},
+          {"volume_sigma", volume.sigma},
+          {"area", volume.area},
+          {"regions", regions}};
+}
+
+Json json_of(const Registration& registration, const Eigen::Matrix3d& axes, double sigma) {
+  const RigidMotion& motion = registration.motion;
+  const Eigen::AngleAxisd turn(motion.rotation);
+  const Vector6d sigmas = registration.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::Matrix4d matrix = in_world(motion, axes).matrix();
+  Json rows = Json::array();
+  for (int k = 0; k < 4; ++k) rows.push_back(list_of(matrix.row(k).transpose()));
+  return {{"converged", registration.converged},
+          {"iterations", registration.iterations},
+          {"determined_directions", registration.determined},
+          {"share_of_samples_used", registration.share_used},
+          {"residual_sigma", registration.residual_sigma},
+          {"centre", list_of(motion.centre)},
+          {"translation", list_of(motion.translation)},
+          {"translation_sigma", list_of(sigmas.tail<3>())},
+          {"rotation_degrees", list_of(turn.angle() * kDegrees * turn.axis())},
+          {"rotation_degrees_sigma", list_of(sigmas.head<3>() * kDegrees)},
+          {"height_sigma", sigma},
+          {"matrix", rows}};
+}
+
+Json json_of(const Noise& noise) {
+  return {{"given", noise.is_given},
+          {"sigma", noise.typical},
+          {"lowest_sigma", noise.lowest},
+          {"highest_sigma", noise.highest},
+          {"correlated_pixels", noise.correlation}};
+}
+
+Json json_of(const std::vector<Region>& regions) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(regions.size(), kMostRegions); ++i) {
+    const Region& region = regions[i];
+    list.push_back({{"change", region.came ? "came" : "gone"},
+                    {"volume", region.size.volume},
+                    {"volume_sigma", region.size.sigma},
+                    {"area", region.size.area},
+                    {"largest_difference", region.largest},
+                    {"x", region.x},
+                    {"y", region.y}});
+  }
+  return list;
+}
+
+void write_map(const fs::path& path, map::MapKind kind, const cv::Mat& pixels,
+               const Comparison& comparison, const std::string& crs) {
+  map::GeoTiff file(path, kind, comparison.grid, crs);
+  file.write(cv::Rect({}, pixels.size()), pixels);
+  file.finish();
+}
+
+// A map of heights or of their differences, as files state them.
+cv::Mat1f with_no_height(const cv::Mat1f& values) {
+  cv::Mat1f result = values.clone();
+  for (float& value : result)
+    if (std::isnan(value)) value = map::kNoHeight;
+  return result;
+}
+
+}  // namespace
+
+Json to_json(const Comparison& comparison, const ChangeFacts& facts) {
+  const Changes& changes = comparison.changes;
+  const auto came = static_cast<std::size_t>(
+      std::ranges::count_if(changes.regions, [](const Region& r) { return r.came; }));
+  const map::MapGrid& grid = comparison.grid;
+  Json json{{"before", facts.before},
+            {"after", facts.after},
+            {"map",
+             {{"pixel", grid.pixel},
+              {"columns", grid.columns},
+              {"rows", grid.rows},
+              {"left", grid.left},
+              {"top", grid.top},
+              {"up", list_of(comparison.frame.axes.row(2).transpose())}}},
+            {"area_compared", changes.area_compared},
+            {"area_changed", changes.came.area + changes.gone.area},
+            {"came", json_of(changes.came, came)},
+            {"gone", json_of(changes.gone, changes.regions.size() - came)},
+            {"net", {{"volume", changes.net}, {"volume_sigma", changes.net_sigma}}},
+            {"noise", json_of(comparison.noise)}};
+  json["registration"] = facts.aligned ? json_of(comparison.registration, comparison.frame.axes,
+                                                 comparison.registration_sigma)
+                                       : Json();
+  json["regions"] = json_of(changes.regions);
+  return json;
+}
+
+void write_changes(const ChangeFiles& files, const Comparison& comparison,
+                   const ChangeFacts& facts) {
+  for (const fs::path& path : files.all())  // of the blocks of maps, too
+    remove_abandoned(path.parent_path(), path.stem().string());
+  write_together(files.all(), [&](const std::vector<fs::path>& temporary) {
+    write_map(temporary[0], map::MapKind::heights, with_no_height(comparison.difference),
+              comparison, facts.crs);
+    write_map(temporary[1], map::MapKind::classes, comparison.changes.classes, comparison,
+              facts.crs);
+    write_map(temporary[2], map::MapKind::heights, with_no_height(comparison.sigma), comparison,
+              facts.crs);
+    write_atomically(temporary[3], io::to_text(to_json(comparison, facts), 1) + "\n");
+    io::write_jpeg(temporary[4], draw_changes(comparison, facts.is_georeferenced), kJpegQuality);
+  });
+}
+
+}  // namespace axial::compare

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""CompareSurveys on two meshes of a small plot: names of files, maps, numbers, coordinates, wrong
+input."""
+
+import json
+import math
+import random
+
+from geotiff import read_geotiff
+from programs import ProgramTest, contents, files_below, main, read, run, write
+from texture_mesh_test import mesh_ply
+
+OUTPUTS = {f"work/change.{end}" for end in ("difference.tif", "significant.tif", "sigma.tif", "json", "jpg")}
+CELLS, SPACING = (80, 60), 0.02
+
+
+def block(x, y, left, low):
+    """A block of 0.2 m x 0.2 m and a height of 0.1 m."""
+    return 0.1 if left < x < left + 0.2 and low < y < low + 0.2 else 0
+
+
+def ground(x, y):
+    return 0.05 * math.sin(9 * x) + 0.04 * math.cos(8 * y + 3 * x)
+
+
+def volume_of_block(left, low):
+    """The volume of the block in the mesh: each vertex stands for one cell."""
+    columns, rows = CELLS
+    return SPACING ** 2 * sum(block(i * SPACING, j * SPACING, left, low)
+                              for i in range(columns + 1) for j in range(rows + 1))
+
+
+def before(x, y):
+    return ground(x, y) + block(x, y, 0.3, 0.3)
+
+
+def after(x, y):
+    return ground(x, y) + block(x, y, 1.1, 0.7)
+
+
+def survey(height, seed, shift=(0, 0, 0)):
+    """The vertices and faces of a mesh with a noise of 1 mm."""
+    noise = random.Random(seed)
+    columns, rows = CELLS
+    vertices = []
+    for j in range(rows + 1):
+        for i in range(columns + 1):
+            x, y = i * SPACING, j * SPACING
+            z = height(x, y) + noise.gauss(0, 0.001)
+            vertices.append((x + shift[0], y + shift[1], z + shift[2]))
+    faces = []
+    for j in range(rows):
+        for i in range(columns):
+            a = j * (columns + 1) + i
+            faces += [(a, a + 1, a + columns + 2), (a, a + columns + 2, a + columns + 1)]
+    return vertices, faces
+
+
+class CompareTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.before, self.after = self.path("work", "a.ply"), self.path("work", "b.ply")
+        write(self.before, mesh_ply(*survey(before, 1)))
+        write(self.after, mesh_ply(*survey(after, 2, (0.013, -0.008, 0.02))))
+
+    def compare(self, *arguments):
+        return ("CompareSurveys", "-w", self.path("work"), "-i", self.before, "--other", self.after,
+                *(() if "-o" in arguments else ("-o", "change")), *arguments)
+
+    def report(self):
+        return json.loads(read(self.path("work", "change.json")))
+
+    def map(self, name):
+        return read_geotiff(read(self.path("work", f"change.{name}.tif")))
+
+    def refuses_and_keeps(self, expected, *command, **options):
+        kept = contents(self.folder)
+        self.refuses(expected, *command, **options)
+        self.assertEqual(contents(self.folder), kept, command)
+
+
+class Outputs(CompareTest):
+    def test_names(self):
+        old = files_below(self.folder)
+        self.succeeds(*self.compare())
+        self.assertEqual(files_below(self.folder) - old, OUTPUTS)
+        self.succeeds("CompareSurveys", self.before, "--other", self.after)
+        self.assertIn("work/a_change.json", files_below(self.folder))
+
+    def test_a_moved_block(self):
+        self.succeeds(*self.compare("--align", "icp", "--up", "0,0,1"))
+        report = self.report()
+        for change, volume in (("came", volume_of_block(1.1, 0.7)), ("gone", volume_of_block(0.3, 0.3))):
+            self.assertAlmostEqual(report[change]["volume"], volume, delta=0.05 * volume)
+            self.assertEqual(report[change]["regions"], 1)
+        centre = report["registration"]["centre"]
+        self.assertEqual(report["registration"]["determined_directions"], 6)
+        rows = report["registration"]["matrix"]
+        moved = [sum(m * c for m, c in zip(row, (*centre, 1))) for row in rows]
+        for k, shift in enumerate((0.013, -0.008, 0.02)):
+            self.assertAlmostEqual(moved[k] - centre[k], -shift, delta=0.001)
+        difference, classes, sigma = (self.map(name) for name in ("difference", "significant", "sigma"))
+        self.assertEqual((difference.nodata, classes.nodata, sigma.nodata), ("-9999", "255", "-9999"))
+        at = lambda found, x, y: found.rows[int((found.top - y) / found.pixel)][
+            int((x - found.left) / found.pixel)]
+        self.assertEqual([at(classes, *place) for place in ((1.2, 0.8), (0.4, 0.4), (0.8, 0.6))],
+                         [2, 1, 0])
+        self.assertAlmostEqual(at(difference, 1.2, 0.8), 0.1, delta=0.006)
+        self.assertAlmostEqual(at(difference, 0.4, 0.4), -0.1, delta=0.006)
+        for d, c, s in zip(difference.rows, classes.rows, sigma.rows):
+            for value, kind, deviation in zip(d, c, s):
+                self.assertEqual(value == -9999, kind == 255)
+                self.assertEqual(value == -9999, deviation == -9999)
+
+    def test_known_positions(self):
+        write(self.after, mesh_ply(*survey(after, 2, (0, 0, 0.02))))
+        self.succeeds(*self.compare())
+        report = self.report()
+        self.assertIsNone(report["registration"])
+        # All of the ground rose by 2 cm.
+        self.assertGreater(report["came"]["area"], 0.9 * report["area_compared"])
+
+    def test_given_standard_deviations(self):
+        self.succeeds(*self.compare("--sigma-before", "0.03", "--sigma-after", "0.04"))
+        self.assertAlmostEqual(self.report()["noise"]["sigma"], 0.05, 9)
+        self.assertEqual(self.report()["area_changed"], 0)
+
+    def test_any_number_of_threads_gives_the_same_bytes(self):
+        found = []
+        for threads in (1, 2):
+            self.succeeds(*self.compare("--align", "icp", "--max-threads", threads))
+            found.append(contents(self.folder))
+        self.assertEqual(*found)
+
+    def test_utm(self):
+        place = (500000, 4500000, 30)
+        for path, mesh in ((self.before, survey(before, 1)), (self.after, survey(after, 2))):
+            text = mesh_ply(*mesh).replace("format ascii 1.0", "format ascii 1.0\ncomment "
+                                           "geo_offset 500000 4500000 30")
+            write(path, text)
+        self.succeeds(*self.compare("--epsg", "32631", "--gsd", "0.02", "--align", "icp"))
+        found = self.map("difference")
+        self.assertAlmostEqual(found.left, place[0], delta=0.021)
+        self.assertIn(32631, found.keys)
+        for region in self.report()["regions"]:
+            x, y = (1.2, 0.8) if region["change"] == "came" else (0.4, 0.4)
+            self.assertAlmostEqual(region["x"], place[0] + x, delta=0.02)
+            self.assertAlmostEqual(region["y"], place[1] + y, delta=0.02)
+
+
+class WrongInput(CompareTest):
+    def test_one_line_that_names_the_fault(self):
+        for expected, *arguments in (
+                ("--align centres: must be none or icp", "--align", "centres"),
+                ("--ground-sample-distance -1: must be from 0", "--gsd", "-1"),
+                ("--ground-sample-distance 1e-08: the map would have", "--gsd", "1e-8"),
+                ("--up 0,0: must be three numbers X,Y,Z", "--up", "0,0"),
+                ("--up 0,0,0: is no direction", "--up", "0,0,0"),
+                ("--up 1,0,0: must be 0,0,1 with --epsg", "--up", "1,0,0", "--epsg", "32631"),
+                ("--epsg 4326: is no projected", "--epsg", "4326"),
+                ("--sigma-after is missing", "--sigma-before", "0.01"),
+                ("--sigma-before is missing", "--sigma-after", "0.01"),
+                ("--sigma-before 0: must be from", "--sigma-before", "0", "--sigma-after", "0.01"),
+                ("--sigma-after nan", "--sigma-before", "0.01", "--sigma-after", "nan"),
+                ("--min-pixels 0: must be from 1", "--min-pixels", "0"),
+                ("--max-memory", "--max-memory", "20"),
+                ("--output-file .: must be the name of a file", "-o", ".")):
+            self.refuses_and_keeps(expected, *self.compare(*arguments))
+
+    def test_missing_surveys(self):
+        self.refuses_and_keeps("--other is missing", "CompareSurveys", "-i", self.before)
+        self.refuses_and_keeps("none.ply: ", "CompareSurveys", "-i", self.before, "--other", "none.ply")
+        self.refuses_and_keeps("none.ply: ", "CompareSurveys", "-i", "none.ply", "--other", self.after)
+
+    def test_wrong_meshes(self):
+        vertices, faces = survey(after, 2)
+        far = [(x + 10, y, z) for x, y, z in vertices]
+        for expected, mesh in (
+                ("b.ply: the mesh has no faces", (vertices, [])),
+                ("b.ply: the surveys do not overlap", (far, faces)),
+                ("b.ply: the surveys have only", (vertices, faces[:60]))):
+            write(self.after, mesh_ply(*mesh))
+            self.refuses_and_keeps(expected, *self.compare("--align", "icp"))
+        write(self.before, mesh_ply([(0, 0, 1)] * 3, [(0, 1, 2)]))
+        self.refuses_and_keeps("a.ply: the mesh has no area", *self.compare())
+
+    def test_an_input_is_not_overwritten(self):
+        write(self.path("work", "change.difference.tif"), read(self.after))
+        self.refuses_and_keeps("--output-file", "CompareSurveys", "-w", self.path("work"), "-i", "a.ply",
+                               "--other", "change.difference.tif", "-o", "change")
+
+    def test_a_full_disk_leaves_the_old_files(self):
+        self.succeeds(*self.compare())
+        self.refuses_and_keeps("change.", *self.compare("--gsd", "0.001"), file_size_limit=100_000)
+
+    def test_help(self):
+        self.assertEqual(run("CompareSurveys").returncode, 1)
+        self.assertEqual(run("CompareSurveys", "--help").returncode, 0)
+
+
+if __name__ == "__main__":
+    main()
