@@ -81,6 +81,9 @@ void keep_inputs(const Settings& settings, const texture::Photographs& photograp
   inputs.insert(inputs.end(),
                 {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
                  io::geo_offset_beside(scene), settings.photographs.views_file});
+  if (lower_extension(settings.mesh) == ".ply" && io::is_textured_mesh(settings.mesh))
+    for (const std::string& texture : io::textures_of_ply(settings.mesh))
+      inputs.push_back(settings.mesh.parent_path() / texture);
   const std::vector<fs::path> outputs = map_files(settings).all();
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;

@@ -5,13 +5,31 @@
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
+#include <algorithm>
+#include <cctype>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include "base/error.h"
 #include "map/geotiff.h"
 #include "private/gdal_calls.h"
 
 namespace axial::map {
+namespace {
+
+// GDAL does not notice a failed write of GeoJSON, for example on a full disk.
+void require_complete(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::streamoff>(in.tellg());
+  std::string end(static_cast<std::size_t>(std::clamp<std::streamoff>(size, 0, 16)), '\0');
+  in.seekg(size - static_cast<std::streamoff>(end.size()));
+  in.read(end.data(), static_cast<std::streamsize>(end.size()));
+  std::erase_if(end, [](unsigned char c) { return std::isspace(c) != 0; });
+  if (!in || !end.ends_with("]}")) fail("{}: cannot be written completely", path.string());
+}
+
+}  // namespace
 
 void write_contours(const std::filesystem::path& heights, double interval,
                     const std::filesystem::path& path) {
@@ -39,6 +57,7 @@ void write_contours(const std::filesystem::path& heights, double interval,
                                             nullptr, nullptr);
   file.reset();
   errors.require(done == CE_None, path.string());
+  require_complete(path);
 }
 
 }  // namespace axial::map

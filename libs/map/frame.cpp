@@ -18,6 +18,7 @@ MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame) 
   MapFrame frame;
   frame.axes << x.transpose(), u.cross(x).transpose(), u.transpose();
   frame.origin = frame.axes * mesh_frame.origin;
+  if (!frame.axes.isIdentity(0)) frame.origin.z() = 0;
   return frame;
 }
 

@@ -29,7 +29,9 @@ struct MapFrame {
 // u, or the projection of the world's y axis if u is less than 45 degrees from the world's x axis
 // or from its opposite. The map's y axis is the vector product of u and the map's x axis. So with
 // `up` = (0, 0, 1) the map has the axes of the world. The origin of the map is the origin of the
-// world. `mesh_frame`: the frame of the mesh.
+// world. Exception: with other axes, heights are measured from the origin of the mesh's frame,
+// because a height of millions of metres has no millimetres in single precision. `mesh_frame`: the
+// frame of the mesh.
 MapFrame frame_with_up(const Eigen::Vector3d& up, const LocalFrame& mesh_frame);
 
 // The unit normal of the plane that is fitted to the mesh by least squares of the distances of all

@@ -31,7 +31,7 @@ class Painter {
       face_ = face;
       corners_ = corners_of(mesh.mesh, face, content_.frame, content_.grid);
     }
-    const Eigen::Vector3f w = weights_at(mesh.mesh, face, corners_, place).cast<float>();
+    const Eigen::Vector3f w = weights_at(corners_, place).cast<float>();
     const TexturedMesh::Corners& uv = mesh.uv[face];
     sum +=
         bilinear(mesh.textures[mesh.texture_of[face]], w[0] * uv[0] + w[1] * uv[1] + w[2] * uv[2]);

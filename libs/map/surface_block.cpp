@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace axial::map {
 namespace {
 
 // Twice the signed area of the triangle (from, to, place). The ends of the edge are ordered by
-// their vertices, so that the two faces at an edge get exactly opposite numbers.
-double side_of_edge(const FaceCorners& corners, const std::array<std::uint32_t, 3>& face, int from,
-                    int to, const Eigen::Vector2d& place) {
-  const bool swapped = face[static_cast<std::size_t>(from)] > face[static_cast<std::size_t>(to)];
+// their places, so that the two faces at an edge get exactly opposite numbers, also if they have
+// vertices of their own.
+double side_of_edge(const FaceCorners& corners, int from, int to, const Eigen::Vector2d& place) {
+  const auto key = [&](int corner) {
+    return std::pair(corners.at(0, corner), corners.at(1, corner));
+  };
+  const bool swapped = key(from) > key(to);
   const Eigen::Vector2d a = corners.at.col(swapped ? to : from);
   const Eigen::Vector2d b = corners.at.col(swapped ? from : to);
   const Eigen::Vector2d edge = b - a, way = place - a;
@@ -21,10 +25,9 @@ double side_of_edge(const FaceCorners& corners, const std::array<std::uint32_t, 
 }
 
 // The signed parts of the triangle's area that belong to its corners, seen from `place`.
-Eigen::Vector3d parts_at(const FaceCorners& corners, const std::array<std::uint32_t, 3>& face,
-                         const Eigen::Vector2d& place) {
-  return {side_of_edge(corners, face, 1, 2, place), side_of_edge(corners, face, 2, 0, place),
-          side_of_edge(corners, face, 0, 1, place)};
+Eigen::Vector3d parts_at(const FaceCorners& corners, const Eigen::Vector2d& place) {
+  return {side_of_edge(corners, 1, 2, place), side_of_edge(corners, 2, 0, place),
+          side_of_edge(corners, 0, 1, place)};
 }
 
 // The blocks that the bounding box of a face touches, with a border of a pixel: columns and rows,
@@ -57,8 +60,7 @@ std::pair<int, int> samples_between(double low, double high, int count) {
           static_cast<int>(std::clamp(std::floor(high - 0.5), -1.0, last))};
 }
 
-void draw(const FaceCorners& corners, const std::array<std::uint32_t, 3>& face, std::uint32_t index,
-          SurfaceBlock& block) {
+void draw(const FaceCorners& corners, std::uint32_t index, SurfaceBlock& block) {
   const Eigen::Array2d begin(block.pixels.x, block.pixels.y);
   const Eigen::Array2d low = (corners.at.rowwise().minCoeff().array() - begin) * block.samples;
   const Eigen::Array2d high = (corners.at.rowwise().maxCoeff().array() - begin) * block.samples;
@@ -69,7 +71,7 @@ void draw(const FaceCorners& corners, const std::array<std::uint32_t, 3>& face, 
       samples_between(low.y() - kRounding, high.y() + kRounding, block.heights.rows);
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const Eigen::Vector3d parts = parts_at(corners, face, block.place(y, x));
+      const Eigen::Vector3d parts = parts_at(corners, block.place(y, x));
       if (parts.minCoeff() < 0 && parts.maxCoeff() > 0) continue;
       const double area = parts.sum();
       if (area == 0) continue;
@@ -143,14 +145,12 @@ SurfaceBlock look_from_above(const Mesh& mesh, const MapFrame& frame, const MapG
   const cv::Size size(pixels.width * samples, pixels.height * samples);
   block.heights = cv::Mat1f(size, std::numeric_limits<float>::quiet_NaN());
   block.faces = cv::Mat_<int>(size, -1);
-  for (const std::uint32_t face : faces)
-    draw(corners_of(mesh, face, frame, grid), mesh.faces[face], face, block);
+  for (const std::uint32_t face : faces) draw(corners_of(mesh, face, frame, grid), face, block);
   return block;
 }
 
-Eigen::Vector3d weights_at(const Mesh& mesh, std::uint32_t face, const FaceCorners& corners,
-                           const Eigen::Vector2d& place) {
-  const Eigen::Vector3d parts = parts_at(corners, mesh.faces[face], place);
+Eigen::Vector3d weights_at(const FaceCorners& corners, const Eigen::Vector2d& place) {
+  const Eigen::Vector3d parts = parts_at(corners, place);
   return parts / parts.sum();
 }
 

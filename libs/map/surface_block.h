@@ -76,9 +76,8 @@ SurfaceBlock look_from_above(const Mesh& mesh, const MapFrame& frame, const MapG
                              const cv::Rect& pixels, int samples,
                              std::span<const std::uint32_t> faces);
 
-// The weights of the corners of `face` at a sample of the face: they are at least 0, and their sum
+// The weights of the corners of a face at a sample of the face: they are at least 0, and their sum
 // is 1.
-Eigen::Vector3d weights_at(const Mesh& mesh, std::uint32_t face, const FaceCorners& corners,
-                           const Eigen::Vector2d& place);
+Eigen::Vector3d weights_at(const FaceCorners& corners, const Eigen::Vector2d& place);
 
 }  // namespace axial::map

@@ -2,6 +2,7 @@
 #include "map/write_maps.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -115,6 +116,20 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
   return report;
 }
 
+// More lines would fill the disk.
+void check_contours(const MapContent& content, const WriteOptions& options) {
+  constexpr double kMost = 10000;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Eigen::Vector3f& vertex : content.mesh.mesh.vertices) {
+    const double height = content.frame.axes.row(2).dot(vertex.cast<double>());
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  if ((high - low) / options.contour_interval > kMost)
+    fail("{} {}: makes more than {} contour lines on a relief of {:.4g} m",
+         options.name_of("contour_interval"), options.contour_interval, kMost, high - low);
+}
+
 }  // namespace
 
 std::vector<fs::path> MapFiles::all() const {
@@ -133,6 +148,7 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
     fail("{} {}: contour lines need an interval above 0 and the map of heights",
          options.name_of("contour_interval"), options.contour_interval);
   if (!files.picture.empty() && files.colors.empty()) fail("a picture needs the map of colours");
+  if (!files.contours.empty()) check_contours(content, options);
   for (const fs::path& path : files.all())  // of the blocks, too
     remove_abandoned(path.parent_path(), path.stem().string());
   MapReport report;
@@ -142,6 +158,8 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
     for (const auto member : kMembers)
       if (!(renamed.*member).empty()) renamed.*member = *next++;
     report = make_maps(renamed, content, options, progress);
+    if (report.surface == 0)
+      fail("the map shows no surface: the mesh is upright, or smaller than a pixel");
   });
   return report;
 }

@@ -56,8 +56,8 @@ case "$name $1" in
   DensifyPointCloud*) touch out/scene_dense.ply ;;
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
   RefineMesh*) touch out/scene_dense_refined.ply ;;
-  TextureMesh*) touch out/scene_textured.glb ;;
-  MapSurface*) touch out/scene_map.dem.tif ;;
+  TextureMesh*) touch out/scene_textured.glb out/scene_textured.ply ;;
+  MapSurface*) touch out/scene_map.dem.tif out/scene_map.ortho.tif out/scene_map.views.tif ;;
 esac
 """
 

@@ -28,8 +28,14 @@ TEST(MapFrame, IsRightHandedWithUpAsHeight) {
     EXPECT_LT((frame.axes * frame.axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
     EXPECT_NEAR(frame.axes.determinant(), 1, 1e-14);
     EXPECT_LT((frame.axes.row(2).transpose() - up.normalized()).norm(), 1e-14);
-    // The origin of the world is at the origin of the map.
-    EXPECT_LT(frame.to_map({-1, -2, -3}).norm(), 1e-14);
+    // The origin of the world is at the origin of the map. Heights are measured from the origin of
+    // the mesh's frame.
+    EXPECT_LT(frame.to_map({-1, -2, -3}).head<2>().norm(), 1e-14);
+    EXPECT_EQ(frame.to_map({0, 0, 0}).z(), 0);
+    // So they are small and exact in a frame far from the origin of the world.
+    const MapFrame far = frame_with_up(up, {{500000, 4500000, 30}});
+    EXPECT_NEAR(far.to_map({0.1, 0.2, 0.3}).z(),
+                up.normalized().dot(Eigen::Vector3d(0.1, 0.2, 0.3)), 1e-15);
     const bool along_x = std::abs(up.normalized().x()) > std::sqrt(0.5);
     EXPECT_GT(frame.axes(0, along_x ? 1 : 0), 0.1);
   }

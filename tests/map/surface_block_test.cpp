@@ -159,7 +159,7 @@ TEST(SurfaceBlock, WeightsGiveTheHeightAndThePlace) {
       ASSERT_NE(face, kNoFace);
       const FaceCorners corners = corners_of(mesh, face, frame, grid);
       const Eigen::Vector2d place = block.place(row, column);
-      const Eigen::Vector3d weights = weights_at(mesh, face, corners, place);
+      const Eigen::Vector3d weights = weights_at(corners, place);
       EXPECT_GE(weights.minCoeff(), 0);
       EXPECT_NEAR(weights.dot(corners.height), block.heights(row, column), 1e-6);
       EXPECT_LT((corners.at * weights - place).norm(), 1e-9);

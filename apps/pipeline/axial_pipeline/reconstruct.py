@@ -5,10 +5,10 @@
 
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
 poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
-cloud into a textured mesh, and MapSurface maps it. The command of every step is printed and can be typed by
-hand. A killed run that is started again with the same options continues with the step that was
-killed; with other options, it continues with the first step that differs. A second run in
-the same folder is refused until the first run ends. With --cluster, a workflow of Snakemake runs the
+cloud into a textured mesh, and MapSurface maps it. The command of every step is printed and can be
+typed by hand. A killed run that is started again with the same options continues with the step that
+was killed; with other options, it continues with the first step that differs. A second run in the
+same folder is refused until the first run ends. With --cluster, a workflow of Snakemake runs the
 same commands, and several nodes of a cluster compute the depth maps (docs/cluster.md).
 """
 
@@ -22,7 +22,7 @@ import shlex
 from . import cluster, colmap, files, lens, matching, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
-from .steps import Step, Tiles, run_all
+from .steps import Files, Step, Tiles, run_all
 
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
@@ -64,8 +64,9 @@ def options(script_folder):
                         help="make cloud, mesh and textures in this many tiles, so that less memory is "
                         "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
                         "mesh in as many jobs (default: %(default)s)")
-    parser.add_argument("--until", choices=["cloud", "mesh", "texture", "map"], default="map",
-                        help="last result to make (default: %(default)s)")
+    parser.add_argument("--until", choices=["cloud", "mesh", "texture", "map"], default="",
+                        help="last result to make (default: map; with --tiles: texture, because "
+                        "MapSurface needs the whole mesh with its textures)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it")
     parser.add_argument("--cluster", choices=["slurm", "local"], default="",
@@ -126,6 +127,7 @@ def check(given):
     if not 1 <= given.tiles <= MOST_TILES:
         raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
     check_tiles(given)
+    given.until = given.until or ("texture" if given.tiles > 1 else "map")
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
@@ -168,6 +170,16 @@ def refine_options(given):
     return [*known, *refine, *words_of("refine-poses", given)]
 
 
+def mask_words(words):
+    """The options of TextureMesh for masks among `words`, which MapSurface has, too."""
+    kept = []
+    for word, value in zip(words, [*words[1:], ""]):
+        option, equals, _ = word.partition("=")
+        if option in ("--mask-path", "--ignore-mask-label"):
+            kept += [word] if equals else [word, value]
+    return kept
+
+
 def tile_options(option, given):
     """The option of a program for the tiles."""
     return (option, given.tiles) if given.tiles > 1 else ()
@@ -193,14 +205,15 @@ def mesh_steps(given, out):
                                                     *tile_options("--tiles", given),
                                                     *options["texture"]),
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
-                   else textured.with_suffix(".glb"),
+                   else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
                    reads=reads["texture"])
     if given.until == "map":
         # MapSurface gives the mesh textures itself if they are in several files.
         mapped = refined if given.tiles > 1 else textured.with_suffix(".ply")
         yield Step("map", programs.map_surface(scene, mapped, out / "scene_map", *refractive,
-                                               *options["map"]),
-                   makes=out / "scene_map.dem.tif", reads=reads["map"])
+                                               *mask_words(options["texture"]), *options["map"]),
+                   makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
+                   reads=reads["map"] + reads["texture"])
 
 
 def steps(given, out):

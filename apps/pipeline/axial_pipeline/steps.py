@@ -15,7 +15,7 @@ from .running import logged
 
 class Step:
     """One command, the files from outside that it `reads`, and the file or folder that it `makes`, or
-    the Tiles.
+    the Files or Tiles.
 
     `anew`: paths that are removed before the command starts, because the command would add to them.
     `changed`: paths that are removed only if an earlier step or an input changed, because otherwise
@@ -40,6 +40,16 @@ class Step:
             found += sorted(path.rglob("*")) if path.is_dir() else [path]
         return [[str(file), file.stat().st_size, file.stat().st_mtime_ns]
                 for file in found if file.is_file()]
+
+
+class Files:
+    """The result of a step that makes several files."""
+
+    def __init__(self, *paths):
+        self.paths = paths
+
+    def exists(self):
+        return all(path.exists() for path in self.paths)
 
 
 class Tiles:
