@@ -16,7 +16,7 @@ import unittest
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "DensifyPointCloud", "EvaluateReconstruction",
             "InterfaceCOLMAP", "ReconstructMesh", "RefineMesh", "RefinePoses", "ReproducePaper",
-            "SimulateUnderwater", "TextureMesh", "TransformScene"]
+            "SimulateUnderwater", "TextureMesh", "TransformScene", "ViewScene"]
 
 
 def output_of(*command):
