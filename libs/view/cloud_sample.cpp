@@ -15,16 +15,14 @@ namespace {
 
 using Numbers = std::span<std::uint32_t>;
 
-// Sorts the numbers of all points randomly.
-std::vector<std::uint32_t> random_order(std::size_t points) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points);
+// Sorts the numbers of points randomly. The result does not depend on their order before.
+void shuffle(Numbers numbers) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(numbers.size());
   // The double scrambling makes this order independent of the choice of CloudSample.
-  for (std::size_t i = 0; i < points; ++i)
-    keyed[i] = {scramble(scramble(i) + 1), static_cast<std::uint32_t>(i)};
+  std::ranges::transform(numbers, keyed.begin(),
+                         [](std::uint32_t i) { return std::pair(scramble(scramble(i) + 1), i); });
   std::ranges::sort(keyed);
-  std::vector<std::uint32_t> order(points);
-  std::ranges::transform(keyed, order.begin(), [](const auto& entry) { return entry.second; });
-  return order;
+  std::ranges::transform(keyed, numbers.begin(), [](const auto& entry) { return entry.second; });
 }
 
 // Appends chunks of `numbers` to `chunks`: halves them across the longest side of their box until
@@ -33,7 +31,7 @@ void halve(const PointCloud& cloud, Numbers numbers, std::size_t level, std::siz
            std::vector<PointChunk>& chunks) {
   if (numbers.size() <= largest) {
     chunks.push_back({level, {numbers.begin(), numbers.end()}});
-    std::ranges::sort(chunks.back().points);
+    shuffle(chunks.back().points);
     return;
   }
   Eigen::AlignedBox3f box;
@@ -76,7 +74,9 @@ PointCloud CloudSample::take() {
 
 std::vector<PointChunk> divide_into_chunks(const PointCloud& cloud, std::size_t largest) {
   if (cloud.size() >= 0xFFFFFFFFu) fail("the cloud has too many points to show");
-  std::vector<std::uint32_t> order = random_order(cloud.size());
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  shuffle(order);
   std::vector<PointChunk> chunks;
   std::size_t begin = 0;
   for (std::size_t level = 0, end = largest; begin < order.size(); ++level, end *= 4) {

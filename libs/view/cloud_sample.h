@@ -34,7 +34,7 @@ class CloudSample {
   PointCloud sample_;
 };
 
-// A part of a cloud: points of one level that are near each other.
+// A part of a cloud: points of one level that are near each other, in random order.
 struct PointChunk {
   std::size_t level = 0;
   std::vector<std::uint32_t> points;  // indices into the cloud

@@ -103,6 +103,19 @@ TEST(Chunks, OfTheFirstLevelsAreAnEvenSample) {
   }
 }
 
+TEST(Chunks, HaveTheirPointsInRandomOrder) {
+  const PointCloud cloud = random_cloud(20000);
+  double early = 0, all = 0;
+  for (const PointChunk& chunk : divide_into_chunks(cloud, 100)) {
+    std::vector<std::uint32_t> sorted = chunk.points;
+    std::ranges::sort(sorted);
+    const std::uint32_t quarter = sorted[sorted.size() / 4];
+    for (std::size_t k = 0; k < chunk.points.size() / 2; ++k, ++all)
+      early += chunk.points[k] < quarter;
+  }
+  EXPECT_NEAR(early, all / 4, 5 * std::sqrt(all * 0.25 * 0.75));
+}
+
 // Every chunk of a level has its own part of space, so their boxes fill the box of the cloud once.
 TEST(Chunks, OfALevelHaveTheirOwnSpace) {
   const PointCloud cloud = random_cloud(10000);

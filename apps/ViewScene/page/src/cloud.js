@@ -15,9 +15,6 @@ const FRAGMENT = `
   varying vec3 shown;
   void main() { gl_FragColor = vec4(shown, 1.0); }`;
 
-// The most points that are drawn while the view moves.
-const MOVING = 1500000;
-
 export class Cloud {
   constructor() {
     this.group = new three.Group();
@@ -44,15 +41,29 @@ export class Cloud {
     object.updateMatrixWorld();
     const end = (bytes.length - 3 * n) >> 1;
     this.group.add(object);
-    this.chunks.push({ entry, object, positions, before: this.points,
+    this.chunks.push({ entry, object, positions,
                        views: views ? words.slice(3 * n, 4 * n) : null,
                        lists: views ? listsOf(words.slice(4 * n, end), entry.lists) : [] });
     this.points += n;
   }
 
-  /** Draws fewer points while the view moves. */
-  detail(moving) {
-    for (const chunk of this.chunks) chunk.object.visible = !moving || chunk.before < MOVING;
+  /** Chooses the points to draw: about those from number `first` to `last`, in an order in which the
+   * first points are an even sample. These are the coarse levels, and of the next level the same
+   * share of every chunk, because the points of a chunk are in random order. */
+  show(first, last) {
+    for (let level = 0, at = 0, before = 0; at < this.chunks.length; ++level) {
+      const begin = at;
+      let points = 0;
+      for (; at < this.chunks.length && this.chunks[at].entry.level === level; ++at)
+        points += this.chunks[at].entry.points;
+      const share = number => Math.min(Math.max((number - before) / points, 0), 1);
+      for (const { entry, object } of this.chunks.slice(begin, at)) {
+        const [low, high] = [first, last].map(number => Math.ceil(share(number) * entry.points));
+        object.visible = high > low;
+        object.geometry.setDrawRange(low, high - low);
+      }
+      before += points;
+    }
   }
 
   position(chunk, i) {

@@ -25,7 +25,7 @@ function toggle(id, group, view) {
   button.onclick = () => {
     group.visible = !group.visible;
     button.setAttribute("aria-pressed", group.visible);
-    view.ask();
+    view.move();
   };
 }
 
@@ -60,18 +60,19 @@ function start(scene) {
     state.picked = point.position;
     if (state.tab !== "point") choose("point");
     showPoint(scene, point.position, point.views);
-    view.ask();
+    view.drawn();
   };
-  view = new View(scene, pick, () => drawOverlay(
-    place => view.screenOf(place), state.picked, paths ? paths.all : [], state.keyboard, view.size));
-  paths = new Paths(scene, () => view.ask());
+  const overlay = () => drawOverlay(place => view.screenOf(place), state.picked,
+                                    paths ? paths.all : [], state.keyboard, view.size);
+  view = new View(scene, pick, overlay);
+  paths = new Paths(scene, () => view.drawn());
   toggle("show-points", view.cloud.group, view);
   toggle("show-cameras", view.cameras.group, view);
   toggle("show-mesh", view.mesh.group, view);
   byId("show-mesh").hidden = !scene.mesh;
   const resize = factor => () => {
     view.pointSize = Math.min(Math.max(view.pointSize * factor, 1), 16);
-    view.ask();
+    view.move();
   };
   byId("larger").onclick = resize(1.4);
   byId("smaller").onclick = resize(1 / 1.4);
@@ -88,7 +89,7 @@ function listKeys(view, paths, pick) {
   const aim = keyboard => {
     state.keyboard = keyboard;
     view.canvas.classList.toggle("keyboard", keyboard);
-    view.ask();
+    view.drawn();
   };
   view.canvas.addEventListener("blur", () => aim(false));
   view.canvas.addEventListener("pointerdown", () => aim(false));
@@ -108,7 +109,7 @@ async function load(scene, { view }) {
   await loadAll("cloud", scene.chunks, (entry, bytes) => {
     view.cloud.add(entry, bytes);
     byId("status").textContent = `${count(view.cloud.points)} of ${count(scene.points)} points`;
-    view.ask();
+    view.move();
   });
   if (scene.mesh) {
     byId("status").textContent = "Loading the mesh…";
@@ -116,9 +117,10 @@ async function load(scene, { view }) {
     await loadAll("texture", scene.mesh.textures, (entry, bytes) => images.push(bytes));
     for (const image of images) await view.mesh.addTexture(image);
     await loadAll("mesh", scene.mesh.parts, (entry, bytes) => view.mesh.add(entry, bytes));
-    view.ask();
+    view.move();
   }
   byId("status").textContent = `${count(view.cloud.points)} points`;
+  view.rest();
 }
 
 function report(error) {

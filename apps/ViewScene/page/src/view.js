@@ -8,13 +8,17 @@ import { byId } from "./elements.js";
 import { Mesh } from "./mesh.js";
 
 const GROUND = 0x171a1e;
-const STILL = 250; // [ms] without a move before all points are drawn
+const STILL = 250; // [ms] without a move before more points are drawn
+// The time that a picture may take while the view moves, and a portion when it stands still [ms].
+const MOVING_TIME = 60, PORTION_TIME = 150;
 
 export class View {
   /** `clicked(x, y)`: called for a click on the canvas. `drawn()`: called after each drawing. */
   constructor(scene, clicked, drawn) {
     this.canvas = byId("canvas");
-    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    this.renderer = new three.WebGLRenderer({
+      canvas: this.canvas, antialias: true, preserveDrawingBuffer: true // for drawMore()
+    });
     this.renderer.setClearColor(GROUND);
     this.camera = new three.PerspectiveCamera(50, 1, 0.01, 100);
     this.world = new three.Scene();
@@ -42,7 +46,7 @@ export class View {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.ask();
+    this.move();
   }
 
   /** The whole reconstruction, seen in the mean direction of the photographs. */
@@ -66,22 +70,60 @@ export class View {
     this.controls.place(eye);
   }
 
-  /** Called while the view moves: draws fewer points, and all points when it stands still. */
+  moving = 300000; // the most points while the view moves
+  loading = true; // until the first call of rest()
+
+  /** Draws the view after a change: some points at once, and all when the view stands still. */
   move() {
-    this.cloud.detail(true);
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => { this.cloud.detail(false); this.ask(); }, STILL);
-    this.ask();
+    cancelAnimationFrame(this.next);
+    this.complete = false;
+    this.asked ??= requestAnimationFrame(() => {
+      this.asked = null;
+      this.cloud.show(0, this.moving);
+      this.draw();
+    });
+    if (!this.loading) this.timer = setTimeout(() => this.rest(), STILL);
   }
 
-  ask() {
-    this.asked ??= requestAnimationFrame(() => { this.asked = null; this.draw(); });
+  /** Draws all points, in portions, so that the page stays usable: computers without a graphics card
+   * draw a thousand times more slowly. Called when all data are loaded, and when the view stands
+   * still. Times a picture of the coarse levels. */
+  rest() {
+    this.loading = false;
+    const points = Math.min(this.moving, this.cloud.points);
+    this.cloud.show(0, points);
+    this.drawAndWait(); // the first picture of a point also loads it to the graphics card
+    const begin = performance.now();
+    this.drawAndWait();
+    const perPoint = (performance.now() - begin) / Math.max(points, 1);
+    if (points > 100000) this.moving = Math.max(MOVING_TIME / perPoint, 200000);
+    this.drawMore(points, Math.max(PORTION_TIME / perPoint, 50000));
+  }
+
+  // Adds the points from number `first` on to the picture, in portions.
+  drawMore(first, portion) {
+    this.complete = first >= this.cloud.points;
+    if (this.complete) return;
+    this.next = requestAnimationFrame(() => {
+      this.cloud.show(first, first + portion);
+      this.renderer.autoClear = false;
+      this.draw();
+      this.renderer.autoClear = true;
+      this.drawMore(first + portion, portion);
+    });
   }
 
   draw() {
     this.cloud.material.uniforms.size.value = this.pointSize * this.ratio;
     this.renderer.render(this.world, this.camera);
     this.drawn();
+  }
+
+  drawAndWait() {
+    this.draw();
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   pointSize = 2;
@@ -116,6 +158,7 @@ export class View {
     };
     read(new three.Scene());
     const ground = pixels.slice(0, 3);
+    this.cloud.show(0, Infinity);
     this.draw();
     read(this.world);
     let shown = 0;
