@@ -6,6 +6,7 @@ import base64
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -27,7 +28,7 @@ class Browser:
             ["/bin/sh", "-c", f'exec 3<&{to_browser} 4>&{from_browser} "$@"', "sh", CHROMIUM,
              "--headless=new", "--no-sandbox", "--disable-gpu-sandbox", "--use-angle=swiftshader",
              "--enable-unsafe-swiftshader", "--no-first-run", "--disable-extensions",
-             "--disable-dev-shm-usage", "--remote-debugging-pipe",
+             "--disable-dev-shm-usage", "--disable-breakpad", "--remote-debugging-pipe",
              f"--user-data-dir={self.profile.name}"],
             pass_fds=(to_browser, from_browser), stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -51,9 +52,13 @@ class Browser:
         try:
             self.call("Browser.close")
             self.process.wait(10)
-        except (OSError, TimeoutError, subprocess.TimeoutExpired):
-            self.process.kill()
-            self.process.wait()
+        except (OSError, RuntimeError, subprocess.TimeoutExpired):
+            pass
+        try:
+            os.killpg(self.process.pid, signal.SIGKILL)  # and its children, if any are left
+        except ProcessLookupError:
+            pass
+        self.process.wait()
         os.close(self.out)
         os.close(self.input)
         for _ in range(50):  # processes of the browser may still write to the profile
