@@ -194,6 +194,7 @@ class ViewPage(ViewCase):
         page.press("Backspace", 8)
         self.assertIn("3 points", page.value("document.getElementById('paths').innerText"))
         self.check_mesh(page)
+        self.check_volume(page)
         self.assertEqual(page.errors, [])
 
     def check_csv(self, page, places):
@@ -205,7 +206,7 @@ class ViewPage(ViewCase):
                 break
             page.wait_for("new Promise(resolve => setTimeout(() => resolve(true), 50))")
         header, *rows = read(file).decode().splitlines()
-        self.assertEqual(header, "path,point,x,y,z,segment,length,area")
+        self.assertEqual(header, "path,point,x,y,z,segment,length,area,volume_above,volume_below")
         self.assertEqual(len(rows), len(places))
         length = 0
         for number, (row, place) in enumerate(zip(rows, places)):
@@ -235,6 +236,22 @@ class ViewPage(ViewCase):
         page.click(*self.place_of(page, (0.05, 0.03, 1.1)))
         for value, expected in zip(page.value("axial.state.picked"), (0.05, 0.03, 1.1)):
             self.assertAlmostEqual(value, expected, delta=0.003)  # a pixel is about 2 mm wide
+
+    def check_volume(self, page):
+        """The mesh is the plane z = 1.1. The path is a triangle in the plane z = 1."""
+        page.click_on("#show-points")
+        page.click_on("[data-tab=measure]")
+        page.click_on("#clear")
+        corners = [points()[k][0] for k in (0, 15, 3)]
+        self.assertEqual([z for _, _, z in corners], [1, 1, 1])
+        for place in corners:
+            page.click(*self.place_of(page, place))
+        page.click_on(".volume")
+        volumes = page.value("axial.paths.all[0].volumes")
+        self.assertEqual(volumes["above"], 0)
+        self.assertAlmostEqual(volumes["below"], 0.24 * 0.24 / 2 * 0.1, delta=0.00288 * 0.005)
+        self.assertEqual(volumes["covered"], 1)
+        self.assertIn("0.00288", page.value("axial.paths.csv()"))
 
     def test_a_narrow_page_works_with_touch_and_keyboard(self):
         page = self.opened(width=390, height=844, touch=True)

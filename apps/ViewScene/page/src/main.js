@@ -65,7 +65,7 @@ function start(scene) {
   const overlay = () => drawOverlay(place => view.screenOf(place), state.picked,
                                     paths ? paths.all : [], state.keyboard, view.size);
   view = new View(scene, pick, overlay);
-  paths = new Paths(scene, () => view.drawn());
+  paths = new Paths(scene, view.mesh, () => view.drawn());
   toggle("show-points", view.cloud.group, view);
   toggle("show-cameras", view.cameras.group, view);
   toggle("show-mesh", view.mesh.group, view);

@@ -72,6 +72,12 @@ export class Mesh {
     return new three.MeshNormalMaterial({ flatShading: true, side });
   }
 
+  /** The positions and the faces of all parts, for volumes. */
+  arrays() {
+    return this.parts.map(({ geometry }) => ({
+      positions: geometry.getAttribute("position").array, indices: geometry.index.array }));
+  }
+
   /** The point of the mesh at the place of `caster`, as [x, y, z], or null. */
   pick(caster) {
     const hit = caster.intersectObjects(this.parts, false)[0];

@@ -2,11 +2,13 @@
 // The tab "Measure": paths of picked points, their lengths and areas, saved as CSV.
 import { byId, make, table } from "./elements.js";
 import { areaOf, csv, quantity, segmentsOf, total } from "./measure.js";
+import { volumesOf } from "./volume.js";
 
 export class Paths {
-  /** `changed`: called after each change. */
-  constructor(scene, changed) {
+  /** `mesh`: for volumes. `changed`: called after each change. */
+  constructor(scene, mesh, changed) {
     this.scene = scene;
+    this.mesh = mesh;
     this.changed = changed;
     this.all = [[]];
     byId("undo").onclick = () => this.removeLast();
@@ -18,12 +20,19 @@ export class Paths {
 
   add(place) {
     this.all.at(-1).push(place);
+    this.all.at(-1).volumes = null;
     this.show();
   }
 
   removeLast() {
     if (!this.all.at(-1).length && this.all.length > 1) this.all.pop();
     this.all.at(-1).pop();
+    this.all.at(-1).volumes = null;
+    this.show();
+  }
+
+  measureVolume(path) {
+    path.volumes = volumesOf(path, this.mesh.arrays(), this.scene.view.towards);
     this.show();
   }
 
@@ -38,8 +47,15 @@ export class Paths {
         (value, k) => [`${k + 1} to ${k + 2}`, quantity(value, unit)]);
       if (path.length > 1) rows.push(["Length", quantity(total(path), unit)]);
       if (path.length > 2) rows.push(["Area", quantity(areaOf(path), unit, 2)]);
+      const volumes = path.volumes;
+      if (volumes)
+        rows.push(["Mesh above the plane", quantity(volumes.above, unit, 3)],
+                  ["Mesh below the plane", quantity(volumes.below, unit, 3)],
+                  ["Covered by the mesh", `${(100 * volumes.covered).toFixed(1)} %`]);
+      const more = areaOf(path) > 0 && !volumes && this.scene.mesh
+        ? [make("button", { class: "volume", onclick: () => this.measureVolume(path) }, "Volume")] : [];
       return make("div", {}, make("h2", {}, `Path ${number + 1}: ${path.length} point` +
-        (path.length === 1 ? "" : "s")), table(rows, "number"));
+        (path.length === 1 ? "" : "s")), table(rows, "number"), ...more);
     }));
     this.changed();
   }
