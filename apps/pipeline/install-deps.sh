@@ -10,9 +10,13 @@ packages=(
   libeigen3-dev libopencv-dev libjpeg-dev libpng-dev libtiff-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
   libnanoflann-dev libembree-dev libcgal-dev libmaxflow-dev libxxhash-dev libboost-dev libboost-program-options-dev
   libstb-dev libtinygltf-dev libceres-dev libsuitesparse-dev libgdal-dev
+  # to build the page of ViewScene without npm
+  esbuild libjs-three
   # to test
   clang-format doxygen dpkg-dev file libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   clang libclang-rt-dev
+  # to test the page of ViewScene
+  chromium nodejs
   # to test the pipeline on a cluster
   slurmctld slurmd slurm-client munge
   # to run the pipeline

@@ -16,7 +16,8 @@ import unittest
 BUILD, SOURCE, VERSION = sys.argv[1:4]
 PROGRAMS = ["AlignModel", "CalibrateHousing", "CompareSurveys", "DensifyPointCloud",
             "EvaluateReconstruction", "InterfaceCOLMAP", "MapSurface", "ReconstructMesh", "RefineMesh",
-            "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene"]
+            "RefinePoses", "ReproducePaper", "SimulateUnderwater", "TextureMesh", "TransformScene",
+            "ViewScene"]
 
 
 def output_of(*command):
@@ -58,6 +59,8 @@ class Case(unittest.TestCase):
             self.assertRegex(said, rf"^{program} {re.escape(VERSION)}, commit ([0-9a-f]+\+?|unknown), "
                                    "instruction sets: SSE2, AVX2, AVX-512\n$")
             self.assertTrue(list((prefix / "share/man/man1").glob(program + ".1*")), program)
+        page = "share/axialmvs/view/viewer.js"
+        self.assertEqual((prefix / page).exists(), pathlib.Path(BUILD, page).exists())
         self.assertIn("--housing", output_of(prefix / "bin/axial-reconstruct", "--help"))
         self.assertIn("--camera-model", output_of(prefix / "bin/axial-colmap-model", "--help"))
         self.assertTrue((prefix / "share/doc").is_dir())

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contents.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/naming.h"
+#include "base/parallel.h"
+#include "base/version.h"
+#include "folder.h"
+#include "io/images/bit_depth.h"
+#include "io/images/image.h"
+#include "io/openmvs/point_source.h"
+#include "io/textured/textured_mesh.h"
+#include "scene/resolution.h"
+#include "view/camera_data.h"
+#include "view/cloud_data.h"
+#include "view/cloud_sample.h"
+#include "view/first_view.h"
+#include "view/mesh_data.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kPartFaces = 500'000;  // keeps a part of a mesh below 32 MB
+constexpr int kQuality = 88;                 // of JPEG files
+constexpr std::size_t kChecks = 3;           // points of each camera that the viewer projects, too
+
+Json list(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+cv::Size reduced(cv::Size size, int longest) {
+  return working_size(size.width, size.height, {0, 1, longest});
+}
+
+void read_mesh(const Options& options, Contents& contents) {
+  if (options.mesh.empty()) return;
+  const LocalFrame& frame = contents.scene.frame;
+  std::size_t faces = 0;
+  if (io::is_textured_mesh(options.mesh)) {
+    contents.textured = io::read_textured_mesh(options.mesh, frame);
+    faces = contents.textured->mesh.faces.size();
+  } else {
+    contents.mesh = io::read_mesh_of_scene(frame, options.mesh);
+    faces = contents.mesh->faces.size();
+  }
+  if (faces == 0) fail("{}: the mesh has no faces", options.mesh.string());
+  log_info("{}: {} faces", options.mesh.string(), faces);
+}
+
+// The number of the camera of each image; kNoId for an image that is not calibrated.
+std::vector<std::uint32_t> camera_numbers(const Scene& scene) {
+  std::vector<std::uint32_t> numbers(scene.images.size(), kNoId);
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (scene.images[i].calibrated) numbers[i] = next++;
+  return numbers;
+}
+
+// A few points of the cloud that each image sees.
+std::vector<std::vector<Eigen::Vector3f>> points_to_check(const Contents& contents) {
+  const PointCloud& cloud = contents.cloud;
+  std::vector<std::vector<Eigen::Vector3f>> points(contents.scene.scene.images.size());
+  if (cloud.view_begin.empty()) return points;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (const std::uint32_t image : cloud.views_of(i))
+      if (image < points.size() && points[image].size() < kChecks)
+        points[image].push_back(cloud.positions[i]);
+  return points;
+}
+
+Json write_cloud(const Contents& contents, const Options& options, const fs::path& staging) {
+  const std::vector<std::uint32_t> cameras = camera_numbers(contents.scene.scene);
+  DataFiles files(staging, "cloud");
+  Json chunks = Json::array();
+  for (const view::PointChunk& chunk :
+       view::divide_into_chunks(contents.cloud, view::kMostChunkPoints)) {
+    const view::ChunkData data =
+        naming(options.cloud, [&] { return view::chunk_data(contents.cloud, chunk, cameras); });
+    chunks.push_back({{"file", files.add(data.bytes)},
+                      {"level", chunk.level},
+                      {"points", chunk.points.size()},
+                      {"low", list(data.low.cast<double>())},
+                      {"size", list(data.size.cast<double>())},
+                      {"lists", data.lists}});
+  }
+  return chunks;
+}
+
+Json write_textures(const TexturedMesh& mesh, int longest, const fs::path& staging) {
+  DataFiles files(staging, "texture");
+  const fs::path jpeg = staging / "texture.jpg";
+  Json textures = Json::array();
+  for (const cv::Mat3b& texture : mesh.textures) {
+    io::write_jpeg(jpeg, resized_image(texture, reduced(texture.size(), longest)), kQuality);
+    textures.push_back({{"file", files.add(read_file(jpeg))}});
+    fs::remove(jpeg);
+  }
+  return textures;
+}
+
+Json write_mesh(const Contents& contents, const Options& options, const fs::path& staging) {
+  Json mesh{{"textures", Json::array()}, {"parts", Json::array()}};
+  std::vector<view::MeshPart> parts;
+  if (contents.textured) {
+    mesh["textures"] = write_textures(*contents.textured, options.texture_size, staging);
+    parts = view::mesh_parts(*contents.textured, kPartFaces);
+  } else {
+    parts = view::mesh_parts(*contents.mesh, kPartFaces);
+  }
+  DataFiles files(staging, "mesh");
+  for (const view::MeshPart& part : parts)
+    mesh["parts"].push_back({{"file", files.add(part.bytes)},
+                             {"vertices", part.vertices},
+                             {"faces", part.faces},
+                             {"texture", part.texture},
+                             {"colors", part.colors}});
+  return mesh;
+}
+
+// Writes the photograph of `image` to `file`. Returns the size of the reduced photograph.
+cv::Size write_photograph(const SceneImage& image, int bits, int longest, const fs::path& file) {
+  const cv::Mat3b pixels = io::in_8_bits(io::read_photograph(image.path).pixels, bits);
+  if (!same_shape(pixels.size(), {image.camera.width, image.camera.height}))
+    fail("{}: is {}x{}, but its camera is {}x{}", image.path, pixels.cols, pixels.rows,
+         image.camera.width, image.camera.height);
+  const cv::Size size = reduced(pixels.size(), longest);
+  io::write_jpeg(file, resized_image(pixels, size), kQuality);
+  return size;
+}
+
+Json write_cameras(const Contents& contents, const Options& options, const fs::path& staging) {
+  std::vector<const SceneImage*> images;
+  std::vector<fs::path> files;
+  std::vector<io::ImageHeader> headers;
+  const auto checks = points_to_check(contents);
+  Json cameras = Json::array();
+  for (const SceneImage& image : contents.scene.scene.images) {
+    if (!image.calibrated) continue;
+    images.push_back(&image);
+    files.emplace_back(image.path);
+    headers.push_back(io::read_image_header(image.path));
+    const auto index = static_cast<std::size_t>(&image - contents.scene.scene.images.data());
+    cameras.push_back(view::camera_data(image, checks[index]));
+  }
+  const int bits = io::common_bit_depth(files, headers, options.bit_depth, "--bit-depth");
+  for_each_in_flight(images.size(), thread_count(), [&](std::size_t i) {
+    const std::string name = fmt::format("photographs/{:05}.jpg", i);
+    const cv::Size size =
+        write_photograph(*images[i], bits, options.photograph_size, staging / name);
+    Json& camera = cameras[i];
+    camera["name"] = files[i].filename().string();
+    camera["photo"] = name;
+    camera["photo_size"] = {size.width, size.height};
+  });
+  return cameras;
+}
+
+Json files_of(const Options& options) {
+  Json files{{"scene", options.scene.scene.filename().string()},
+             {"cloud", options.cloud.filename().string()}};
+  if (!options.mesh.empty()) files["mesh"] = options.mesh.filename().string();
+  return files;
+}
+
+}  // namespace
+
+Contents read_contents(const Options& options) {
+  Contents contents;
+  contents.scene = io::read_scene_with_cameras(options.scene);
+  if (std::ranges::none_of(contents.scene.scene.images, &SceneImage::calibrated))
+    fail("{}: has no calibrated image", options.scene.scene.string());
+  view::CloudSample sample(options.max_points);
+  constexpr std::size_t kPortion = 1 << 18;
+  io::read_cloud_of_scene_in_portions(
+      contents.scene.frame, options.cloud, kPortion,
+      [&](const PointCloud& portion, std::size_t all) { sample.add(portion, all); });
+  contents.all_points = sample.added();
+  contents.cloud = sample.take();
+  if (contents.cloud.size() == 0) fail("{}: the cloud has no points", options.cloud.string());
+  log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
+           contents.all_points);
+  read_mesh(options, contents);
+  return contents;
+}
+
+void write_contents(const Contents& contents, const Options& options, const fs::path& staging) {
+  make_folder(staging / "data");
+  make_folder(staging / "photographs");
+  const io::SceneWithCameras& scene = contents.scene;
+  const view::FirstView first =
+      view::first_view(contents.cloud, scene.scene.images, !scene.frame.is_world());
+  Json data{{"program", version_line("ViewScene")}, {"files", files_of(options)},
+            {"origin", list(scene.frame.origin)},   {"metric", scene.housing.has_value()},
+            {"points", contents.cloud.size()},      {"all_points", contents.all_points}};
+  data["view"] = {{"centre", list(first.centre)},
+                  {"radius", first.radius},
+                  {"towards", list(first.towards)},
+                  {"up", list(first.up)}};
+  data["cameras"] = write_cameras(contents, options, staging);
+  data["chunks"] = write_cloud(contents, options, staging);
+  if (contents.mesh || contents.textured) data["mesh"] = write_mesh(contents, options, staging);
+  write_scene_file(staging, data);
+}
+
+}  // namespace axial::apps

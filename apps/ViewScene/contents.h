@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+#include "io/openmvs/scene_with_cameras.h"
+#include "options.h"
+#include "scene/mesh.h"
+#include "scene/point_cloud.h"
+#include "scene/textured_mesh.h"
+
+namespace axial::apps {
+
+// What the viewer shows, in the frame of the scene.
+struct Contents {
+  io::SceneWithCameras scene;
+  PointCloud cloud;            // at most about Options::max_points points
+  std::size_t all_points = 0;  // of the file of the cloud
+  // At most one of the two meshes.
+  std::optional<Mesh> mesh;
+  std::optional<TexturedMesh> textured;
+};
+
+// Reads the files that `options` name. Error for a malformed file, a cloud without points, a mesh
+// without faces, and a scene without calibrated images.
+Contents read_contents(const Options& options);
+
+// Writes the data files and the reduced photographs to `staging`. Error for a photograph that
+// cannot be read or has another shape than its camera, for views of the cloud that the scene does
+// not have, and for a file that cannot be written.
+void write_contents(const Contents& contents, const Options& options,
+                    const std::filesystem::path& staging);
+
+}  // namespace axial::apps

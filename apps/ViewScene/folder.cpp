@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/subprocess.h"
+#include "io/bytes/json.h"
+#include "io/bytes/written_files.h"
+#include "view/base64.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kList = "data/files.json";
+constexpr std::size_t kFileBytes = 6'000'000;  // of data; a third more in base64
+
+void write(const fs::path& path, std::string_view text, std::ios::openmode mode) {
+  std::ofstream out(path, std::ios::binary | mode);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) fail("{}: cannot be written", path.string());
+}
+
+}  // namespace
+
+fs::path page_folder() {
+  fs::path folder = program_folder().parent_path() / "share/axialmvs/view";
+  if (!fs::exists(folder / "viewer.js"))
+    fail(
+        "--report: the viewer was not built, because {} is missing; docs/view.md tells what the "
+        "build needs",
+        (folder / "viewer.js").string());
+  return folder;
+}
+
+void require_own_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error)) {
+    if (!fs::is_directory(folder, error))
+      fail("--report {}: is a file, not a folder", folder.string());
+    if (!fs::exists(folder / kList, error) && !fs::is_empty(folder, error))
+      fail("--report {}: contains other files: give an empty or a new folder", folder.string());
+  }
+  require_writable_folder(folder);
+}
+
+void replace_earlier(const fs::path& folder, const fs::path& staging) {
+  const nlohmann::json now = io::list_files(staging);
+  if (fs::exists(folder / kList)) {
+    std::vector<fs::path> old = io::find_written(folder, io::read_json(folder / kList)).unchanged;
+    std::erase_if(old, [&](const fs::path& file) { return now.contains(file.generic_string()); });
+    io::remove_below(folder, old);
+  }
+  io::write_json(staging / kList, now);
+}
+
+DataFiles::DataFiles(fs::path staging, std::string kind)
+    : staging_(std::move(staging)), kind_(std::move(kind)) {}
+
+std::string DataFiles::add(std::string_view bytes) {
+  if (room_ < bytes.size()) {
+    ++files_;
+    room_ = std::max(kFileBytes, bytes.size());
+  }
+  room_ -= bytes.size();
+  std::string name = fmt::format("data/{}-{:04}.js", kind_, files_ - 1);
+  write(staging_ / name,
+        fmt::format("axialData.put(\"{}\",{},\"{}\");\n", kind_, entries_++, view::base64(bytes)),
+        std::ios::app);
+  return name;
+}
+
+void write_scene_file(const fs::path& staging, const nlohmann::ordered_json& scene) {
+  write(staging / "data/scene.js", "axialData.scene(" + io::to_text(scene) + ");\n",
+        std::ios::trunc);
+}
+
+}  // namespace axial::apps

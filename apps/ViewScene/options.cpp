@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+
+#include <string>
+
+#include "base/error.h"
+#include "base/version.h"
+#include "io/images/bit_depth.h"
+#include "io/openmvs/scene_options.h"
+
+namespace axial::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The values of the command line before they are checked and converted.
+struct Raw {
+  std::string input, cloud, mesh, report;
+  io::SceneOptions scene;
+};
+
+void declare(OptionList& list, Raw& raw, Options& options) {
+  list.add("input-file,i", &raw.input, "scene with cameras and images (.mvs)")
+      .add("pointcloud-file,p", &raw.cloud, "cloud to show, PLY (<input>.ply)")
+      .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB")
+      .add("report", &raw.report, "folder to write; a browser shows its index.html")
+      .add_with_default("max-points", &options.max_points,
+                        "largest number of points; a larger cloud is thinned out randomly")
+      .add_with_default("photograph-size", &options.photograph_size,
+                        "longest side of the photographs in the folder [px]")
+      .add_with_default("texture-size", &options.texture_size,
+                        "longest side of the textures in the folder [px]");
+  io::declare_bit_depth(list, options.bit_depth);
+  io::declare_scene_options(list, raw.scene);
+}
+
+template <class T>
+void check_range(const char* name, T value, T low, T high) {
+  if (!(value >= low && value <= high))
+    fail("--{} {}: must be from {} to {}", name, value, low, high);
+}
+
+}  // namespace
+
+Options parse_command_line(int argc, const char* const* argv) {
+  Options options;
+  Raw raw;
+  ProgramOptions program{
+      "ViewScene", "writes a folder for the browser, to look at a reconstruction and measure on it",
+      OptionList("View options")};
+  program.version = version_line(program.name);
+  declare(program.visible, raw, options);
+  options.parsed = parse_options(argc, argv, program);
+  if (!options.parsed.run) return options;
+  const CommonOptions& common = options.parsed.common;
+  if (raw.report.empty()) fail("--report: give the folder to write");
+  check_range("max-points", options.max_points, std::uint64_t{1}, std::uint64_t{1} << 30);
+  check_range("photograph-size", options.photograph_size, 16, 1 << 16);
+  check_range("texture-size", options.texture_size, 16, 1 << 15);
+  io::check_bit_depth(options.bit_depth, "--bit-depth");
+  options.scene = io::scene_files(raw.scene, raw.input, common);
+  options.cloud = raw.cloud.empty() ? fs::path(options.scene.scene).replace_extension(".ply")
+                                    : in_working_folder(common, raw.cloud);
+  options.mesh = in_working_folder(common, raw.mesh);
+  options.report = in_working_folder(common, raw.report).lexically_normal();
+  if (!options.report.has_filename()) options.report = options.report.parent_path();
+  return options;
+}
+
+}  // namespace axial::apps

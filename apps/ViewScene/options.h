@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "base/program.h"
+#include "io/openmvs/scene_with_cameras.h"
+
+namespace axial::apps {
+
+struct Options {
+  ParsedOptions parsed;
+  io::SceneFiles scene;
+  std::filesystem::path cloud, mesh;  // an empty `mesh`: none
+  std::filesystem::path report;       // the folder to write
+  std::uint64_t max_points = 10'000'000;
+  int photograph_size = 1024;  // longest side of the reduced photographs [px]
+  int texture_size = 4096;     // longest side of the reduced textures [px]
+  int bit_depth = 0;
+};
+
+// Parses and checks the command line. Error for an unknown option and for a value out of range.
+Options parse_command_line(int argc, const char* const* argv);
+
+}  // namespace axial::apps

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The viewer of a folder that ViewScene wrote.
+import { loadAll, loadScene } from "./data.js";
+import { byId, make, table } from "./elements.js";
+import { drawOverlay } from "./overlay.js";
+import { Paths } from "./paths.js";
+import { listPhotographs, showPoint } from "./photographs.js";
+import { largestError } from "./project.js";
+import { View } from "./view.js";
+
+const TABS = ["point", "measure", "photographs", "about"];
+const state = { tab: "point", picked: null, keyboard: false };
+const count = value => value.toLocaleString("en-US");
+
+function choose(tab) {
+  state.tab = tab;
+  for (const button of document.querySelectorAll("nav button"))
+    button.setAttribute("aria-selected", button.dataset.tab === tab);
+  for (const name of TABS) byId(name).hidden = name !== tab;
+}
+
+function toggle(id, group, view) {
+  const button = byId(id);
+  button.setAttribute("aria-pressed", group.visible);
+  button.onclick = () => {
+    group.visible = !group.visible;
+    button.setAttribute("aria-pressed", group.visible);
+    view.move();
+  };
+}
+
+function about(scene) {
+  const checks = scene.cameras.reduce((sum, camera) => sum + camera.check.length, 0);
+  const error = Math.max(0, ...scene.cameras.map(largestError));
+  const keys = [["Mouse", "drag to turn, right button or Shift to move, wheel to zoom"],
+                ["Touch", "one finger turns, two fingers move and zoom, a tap picks"],
+                ["Arrows", "turn; with Shift: move"], ["+ and −", "zoom"],
+                ["Enter", "pick the point in the middle"], ["Backspace", "remove the last point of a path"],
+                ["1 to 4", "choose a tab"], ["R", "reset the view"]];
+  byId("about").replaceChildren(
+    make("h2", {}, "Reconstruction"),
+    table([["Scene", scene.files.scene], ["Cloud", scene.files.cloud],
+           ...scene.files.mesh ? [["Mesh", scene.files.mesh]] : [],
+           ["Points", `${count(scene.points)} of ${count(scene.all_points)}`],
+           ["Photographs", scene.cameras.length],
+           ["Unit", scene.metric ? "metre" : "not known (no port)"],
+           ["Written by", scene.program]]),
+    make("h2", {}, "Projection"),
+    make("p", { id: "projection" }, `The pixels of this page agree with AxialMVS to ${error.toExponential(1)} px ` +
+      `(${count(checks)} points).`),
+    make("h2", {}, "Keys"), table(keys));
+}
+
+function start(scene) {
+  let paths = null, view = null;
+  const pick = (x, y) => {
+    const point = view.pick(x, y);
+    if (!point) return;
+    if (state.tab === "measure") return paths.add(point.position);
+    state.picked = point.position;
+    if (state.tab !== "point") choose("point");
+    showPoint(scene, point.position, point.views);
+    view.drawn();
+  };
+  const overlay = () => drawOverlay(place => view.screenOf(place), state.picked,
+                                    paths ? paths.all : [], state.keyboard, view.size);
+  view = new View(scene, pick, overlay);
+  paths = new Paths(scene, view.mesh, () => view.drawn());
+  toggle("show-points", view.cloud.group, view);
+  toggle("show-cameras", view.cameras.group, view);
+  toggle("show-mesh", view.mesh.group, view);
+  byId("show-mesh").hidden = !scene.mesh;
+  const resize = factor => () => {
+    view.pointSize = Math.min(Math.max(view.pointSize * factor, 1), 16);
+    view.move();
+  };
+  byId("larger").onclick = resize(1.4);
+  byId("smaller").onclick = resize(1 / 1.4);
+  byId("reset").onclick = () => { view.cameras.choose(-1); view.reset(); };
+  for (const button of document.querySelectorAll("nav button"))
+    button.onclick = () => choose(button.dataset.tab);
+  listKeys(view, paths, pick);
+  listPhotographs(scene, number => view.lookFrom(scene.cameras[number], number));
+  about(scene);
+  return { view, paths };
+}
+
+function listKeys(view, paths, pick) {
+  const aim = keyboard => {
+    state.keyboard = keyboard;
+    view.canvas.classList.toggle("keyboard", keyboard);
+    view.drawn();
+  };
+  view.canvas.addEventListener("blur", () => aim(false));
+  view.canvas.addEventListener("pointerdown", () => aim(false));
+  view.canvas.addEventListener("keydown", event => {
+    aim(true);
+    if (event.key === "Enter") pick(view.size[0] / 2, view.size[1] / 2);
+    if (event.key === "Backspace") paths.removeLast();
+    if (event.key === "r") byId("reset").click();
+  });
+  document.addEventListener("keydown", event => {
+    if (!event.ctrlKey && !event.altKey && !event.metaKey && TABS[event.key - 1])
+      choose(TABS[event.key - 1]);
+  });
+}
+
+async function load(scene, { view }) {
+  await loadAll("cloud", scene.chunks, (entry, bytes) => {
+    view.cloud.add(entry, bytes);
+    byId("status").textContent = `${count(view.cloud.points)} of ${count(scene.points)} points`;
+    view.move();
+  });
+  if (scene.mesh) {
+    byId("status").textContent = "Loading the mesh…";
+    const images = [];
+    await loadAll("texture", scene.mesh.textures, (entry, bytes) => images.push(bytes));
+    for (const image of images) await view.mesh.addTexture(image);
+    await loadAll("mesh", scene.mesh.parts, (entry, bytes) => view.mesh.add(entry, bytes));
+    view.move();
+  }
+  byId("status").textContent = `${count(view.cloud.points)} points`;
+  view.rest();
+}
+
+function report(error) {
+  byId("status").className = "error";
+  byId("status").textContent = error.message;
+  console.error(error);
+}
+
+async function run() {
+  const scene = await loadScene();
+  document.title = scene.files.scene;
+  const parts = start(scene);
+  globalThis.axial = { scene, ...parts, state, ready: false }; // for tests
+  await load(scene, parts);
+  globalThis.axial.ready = true;
+}
+
+run().catch(report);
