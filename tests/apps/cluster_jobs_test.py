@@ -54,7 +54,7 @@ class Jobs(InFolder):
         given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
                  "lens_model": "OPENCV",
-                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "", "map": "",
+                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "", "map": "", "page": "",
                  "tiles": 1, "until": "cloud", "truth": "", "programs": "bin", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,

@@ -20,6 +20,9 @@ from programs import BIN, main, read, run
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "apps" / "pipeline" / "reconstruct"
 STEPS = ["features", "matches", "poses", "refine", "import", "densify", "mesh",
          "refine-mesh", "texture", "map", "evaluate"]
+PAGE = pathlib.Path(BIN).resolve().parent / "share" / "axialmvs" / "view" / "viewer.js"
+if PAGE.exists():
+    STEPS.insert(-1, "page")
 
 
 def camera_centres(images):
@@ -70,7 +73,7 @@ class WithStandIns(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
-                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface"):
+                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface", "ViewScene"):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         for name in ("lens", "housing"):
@@ -274,6 +277,7 @@ class Reconstruct(unittest.TestCase):
         self.assertTrue((out / "scene_textured.glb").read_bytes().startswith(b"glTF"))
         for kind in ("dem", "ortho", "views"):
             self.assertTrue((out / f"scene_map.{kind}.tif").read_bytes().startswith(b"II"), kind)
+        self.assertEqual((out / "page" / "index.html").exists(), "page" in STEPS)
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"
@@ -282,6 +286,7 @@ class Reconstruct(unittest.TestCase):
                 (["--scale-from", "positions:none"],
                  "--scale-from positions:none: file not found"),
                 (["--densify", "'a b"], "--densify 'a b: No closing quotation"),
+                (["--tiles", "0"], "--tiles 0: must be from 1 to 1000"),
                 (["--programs", str(self.scene)],
                  f"--programs {self.scene.resolve()}: RefinePoses not found; build the programs first")]:
             ended = self.ended(out, *options)

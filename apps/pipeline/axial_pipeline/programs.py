@@ -46,6 +46,16 @@ class Programs:
         """`output`: the begin of the names of the maps."""
         return [self.folder / "MapSurface", "-i", scene, "-m", mesh, "-o", output, *options]
 
+    def view_scene(self, scene, cloud, mesh, folder, *options):
+        """`folder`: of the page."""
+        return [self.folder / "ViewScene", "-i", scene, "-p", cloud, "-m", mesh, "--report", folder,
+                *options]
+
+    def has_page(self):
+        """Whether the build had what the page of ViewScene needs."""
+        program = (self.folder / "ViewScene").resolve()
+        return (program.parent.parent / "share" / "axialmvs" / "view" / "viewer.js").exists()
+
     def refine_poses(self, model, lens, housing, output, *options):
         return [self.folder / "RefinePoses", "-i", model, "--lens", lens, "--housing", housing, "-o",
                 output, *options]

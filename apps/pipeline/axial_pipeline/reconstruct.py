@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From photographs taken under water to a dense cloud, a textured mesh and maps, in one command:
+"""From photographs taken under water to a dense cloud, a textured mesh, maps and a page to look at
+them, in one command:
 
     reconstruct --images DIR --lens cameras.txt --housing housing.json -o OUT
 
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
 poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
-cloud into a textured mesh, and MapSurface maps it. The command of every step is printed and can be
-typed by hand. A killed run that is started again with the same options continues with the step that
-was killed; with other options, it continues with the first step that differs. A second run in the
-same folder is refused until the first run ends. With --cluster, a workflow of Snakemake runs the
-same commands, and several nodes of a cluster compute the depth maps (docs/cluster.md).
+cloud into a textured mesh, and MapSurface maps it. ViewScene writes a page for the browser that shows
+cloud, mesh and photographs. The command of every step is printed and can be typed by hand. A killed
+run that is started again with the same options continues with the step that was killed; with other
+options, it continues with the first step that differs. A second run in the same folder is refused
+until the first run ends. With --cluster, a workflow of Snakemake runs the same commands, and several
+nodes of a cluster compute the depth maps (docs/cluster.md).
 """
 
 import argparse
@@ -26,11 +28,12 @@ from .steps import Files, Step, Tiles, run_all
 
 
 PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
-            "TextureMesh", "MapSurface")
+            "TextureMesh", "MapSurface", "ViewScene")
 # Options whose values are options for a program, and this program.
 MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
                 "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
-                "map": "MapSurface"}
+                "map": "MapSurface", "page": "ViewScene"}
+RESULTS = ("cloud", "mesh", "texture", "map", "page")
 MOST_TILES = 1000  # as in the programs
 
 
@@ -64,9 +67,9 @@ def options(script_folder):
                         help="make cloud, mesh and textures in this many tiles, so that less memory is "
                         "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
                         "mesh in as many jobs (default: %(default)s)")
-    parser.add_argument("--until", choices=["cloud", "mesh", "texture", "map"], default="",
-                        help="last result to make (default: map; with --tiles: texture, because "
-                        "MapSurface needs the whole mesh with its textures)")
+    parser.add_argument("--until", choices=RESULTS, default="",
+                        help="last result to make (default: page, or map if the build has no page; "
+                        "with --tiles: texture, because MapSurface and ViewScene need the whole mesh)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
                         "positions: gives: the cloud is measured against it")
     parser.add_argument("--cluster", choices=["slurm", "local"], default="",
@@ -94,8 +97,15 @@ NOT_WITH_TILES = {"densify": ("--fusion-tiles", "--tile", "--estimate-normals", 
                   "texture": ("--tiles",)}
 
 
+def last_result(given):
+    has_page = Programs(given.programs).has_page()
+    if given.until == "page" and not has_page:
+        raise Failure("--until page: the page was not built (docs/view.md)")
+    return given.until or ("texture" if given.tiles > 1 else "page" if has_page else "map")
+
+
 def check_tiles(given):
-    """Refuses options of programs that contradict --tiles. Other programs would refuse them after hours."""
+    """Refuses options of programs that contradict --tiles. The programs would refuse them after hours."""
     for name, refused in NOT_WITH_TILES.items():
         for word in words_of(name, given):
             option = word.split("=")[0]
@@ -127,7 +137,7 @@ def check(given):
     if not 1 <= given.tiles <= MOST_TILES:
         raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
     check_tiles(given)
-    given.until = given.until or ("texture" if given.tiles > 1 else "map")
+    given.until = last_result(given)
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
@@ -189,9 +199,10 @@ def mesh_steps(given, out):
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
     textured = out / "scene_textured"
-    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture", "map")}
+    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture", "map", "page")}
     reads = {name: existing_files(words) for name, words in options.items()}
-    if given.until == "cloud":
+    wanted = RESULTS[:RESULTS.index(given.until) + 1]
+    if "mesh" not in wanted:
         return
     yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive,
                                                  *tile_options("--tiles", given), *options["mesh"]),
@@ -199,7 +210,7 @@ def mesh_steps(given, out):
     yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
                                                    *options["refine-mesh"]),
                makes=refined, reads=reads["refine-mesh"])
-    if given.until in ("texture", "map"):
+    if "texture" in wanted:
         yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
                                                     "glb,ply", *refractive,
                                                     *tile_options("--tiles", given),
@@ -207,13 +218,17 @@ def mesh_steps(given, out):
                    makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
                    else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
                    reads=reads["texture"])
-    if given.until == "map":
-        # MapSurface gives the mesh textures itself if they are in several files.
-        mapped = refined if given.tiles > 1 else textured.with_suffix(".ply")
-        yield Step("map", programs.map_surface(scene, mapped, out / "scene_map", *refractive,
+    # MapSurface gives the mesh textures itself if they are in several files.
+    whole = refined if given.tiles > 1 else textured.with_suffix(".ply")
+    if "map" in wanted:
+        yield Step("map", programs.map_surface(scene, whole, out / "scene_map", *refractive,
                                                *mask_words(options["texture"]), *options["map"]),
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=reads["map"] + reads["texture"])
+    if "page" in wanted:
+        yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
+                                               *refractive, *options["page"]),
+                   makes=out / "page" / "index.html", reads=reads["page"])
 
 
 def steps(given, out):
@@ -287,8 +302,9 @@ def only_run_in(out):
 def mesh_of(given, out):
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
     name = {"cloud": "", "mesh": "scene_dense_refined.ply"}.get(given.until, textured)
-    maps = f"Maps: {out / 'scene_map.*'}   " if given.until == "map" else ""
-    return f"Mesh: {out / name}   {maps}" if name else ""
+    maps = f"Maps: {out / 'scene_map.*'}   " if given.until in ("map", "page") else ""
+    page = f"Page: {out / 'page' / 'index.html'}   " if given.until == "page" else ""
+    return f"Mesh: {out / name}   {maps}{page}" if name else ""
 
 
 def reconstruct(given):
