@@ -55,7 +55,11 @@ Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFram
 
 // A frame near the mesh of the earlier survey.
 LocalFrame frame_of_survey(const fs::path& path) {
-  return is_ply(path) ? frame_near(io::ply_place(path).first_vertex) : LocalFrame{};
+  if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
+  // Far from the origin these positions are coarse, but exact enough to choose a frame.
+  const Mesh coarse = io::read_textured_mesh(path, LocalFrame{}).mesh;
+  if (coarse.vertices.empty()) return {};
+  return frame_near(coarse.vertices.front().cast<double>());
 }
 
 void keep_inputs(const Settings& settings) {

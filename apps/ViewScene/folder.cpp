@@ -30,6 +30,20 @@ void write(const fs::path& path, std::string_view text, std::ios::openmode mode)
   if (!out) fail("{}: cannot be written", path.string());
 }
 
+// The list of the files that ViewScene wrote into `folder`. Empty if there is none.
+nlohmann::json list_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / kList, error)) return {};
+  try {
+    nlohmann::json list = io::read_json(folder / kList);
+    if (list.is_object() && list.contains("viewer.js") && list.contains("data/scene.js"))
+      return list;
+  } catch (const Error&) {
+    // Another program's file.
+  }
+  return {};
+}
+
 }  // namespace
 
 fs::path page_folder() {
@@ -44,23 +58,36 @@ fs::path page_folder() {
 
 void require_own_folder(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder, error)) {
-    if (!fs::is_directory(folder, error))
-      fail("--report {}: is a file, not a folder", folder.string());
-    if (!fs::exists(folder / kList, error) && !fs::is_empty(folder, error))
-      fail("--report {}: contains other files: give an empty or a new folder", folder.string());
-  }
-  require_writable_folder(folder);
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    fail("--report {}: is a file, not a folder", folder.string());
+  require_writable_folder(folder);  // removes what a killed run left
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error) && list_of(folder).empty())
+    fail("--report {}: contains other files: give an empty or a new folder", folder.string());
 }
 
-void replace_earlier(const fs::path& folder, const fs::path& staging) {
-  const nlohmann::json now = io::list_files(staging);
-  if (fs::exists(folder / kList)) {
-    std::vector<fs::path> old = io::find_written(folder, io::read_json(folder / kList)).unchanged;
-    std::erase_if(old, [&](const fs::path& file) { return now.contains(file.generic_string()); });
-    io::remove_below(folder, old);
-  }
-  io::write_json(staging / kList, now);
+void write_own_folder(const fs::path& folder,
+                      const std::function<void(const fs::path& staging)>& write) {
+  const bool is_new = !fs::exists(folder);
+  nlohmann::json now;
+  write_folder(folder, [&](const fs::path& staging) {
+    write(staging);
+    now = io::list_files(staging);
+    if (is_new) {
+      io::write_json(staging / kList, now);
+      return;
+    }
+    // While the files are replaced, the list names those of both runs. So a killed run leaves a
+    // folder that the next run knows.
+    nlohmann::json both = list_of(folder);
+    both.update(now);
+    fs::create_directories((folder / kList).parent_path());
+    io::write_json(folder / kList, both);
+  });
+  if (is_new) return;
+  std::vector<fs::path> old = io::find_written(folder, list_of(folder)).unchanged;
+  std::erase_if(old, [&](const fs::path& file) { return now.contains(file.generic_string()); });
+  io::remove_below(folder, old);
+  io::write_json(folder / kList, now);
 }
 
 DataFiles::DataFiles(fs::path staging, std::string kind)

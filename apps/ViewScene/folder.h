@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -18,9 +19,11 @@ std::filesystem::path page_folder();
 // written by ViewScene.
 void require_own_folder(const std::filesystem::path& folder);
 
-// Writes the list of the files in `staging` to a file in `staging`, and removes from `folder` the
-// files of an earlier run that `staging` does not replace. Files that were changed since then stay.
-void replace_earlier(const std::filesystem::path& folder, const std::filesystem::path& staging);
+// Writes the files of `folder` by write_folder() (base/atomic_file.h), with a list of them. Then
+// removes the files of an earlier run that `write` did not write again. Files that were changed
+// since then stay. Precondition: require_own_folder() accepts `folder`.
+void write_own_folder(const std::filesystem::path& folder,
+                      const std::function<void(const std::filesystem::path& staging)>& write);
 
 // Writes data files, which are scripts (page/src/data.js): entries with the same `kind` follow each
 // other in files of about 8 MB.

@@ -25,11 +25,10 @@ int run(int argc, char** argv) {
   const fs::path page = page_folder();
   require_own_folder(options.report);
   const Contents contents = read_contents(options);
-  write_folder(options.report, [&](const fs::path& staging) {
+  write_own_folder(options.report, [&](const fs::path& staging) {
     for (const char* file : {"index.html", "style.css", "viewer.js"})
       fs::copy_file(page / file, staging / file);
     write_contents(contents, options, staging);
-    replace_earlier(options.report, staging);
   });
   log_info("wrote {}", (options.report / "index.html").string());
   return 0;

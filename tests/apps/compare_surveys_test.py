@@ -7,7 +7,7 @@ import math
 import random
 
 from geotiff import read_geotiff
-from programs import ProgramTest, contents, files_below, main, read, run, write
+from programs import ProgramTest, contents, files_below, grey_png, main, read, run, write
 from texture_mesh_test import mesh_ply
 
 OUTPUTS = {f"work/change.{end}" for end in ("difference.tif", "significant.tif", "sigma.tif", "json", "jpg")}
@@ -54,6 +54,13 @@ def survey(height, seed, shift=(0, 0, 0)):
             a = j * (columns + 1) + i
             faces += [(a, a + 1, a + columns + 2), (a, a + columns + 2, a + columns + 1)]
     return vertices, faces
+
+
+def obj(vertices, faces):
+    """With a texture, as the reader wants one."""
+    return "".join(["mtllib grey.mtl\nvt 0 0\nusemtl grey\n"] +
+                   [f"v {x} {y} {z}\n" for x, y, z in vertices] +
+                   [f"f {a + 1}/1 {b + 1}/1 {c + 1}/1\n" for a, b, c in faces])
 
 
 class CompareTest(ProgramTest):
@@ -146,6 +153,16 @@ class Outputs(CompareTest):
             x, y = (1.2, 0.8) if region["change"] == "came" else (0.4, 0.4)
             self.assertAlmostEqual(region["x"], place[0] + x, delta=0.02)
             self.assertAlmostEqual(region["y"], place[1] + y, delta=0.02)
+        expected = self.report()
+        # The same meshes as OBJ.
+        write(self.path("work", "grey.mtl"), "newmtl grey\nmap_Kd grey.png\n")
+        write(self.path("work", "grey.png"), grey_png([bytes(4)] * 4))
+        for name, mesh in (("a.obj", survey(before, 1)), ("b.obj", survey(after, 2))):
+            write(self.path("work", name), "# geo_offset 500000 4500000 30\n" + obj(*mesh))
+        self.before, self.after = self.path("work", "a.obj"), self.path("work", "b.obj")
+        self.succeeds(*self.compare("--epsg", "32631", "--gsd", "0.02", "--align", "icp"))
+        for kind in ("came", "gone"):
+            self.assertAlmostEqual(self.report()[kind]["volume"], expected[kind]["volume"], delta=1e-5)
 
 
 class WrongInput(CompareTest):

@@ -84,6 +84,16 @@ class ViewFolder(ViewCase):
         self.assertIn("notes.txt", files_below(self.report))
         self.assertNotIn("data/mesh-0000.js", files_below(self.report))
 
+    def test_a_run_that_was_killed_is_repeated(self):
+        os.makedirs(self.report)
+        self.succeeds(*self.view())
+        expected = contents(self.report)
+        # Killed while it replaced the files: some are missing, and new ones are not yet there.
+        for name in ("index.html", "viewer.js", "data/scene.js"):
+            os.remove(os.path.join(self.report, name))
+        self.succeeds(*self.view())
+        self.assertEqual(contents(self.report), expected)
+
     def test_a_large_cloud_is_thinned_out(self):
         self.succeeds(*self.view("--max-points", 10))
         scene = json.loads(read(self.path("work", "report", "data", "scene.js"))
@@ -94,12 +104,15 @@ class ViewFolder(ViewCase):
 
     def test_wrong_input_is_refused(self):
         write(self.path("work", "mine", "photo.jpg"), "Mine.")
+        write(self.path("work", "theirs", "data", "files.json"), '{"index.html": "1"}')
         write(self.path("work", "empty.ply"), ascii_ply([]))
         write(self.path("work", "foreign.ply"), ascii_ply([((0, 0, 1), [7])]))
         write(self.path("work", "flat.ply"), mesh_ply(wall()[0], []))
         for expected, *arguments in (
                 ("--report " + self.path("work", "mine") + ": contains other files", "--report",
                  "mine"),
+                ("--report " + self.path("work", "theirs") + ": contains other files", "--report",
+                 "theirs"),
                 ("--report " + self.cloud + ": is a file", "--report", self.cloud),
                 ("missing.ply", "-p", "missing.ply"),
                 ("empty.ply: the cloud has no points", "-p", "empty.ply"),

@@ -180,12 +180,13 @@ def refine_options(given):
     return [*known, *refine, *words_of("refine-poses", given)]
 
 
-def mask_words(words):
-    """The options of TextureMesh for masks among `words`, which MapSurface has, too."""
-    kept = []
+def mask_words(words, given_again):
+    """The options of TextureMesh for masks among `words`, which MapSurface has, too. Options that are
+    among `given_again` are left out."""
+    kept, again = [], {word.partition("=")[0] for word in given_again}
     for word, value in zip(words, [*words[1:], ""]):
         option, equals, _ = word.partition("=")
-        if option in ("--mask-path", "--ignore-mask-label"):
+        if option in ("--mask-path", "--ignore-mask-label") and option not in again:
             kept += [word] if equals else [word, value]
     return kept
 
@@ -222,7 +223,8 @@ def mesh_steps(given, out):
     whole = refined if given.tiles > 1 else textured.with_suffix(".ply")
     if "map" in wanted:
         yield Step("map", programs.map_surface(scene, whole, out / "scene_map", *refractive,
-                                               *mask_words(options["texture"]), *options["map"]),
+                                               *mask_words(options["texture"], options["map"]),
+                                               *options["map"]),
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=reads["map"] + reads["texture"])
     if "page" in wanted:
