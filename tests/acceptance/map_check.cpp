@@ -146,7 +146,8 @@ void print_displacement(const cv::Mat4b& ortho, const Truth& truth) {
       squares += shift.dot(shift), sum_x += shift.x, sum_y += shift.y;
       ++tiles;
     }
-  const double n = std::max(1, tiles);
+  if (tiles == 0) fail("no tile of {} pixels is complete", kTile);
+  const double n = tiles;
   std::cout << fmt::format("displacement: RMS {:.3f} mean {:.3f} {:.3f} px of {} tiles\n",
                            std::sqrt(squares / n), sum_x / n, sum_y / n, tiles);
 }

@@ -149,7 +149,9 @@ class Outputs(CompareTest):
         found = self.map("difference")
         self.assertAlmostEqual(found.left, place[0], delta=0.021)
         self.assertIn(32631, found.keys)
-        for region in self.report()["regions"]:
+        regions = self.report()["regions"]
+        self.assertEqual(sorted(region["change"] for region in regions), ["came", "gone"])
+        for region in regions:
             x, y = (1.2, 0.8) if region["change"] == "came" else (0.4, 0.4)
             self.assertAlmostEqual(region["x"], place[0] + x, delta=0.02)
             self.assertAlmostEqual(region["y"], place[1] + y, delta=0.02)

@@ -171,6 +171,7 @@ class ViewPage(ViewCase):
                          [f"{view:04}" for view in views])
         marks = browser.value("[...document.querySelectorAll('#point .mark')]"
                               ".map(mark => [mark.style.left, mark.style.top])")
+        self.assertEqual(len(marks), len(views))
         for view, text, mark in zip(views, shown, marks):
             expected = pixel(CENTRES[view], place)
             found = [float(value) for value in re.findall(r"-?\d+\.\d", text)]

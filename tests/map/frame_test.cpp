@@ -41,21 +41,21 @@ TEST(MapFrame, IsRightHandedWithUpAsHeight) {
   }
 }
 
-// A plate with a finely meshed corner. The plane of its vertices would be tilted, that of its
-// surface is not.
+// A plate from x = -1 to 1 m with a finely meshed strip that begins at 0.8 m and is 0.1 m higher.
+// The slope of the surface's plane is the covariance of height and x, divided by the variance of x:
+// 0.1 * 0.1 m * 0.9 m / (1/3 m^2) = 0.027. The slope of the vertices' plane would be 0.075.
 TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
   const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1).normalized();
   const Eigen::Quaterniond turn =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
-  const auto height = [](double x, double y) { return 0.2 * std::sin(8 * x) * std::cos(9 * y); };
   Mesh mesh;
-  const auto add_patch = [&](double x0, double x1, int cells) {
+  const auto add_patch = [&](double x0, double x1, double height, int cells) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const auto n = static_cast<std::uint32_t>(cells);
     for (std::uint32_t j = 0; j <= n; ++j)
       for (std::uint32_t i = 0; i <= n; ++i) {
         const double x = x0 + (x1 - x0) * i / n, y = -1 + 2.0 * j / n;
-        mesh.vertices.push_back((turn * Eigen::Vector3d(x, y, 0.01 * height(x, y))).cast<float>());
+        mesh.vertices.push_back((turn * Eigen::Vector3d(x, y, height)).cast<float>());
       }
     for (std::uint32_t j = 0; j < n; ++j)
       for (std::uint32_t i = 0; i < n; ++i) {
@@ -64,10 +64,12 @@ TEST(MapFrame, UpIsNormalToThePlaneOfTheSurface) {
         mesh.faces.push_back({a, a + n + 2, a + n + 1});
       }
   };
-  add_patch(-1, 0.8, 20), add_patch(0.8, 1, 60);
+  add_patch(-1, 0.8, 0, 20), add_patch(0.8, 1, 0.1, 60);
   const std::vector<Eigen::Vector3d> above{5 * normal}, below{-5 * normal};
-  const double angle = std::acos(std::min(1.0, fitted_up(mesh, above).dot(normal)));
-  EXPECT_LT(angle, 2e-3);
+  const Eigen::Vector3d found = turn.conjugate() * fitted_up(mesh, above);
+  // The squares of distances from the plane are summed, not those of heights.
+  EXPECT_NEAR(-found.x() / found.z(), 0.027, 0.002);
+  EXPECT_NEAR(found.y(), 0, 1e-6);
   EXPECT_LT((fitted_up(mesh, above) + fitted_up(mesh, below)).norm(), 1e-12);
 }
 
