@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "private/only_for_io.h"
 #include "private/ply/ply_header.h"
 #include "scene/local_frame.h"
 #include "scene/point_cloud.h"

@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "private/only_for_io.h"
 #include "private/ply/ply_header.h"
 
 namespace axial::io {
