@@ -65,8 +65,6 @@ std::string kept_or_read(const nlohmann::json& kept, const std::string& state,
 std::vector<std::string> contents_of_views(const Project& project, const Settings& settings) {
   const bool is_part = settings.parts > 0 || settings.tile > 0;
   const bool uses_kept = is_part || !settings.until.empty() || !settings.plan.empty();
-  const bool only_maps = settings.make_maps && !settings.fuse;
-  const bool keeps = !is_part && (uses_kept || only_maps);
   const fs::path file = settings.working_folder / kFile;
   const nlohmann::json kept = uses_kept ? kept_contents(file) : nlohmann::json::object();
   std::vector<std::string> prints(project.views.size()), states(project.views.size());
@@ -74,12 +72,12 @@ std::vector<std::string> contents_of_views(const Project& project, const Setting
   parallel_for(prints.size(), [&](std::size_t i) {
     if (project.scene.images[i].calibrated) {
       const std::vector<fs::path> files = files_of(project, i);
-      if (uses_kept || keeps) states[i] = state_of(files);
+      states[i] = uses_kept ? state_of(files) : std::string();
       prints[i] = kept_or_read(kept, states[i], files);
     }
     counter.add();
   });
-  if (!keeps) return prints;
+  if (!uses_kept || is_part) return prints;
   nlohmann::json contents = nlohmann::json::object();
   for (std::size_t i = 0; i < prints.size(); ++i)
     if (!states[i].empty()) contents[states[i]] = prints[i];

@@ -14,8 +14,7 @@ namespace axial::densify {
 // images without calibration. Reads the photographs and masks, with one exception: if
 // Settings::until, tile or plan is given, photographs and masks whose names, sizes and times of
 // change are in the file depth_inputs.json of the working folder get their fingerprints from this
-// file. Runs for all images write the file if `until` or `plan` is given, or if they make depth
-// maps and no cloud: runs for the tiles of the cloud may follow. A damaged file counts as empty.
+// file. Runs with `until` or `plan` for all images write the file. A damaged file counts as empty.
 // Throws an Error for a photograph or mask that cannot be read, and if the file cannot be written.
 std::vector<std::string> contents_of_views(const Project& project, const Settings& settings);
 

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <filesystem>
 #include <functional>
 #include <set>
 #include <string>
@@ -16,7 +15,6 @@
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
-#include "densify/file_contents.h"
 #include "support/analytic_scene.h"
 #include "support/empty_folder.h"
 
@@ -32,7 +30,6 @@ struct Input {
 class FingerprintTest : public testing::Test {
  protected:
   FingerprintTest() {
-    input_.settings.working_folder = folder_;
     Project& project = input_.project;
     const std::vector<Pose> poses = test::circle_of_poses(2);
     project.scene = test::scene_of(test::behind_port(test::dry_camera()), poses);
@@ -113,30 +110,6 @@ TEST_F(FingerprintTest, DependsOnTheContentsOfFilesAndNotOnTheirNames) {
   EXPECT_EQ(after([](Input&) {}), after([](Input& in) {
               in.project.scene.images[1].path = in.project.scene.images[0].path;
             }));
-}
-
-// Tells whether a fingerprint is that of a file's bytes or of the kept file by bytes that change
-// without a change of size and time.
-TEST_F(FingerprintTest, RunsForATileUseWhatARunOfAllMapsHasKept) {
-  namespace fs = std::filesystem;
-  const fs::path kept = folder_ / "depth_inputs.json", image = folder_ / "image1";
-  const auto contents = [&](bool fuse, std::size_t tile) {
-    Settings settings = input_.settings;
-    settings.fuse = fuse, settings.tile = tile;
-    return contents_of_views(input_.project, settings);
-  };
-  const std::vector<std::string> before = contents(true, 0);
-  EXPECT_FALSE(fs::exists(kept)) << "by a run that makes the cloud";
-  EXPECT_EQ(contents(false, 0), before);
-  EXPECT_TRUE(fs::exists(kept));
-  const auto time = fs::last_write_time(image);
-  write_atomically(image, "PIXELS");
-  fs::last_write_time(image, time);
-  EXPECT_EQ(contents(true, 1), before);
-  const std::vector<std::string> after = contents(false, 0);
-  EXPECT_EQ(after[0], before[0]);
-  EXPECT_NE(after[1], before[1]) << "a run of all maps reads all files";
-  EXPECT_EQ(contents(true, 1), after);
 }
 
 // One image behind a flat port. All numbers are written out, so that no mathematical library
