@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <nanoflann.hpp>
 #include <numeric>
 
 #include "base/disjoint_sets.h"
+#include "mesh/point_tree.h"
 #include "mesh/tile_mesh.h"
 #include "private/seam_patch.h"
 
@@ -13,7 +13,8 @@ namespace axial::mesh {
 namespace {
 
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-constexpr int kRings = 6;  // of faces around an unmatched edge that are mended
+constexpr std::size_t kCloseGaps = 60;  // gaps of at most this many edges are closed
+constexpr int kRings = 6;               // of faces around an unmatched edge that are mended
 
 using Face = std::array<std::uint32_t, 3>;
 
@@ -45,30 +46,15 @@ Union side_by_side(std::vector<TileMesh> tiles) {
   return all;
 }
 
-// The middles of seam edges, for nanoflann.
-struct Middles {
-  std::vector<Eigen::Vector3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using MiddleTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Middles>,
-                                                       Middles, 3, std::uint32_t>;
-
 // For each seam edge the counterpart in another tile, or kNobody.
 std::vector<std::uint32_t> counterparts(const Union& all) {
   const std::vector<Eigen::Vector3f>& at = all.mesh.vertices;
-  Middles middles;
-  for (const SeamEdge& edge : all.seams)
-    middles.points.push_back((at[edge.from] + at[edge.to]) / 2);
+  std::vector<Eigen::Vector3f> middles;
+  for (const SeamEdge& edge : all.seams) middles.push_back((at[edge.from] + at[edge.to]) / 2);
   std::vector<std::uint32_t> other(all.seams.size(), kNobody);
   if (all.seams.empty()) return other;
-  const MiddleTree tree(3, middles, {16});
+  const PointSet set{middles};
+  const PointTree tree(3, set, {16});
   nanoflann::SearchParams params;
   params.sorted = false;
   std::vector<std::pair<std::uint32_t, float>> found;
@@ -77,7 +63,7 @@ std::vector<std::uint32_t> counterparts(const Union& all) {
     const SeamEdge& edge = all.seams[i];
     const float limit = 1e-3f * (at[edge.from] - at[edge.to]).norm();
     found.clear();
-    tree.radiusSearch(middles.points[i].data(), limit * limit + 1e-30f, found, params);
+    tree.radiusSearch(middles[i].data(), limit * limit + 1e-30f, found, params);
     std::ranges::sort(found, {}, [](const auto& hit) { return std::pair(hit.second, hit.first); });
     for (const auto& [k, distance2] : found) {
       const SeamEdge& back = all.seams[k];
@@ -364,7 +350,7 @@ Mesh join_tiles(std::vector<TileMesh> tiles, const JoinOptions& options, JoinRep
   if (std::ranges::count(taken, true) > 0) {
     const Patch patch = take_out(mesh, taken);
     facts.replaced_faces = patch.mesh.faces.size();
-    put_back(patch, mend_patch(patch.mesh, patch.fixed, options.close_gaps), mesh);
+    put_back(patch, mend_patch(patch.mesh, patch.fixed, kCloseGaps), mesh);
     split_fans(patch, mesh);
   }
   facts.removed_components = remove_small_pieces(mesh, options.spurious * mean_edge(mesh));

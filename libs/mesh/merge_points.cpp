@@ -4,27 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <nanoflann.hpp>
 #include <numeric>
 
+#include "mesh/point_tree.h"
 #include "mesh/spatial_order.h"
 
 namespace axial::mesh {
 namespace {
-
-struct PointSet {
-  std::span<const Eigen::Vector3f> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointSet>,
-                                                 PointSet, 3, std::uint32_t>;
 
 // Indices of the points, those with the most views first.
 std::vector<std::uint32_t> by_views(const PointCloud& cloud) {
@@ -125,7 +111,7 @@ class Merger {
   const ViewRays& rays_;
   float limit_;  // [px]
   PointSet set_;
-  Tree tree_;
+  PointTree tree_;
   std::vector<bool> used_;
   // Of the current point.
   std::vector<Eigen::Matrix<float, 2, 3>> motions_;

@@ -28,10 +28,8 @@ struct TileMesh {
 TileMesh owned_part(const Mesh& mesh, const cloud::Tile& tile);
 
 struct JoinOptions {
-  // Pieces whose bounding box has a diagonal below this many mean edge lengths are removed. 0:
-  // none.
-  double spurious = 20;
-  std::size_t close_gaps = 60;  // gaps of at most this many edges are closed
+  // Pieces are removed if the diagonal of their bounding box is below this many mean edge lengths.
+  double spurious = 20;  // 0: none is removed
 };
 
 struct JoinReport {
@@ -48,10 +46,11 @@ struct JoinReport {
 // tile and its surroundings. If another tile has the same seam in the opposite direction, each end
 // of the seam becomes one vertex with the same end in the other tile. The same ends are at most a
 // thousandth of the seam's length apart. Where a seam has no counterpart, the faces around it are
-// mended: gaps are closed, and faces that intersect other faces of the neighbourhood are replaced
-// or removed. All other faces stay as they are, but a vertex that two groups of faces share without
-// an edge is split there. The result is edge- and vertex-manifold and oriented if each mesh is. The
-// vertices are in the order of the tiles; the new vertices follow.
+// mended: gaps of at most 60 edges are closed, and faces that intersect other faces of the
+// neighbourhood are replaced or removed. All other faces stay as they are. If the faces at a vertex
+// are not connected by common edges any more, each connected group gets a vertex of its own. The
+// result is edge- and vertex-manifold and oriented if each mesh is. The vertices are in the order
+// of the tiles; the new vertices follow.
 Mesh join_tiles(std::vector<TileMesh> tiles, const JoinOptions& options = {},
                 JoinReport* report = nullptr);
 
