@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
 #include <string>
 
 #include "base/error.h"
-#include "base/parse_number.h"
 #include "base/setting_names.h"
-#include "base/split.h"
 #include "base/version.h"
+#include "map/up_direction.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -18,8 +16,8 @@ struct Raw {
   double sigma_before = 0, sigma_after = 0;
 };
 
-constexpr SettingName kOptions[] = {{"ground_sample_distance", "--ground-sample-distance"},
-                                    {"epsg", "--epsg"}};
+constexpr SettingName kOptions[] = {
+    {"ground_sample_distance", "--ground-sample-distance"}, {"epsg", "--epsg"}, {"up", "--up"}};
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "mesh of the earlier survey (PLY, OBJ or GLB)")
@@ -80,21 +78,6 @@ void check_values(const ParsedOptions& parsed, const Raw& raw, const Settings& s
   if (after) check_range("sigma-after", raw.sigma_after, kLeast, kMost);
 }
 
-std::optional<Eigen::Vector3d> up_of(const std::string& text, int epsg) {
-  if (text.empty()) return {};
-  Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  const auto parts = split(text, ',');
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto number = parts.size() == 3 ? parse_finite<double>(parts[k]) : std::nullopt;
-    if (!number) fail("--up {}: must be three numbers X,Y,Z", text);
-    up[static_cast<Eigen::Index>(k)] = *number;
-  }
-  if (!(up.norm() > 0) || !std::isfinite(up.norm())) fail("--up {}: is no direction", text);
-  if (epsg > 0 && !(up.z() > 0 && up.head<2>().isZero(0)))
-    fail("--up {}: must be 0,0,1 with --epsg, whose heights are along z", text);
-  return up;
-}
-
 void convert(const Raw& raw, Options& options) {
   Settings& settings = options.settings;
   const CommonOptions& common = options.parsed.common;
@@ -104,7 +87,7 @@ void convert(const Raw& raw, Options& options) {
       raw.output.empty()
           ? settings.before.parent_path() / (settings.before.stem().string() + "_change")
           : output_in_working_folder(common, raw.output, "--output-file");
-  settings.up = up_of(raw.up, settings.epsg);
+  settings.up = map::parse_up(raw.up, settings.epsg, option_of);
   settings.compare.align = raw.align == "icp";
   if (raw.sigma_before > 0) settings.compare.sigmas = {raw.sigma_before, raw.sigma_after};
   settings.compare.name_of = option_of;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "base/error.h"
-#include "base/parse_number.h"
 #include "base/setting_names.h"
-#include "base/split.h"
 #include "base/version.h"
 #include "io/images/bit_depth.h"
 #include "io/openmvs/scene_options.h"
+#include "map/up_direction.h"
 #include "settings.h"
 
 namespace axial::apps {
@@ -24,10 +22,13 @@ struct Raw {
   int ignore_mask_label = -1;
 };
 
-constexpr SettingName kOptions[] = {
-    {"max_memory", "--max-memory"},     {"mask_folder", "--mask-path"},
-    {"bit_depth", "--bit-depth"},       {"ground_sample_distance", "--ground-sample-distance"},
-    {"contour_interval", "--contours"}, {"epsg", "--epsg"}};
+constexpr SettingName kOptions[] = {{"max_memory", "--max-memory"},
+                                    {"mask_folder", "--mask-path"},
+                                    {"bit_depth", "--bit-depth"},
+                                    {"ground_sample_distance", "--ground-sample-distance"},
+                                    {"contour_interval", "--contours"},
+                                    {"epsg", "--epsg"},
+                                    {"up", "--up"}};
 
 void declare_io(OptionList& list, Raw& raw, Settings& settings) {
   list.add("input-file,i", &raw.input, "scene with cameras and images")
@@ -81,21 +82,6 @@ void check_values(const Raw& raw, const Settings& settings) {
   io::check_bit_depth(settings.photographs.bit_depth, "--bit-depth");
 }
 
-std::optional<Eigen::Vector3d> up_of(const std::string& text, int epsg) {
-  if (text.empty()) return {};
-  Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  const auto parts = split(text, ',');
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto number = parts.size() == 3 ? parse_finite<double>(parts[k]) : std::nullopt;
-    if (!number) fail("--up {}: must be three numbers X,Y,Z", text);
-    up[static_cast<Eigen::Index>(k)] = *number;
-  }
-  if (!(up.norm() > 0) || !std::isfinite(up.norm())) fail("--up {}: is no direction", text);
-  if (epsg > 0 && !(up.z() > 0 && up.head<2>().isZero(0)))
-    fail("--up {}: must be 0,0,1 with --epsg, whose heights are along z", text);
-  return up;
-}
-
 void take_masks(const Options& options, const Raw& raw, texture::PhotographOptions& photographs) {
   const bool masks_given = !raw.mask_path.empty() && !given(options.parsed, "ignore-mask-label");
   const int label = masks_given ? 0 : raw.ignore_mask_label;
@@ -118,7 +104,7 @@ void convert(const Raw& raw, Options& options) {
   settings.output = raw.output.empty()
                         ? scene.parent_path() / (scene.stem().string() + "_map")
                         : output_in_working_folder(common, raw.output, "--output-file");
-  settings.up = up_of(raw.up, settings.epsg);
+  settings.up = map::parse_up(raw.up, settings.epsg, option_of);
   take_masks(options, raw, settings.photographs);
 }
 

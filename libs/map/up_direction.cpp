@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/up_direction.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+
+namespace axial::map {
+
+std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg, SettingNames name_of) {
+  if (text.empty()) return {};
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  const auto parts = split(text, ',');
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto number = parts.size() == 3 ? parse_finite<double>(parts[k]) : std::nullopt;
+    if (!number) fail("{} {}: must be three numbers X,Y,Z", name_of("up"), text);
+    up[static_cast<Eigen::Index>(k)] = *number;
+  }
+  if (!(up.norm() > 0) || !std::isfinite(up.norm()))
+    fail("{} {}: is no direction", name_of("up"), text);
+  if (epsg > 0 && !(up.z() > 0 && up.head<2>().isZero(0)))
+    fail("{} {}: must be 0,0,1 with {}, whose heights are along z", name_of("up"), text,
+         name_of("epsg"));
+  return up;
+}
+
+}  // namespace axial::map

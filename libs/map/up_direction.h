@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "base/setting_names.h"
+
+namespace axial::map {
+
+// Parses the upward direction of a map, "X,Y,Z", of any length. Empty for an empty text. `epsg`:
+// the code of the map's coordinate reference system; 0: none. Throws an Error that names the
+// setting by name_of("up") if the text is not three finite numbers, if all are zero, or if `epsg`
+// is given and the direction is not that of the z axis, along which a reference system has heights.
+std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg,
+                                        SettingNames name_of = own_name);
+
+}  // namespace axial::map
