@@ -3,13 +3,14 @@
 # Reconstructs point clouds from photographs in three ways, and measures each cloud against ground
 # truth: in air; under water behind a flat port, with --refractive; and under water as is common
 # today, without refraction, with a lens that COLMAP calibrates itself. The first two clouds become
-# textured meshes.
+# textured meshes, and these become maps. A page for the browser shows the survey under water.
 #
 #   bash apps/pipeline/demo.sh [closeup|reef] [--full]
 #
 # Needs Debian 12, and a network connection to install packages. --full: matching at full resolution;
 # without it, at half the width and height. Results:
-# build/demo/{air,refractive,selfcalibrated}.ply, {air,refractive}.glb, table.json and report.html.
+# build/demo/{air,refractive,selfcalibrated}.ply, {air,refractive}.glb, {air,refractive}_map.*,
+# change.*, refractive_page/index.html, table.json and report.html.
 # Another run keeps COLMAP's models and the ground truth. axial_pipeline/demo.py runs the steps.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -37,6 +38,7 @@ if ! cmake --preset release >build/configure.log 2>&1 </dev/null; then
   die "cmake --preset release: failed, its output is in build/configure.log"
 fi
 cmake --build --preset release --target InterfaceCOLMAP DensifyPointCloud SimulateUnderwater \
-  EvaluateReconstruction AlignModel ReconstructMesh RefineMesh TextureMesh
+  EvaluateReconstruction AlignModel ReconstructMesh RefineMesh TextureMesh MapSurface \
+  CompareSurveys ViewScene
 
 PYTHONPATH=apps/pipeline exec python3 -B -m axial_pipeline.demo --seconds $SECONDS "$@"

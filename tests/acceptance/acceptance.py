@@ -21,6 +21,7 @@ import maps  # noqa: E402, F401
 import whole_programs  # noqa: E402, F401
 import memory  # noqa: E402, F401
 import tiles  # noqa: E402, F401
+import survey_page  # noqa: E402, F401
 
 
 def source_state():

@@ -15,11 +15,12 @@ CHROMIUM = shutil.which("chromium")
 
 
 class Browser:
-    """A page in a window of width x height pixels, without a network. Call close() at the end.
+    """A page in a window of width x height CSS pixels, each of `scale` x `scale` pixels of the screen,
+    without a network. Call close() at the end.
     `errors` collects everything that the page writes to the console as an error or a warning, and
     all uncaught exceptions. Files that the page saves go to the folder `downloads`."""
 
-    def __init__(self, url, width=1280, height=800, downloads=None, touch=False):
+    def __init__(self, url, width=1280, height=800, downloads=None, touch=False, scale=1):
         self.errors, self.number, self.buffer, self.answers = [], 0, b"", {}
         self.profile = tempfile.TemporaryDirectory(prefix="axial_browser_")
         to_browser, self.out = os.pipe()
@@ -41,7 +42,7 @@ class Browser:
         self.send("Network.emulateNetworkConditions", offline=True, latency=0,
                   downloadThroughput=0, uploadThroughput=0)
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height,
-                  deviceScaleFactor=1, mobile=touch)
+                  deviceScaleFactor=scale, mobile=touch)
         if touch:
             self.send("Emulation.setTouchEmulationEnabled", enabled=True)
         if downloads:

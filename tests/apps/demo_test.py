@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import demo, demo_mesh, demo_page, demo_table, truth
+from axial_pipeline import demo, demo_mesh, demo_page, demo_survey, demo_table, truth
 from axial_pipeline.programs import Programs
 
 
@@ -61,12 +61,17 @@ class Demo(InFolder):
         rows = demo_table.load(self.folder)
         lines = [*rows, demo_table.load_best_fit(self.folder)]
         meshes = demo_mesh.load(rows, demo.MESHES)
-        page = demo_page.page(rows, lines, meshes, photograph, scene="closeup", description="A scene.",
-                              size="half")
+        self.write("refractive_page/index.html", "")
+        self.write("change.json", json.dumps({"area_changed": 0.0123, "area_compared": 1}))
+        page = demo_page.page(rows, lines, meshes, photograph,
+                              demo_survey.section("refractive", self.folder), scene="closeup",
+                              description="A scene.", size="half")
         for content in (b"cloud", b"depth", b"textured", b"errors", b"photograph"):
             self.assertIn(base64.b64encode(content).decode(), page)
         for number in ("12,345", "4,567", "32.1", "0.850", "70 %"):
             self.assertIn(f"<td>{number}</td>", page)
+        self.assertIn('href="refractive_page/index.html"', page)
+        self.assertIn("1.23 %", page)
         told = json.loads(demo_table.json_table(lines, demo_mesh.kept(meshes), "closeup", "half"))
         self.assertEqual([mesh["psnr_db"] for mesh in told["meshes"]], [32.14, 32.14])
         self.assertEqual(len(told["runs"]), 4)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reconstructs point clouds of a simulated scene in three ways, turns two of them into textured
-meshes, and measures clouds and meshes against ground truth. apps/pipeline/demo.sh runs this module
+meshes and maps, and measures clouds and meshes against ground truth. apps/pipeline/demo.sh runs this module
 after the build, in the root of the source."""
 
 import argparse
@@ -8,7 +8,7 @@ import pathlib
 import shutil
 import time
 
-from . import demo_mesh, demo_page, demo_table, files, truth
+from . import demo_mesh, demo_page, demo_survey, demo_table, files, truth
 from .colmap_model import colmap_model
 from .failure import run_main
 from .programs import Programs
@@ -119,6 +119,16 @@ def make_meshes(demo):
     demo_mesh.make_mesh(demo, "refractive", demo.data / "housing.json")
 
 
+def make_surveys(demo):
+    demo.stage("Maps of (a) and (b), what changed between them, and the page of (b)")
+    housing = demo.data / "housing.json"
+    demo_survey.make_map(demo, "air", OUT)
+    demo_survey.make_map(demo, "refractive", OUT, housing)
+    demo_survey.compare(demo, "air", "refractive", OUT)
+    if demo.programs.has_page():
+        demo_survey.make_page(demo, "refractive", OUT, housing)
+
+
 def evaluate_all(demo, poses):
     demo.stage("Comparison with the ground truth")
     wet = ("--housing", demo.data / "housing.json")
@@ -145,6 +155,7 @@ def write_results(demo):
                                                           demo.size))
     files.write(OUT / "report.html", demo_page.page(
         rows, lines, meshes, demo.data / demo.media["refractive"] / demo_mesh.LEFT_OUT,
+        demo_survey.section("refractive", OUT),
         scene=demo.scene, description=demo_table.SCENES[demo.scene], size=demo.size))
     print(demo_table.text_table(demo_table.table(lines)))
     print("\n" + demo_table.text_table(demo_mesh.table(meshes)))
@@ -156,8 +167,10 @@ def run(demo):
     truth.make_truth(demo.programs, demo.scene, demo.truth)
     poses = reconstruct_three_ways(demo)
     make_meshes(demo)
+    make_surveys(demo)
     evaluate_all(demo, poses)
     demo.stage(f"Done: {OUT}/{{air,refractive,selfcalibrated}}.ply, {OUT}/{{air,refractive}}.glb, "
+               f"{OUT}/{{air,refractive}}_map.*, {OUT}/change.*, {OUT}/refractive_page/index.html, "
                f"{OUT}/table.json, {OUT}/report.html")
     write_results(demo)
 

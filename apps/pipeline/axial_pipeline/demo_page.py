@@ -189,18 +189,21 @@ Numbers are those of the surface that at least two views see. PSNR compares the 
 into view $left_out through the port of its camera, with the photograph that was not used. Seconds are
 those of the three programs.</p>
 <div class="cards">$mesh_pictures</div>
+<h2>The survey</h2>
+$survey
 <h2>Depth maps beside the truth</h2>
 <div class="depths">$depths</div>
 </main></body></html>
 """)
 
 
-def page(rows, lines, meshes, photograph, **texts):
+def page(rows, lines, meshes, photograph, survey, **texts):
     """The text of the page. `rows`: the runs. `lines`: the rows of the table. `meshes`: the rows of
-    the table of meshes. `photograph`: the file of the view that was left out of texturing. `texts`:
-    the scene's name and description, and the size of the images."""
+    the table of meshes. `photograph`: the file of the view that was left out of texturing. `survey`:
+    the HTML about the survey. `texts`: the scene's name and description, and the size of the
+    images."""
     return PAGE.substitute(
         texts, table=html_table(demo_table.table(lines), lines), histograms=histogram_svg(rows),
         clouds=cloud_pictures(rows), depths=depth_pictures(rows),
         mesh_table=html_table(demo_mesh.table(meshes), meshes), left_out=photograph.stem,
-        mesh_pictures=mesh_pictures(meshes, photograph))
+        mesh_pictures=mesh_pictures(meshes, photograph), survey=survey)

@@ -46,6 +46,10 @@ class Programs:
         """`output`: the begin of the names of the maps."""
         return [self.folder / "MapSurface", "-i", scene, "-m", mesh, "-o", output, *options]
 
+    def compare_surveys(self, before, after, output, *options):
+        """`before`, `after`: meshes. `output`: the begin of the names of the results."""
+        return [self.folder / "CompareSurveys", "-i", before, "--other", after, "-o", output, *options]
+
     def view_scene(self, scene, cloud, mesh, folder, *options):
         """`folder`: of the page."""
         return [self.folder / "ViewScene", "-i", scene, "-p", cloud, "-m", mesh, "--report", folder,
