@@ -286,6 +286,10 @@ class Reconstruct(unittest.TestCase):
                 (["--scale-from", "positions:none"],
                  "--scale-from positions:none: file not found"),
                 (["--densify", "'a b"], "--densify 'a b: No closing quotation"),
+                (["--until", "cloud", "--mesh", "--decimate 0.5"],
+                 "--mesh --decimate 0.5: ReconstructMesh does not run with --until cloud"),
+                (["--tiles", "2", "--map=--hillshade"],
+                 "--map --hillshade: MapSurface does not run with --until texture"),
                 (["--tiles", "0"], "--tiles 0: must be from 1 to 1000"),
                 (["--programs", str(self.scene)],
                  f"--programs {self.scene.resolve()}: RefinePoses not found; build the programs first")]:

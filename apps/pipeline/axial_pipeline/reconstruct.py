@@ -114,6 +114,19 @@ def check_tiles(given):
                 raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
 
 
+# The first result of --until for which the program with these options runs.
+NEEDED_FOR = {"mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map", "page": "page"}
+
+
+def check_results(given):
+    """Refuses options of programs that do not run, because --until ends before them."""
+    for name, result in NEEDED_FOR.items():
+        value = getattr(given, name.replace("-", "_"))
+        if value and RESULTS.index(given.until) < RESULTS.index(result):
+            raise Failure(f"--{name} {value}: {MORE_OPTIONS[name]} does not run with --until "
+                          f"{given.until}")
+
+
 def check(given):
     """Checks everything that can be known before hours of work, and makes all paths absolute,
     because the programs look up relative paths in different folders."""
@@ -138,6 +151,7 @@ def check(given):
         raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
     check_tiles(given)
     given.until = last_result(given)
+    check_results(given)
     if given.snakemake and not given.cluster:
         raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
     colmap.check_installed()
