@@ -9,7 +9,7 @@ import unittest.mock
 from pipeline_folder import InFolder
 from programs import main
 
-from axial_pipeline import cluster, jobs, reconstruct, steps
+from axial_pipeline import cluster, jobs, reconstruct_options, reconstruct_steps, steps
 from axial_pipeline.failure import Failure
 
 
@@ -54,11 +54,12 @@ class Jobs(InFolder):
         given = {"output": str(self.folder), "images": "images", "lens": str(lens), "housing": "h",
                  "scale_from": "", "refine": "", "matcher": "exhaustive", "vocabulary": "",
                  "lens_model": "OPENCV",
-                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "", "map": "", "page": "",
-                 "tiles": 1, "until": "cloud", "truth": "", "programs": "bin", **more}
+                 "refine_poses": "", "densify": "", "mesh": "", "refine_mesh": "", "texture": "",
+                 "map": "", "compare": "", "page": "", "tiles": 1, "until": "cloud", "without": "",
+                 "earlier": "", "truth": "", "programs": "bin", **more}
         with unittest.mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
             return jobs.Survey({"given": given, "images": images,
-                                "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct.steps)
+                                "node": {"cpus": 64, "memory_mb": 10**6}}, reconstruct_steps.steps)
 
     def test_only_fusion_exports(self):
         for export in ("--pinhole-export export", "--pinhole-export=export", "--pinhole export"):
@@ -88,8 +89,8 @@ class Jobs(InFolder):
             given = argparse.Namespace(**{"densify": "", "mesh": "", "texture": "", name: words},
                                        tiles=tiles)
             with self.assertRaisesRegex(Failure, f"--{name}: --.* contradicts --tiles {tiles}"):
-                reconstruct.check_tiles(given)
-        reconstruct.check_tiles(argparse.Namespace(densify="--fusion-tiles 3", mesh="--tiles 4",
+                reconstruct_options.check_tiles(given)
+        reconstruct_options.check_tiles(argparse.Namespace(densify="--fusion-tiles 3", mesh="--tiles 4",
                                                    texture="", tiles=1))
 
     def test_the_result_of_tiles_is_any_of_their_files(self):

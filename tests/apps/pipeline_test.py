@@ -13,7 +13,7 @@ import unittest.mock
 from pipeline_folder import PIPELINE, InFolder
 from programs import main
 
-from axial_pipeline import colmap, files, lens, positions, reconstruct, running, steps
+from axial_pipeline import colmap, files, lens, positions, reconstruct_steps, running, steps
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
 
@@ -77,14 +77,14 @@ class ColmapModels(InFolder):
     def test_reconstruct_tells_of_the_models_that_it_leaves(self):
         for number, images in enumerate((3, 9, 2)):
             self.model(number, images)
-        said = self.said_by(reconstruct.take_largest, self.folder / "models")
+        said = self.said_by(reconstruct_steps.take_largest, self.folder / "models")
         self.assertEqual(colmap.registered(self.folder / "models" / "best"), 9)
         self.assertIn("9 images have poses", said)
         self.assertIn("2 more models, of 3, 2 images", said)
 
     def test_reconstruct_tells_of_no_others_if_there_is_one(self):
         self.model(0, 4)
-        self.assertNotIn("more", self.said_by(reconstruct.take_largest, self.folder / "models"))
+        self.assertNotIn("more", self.said_by(reconstruct_steps.take_largest, self.folder / "models"))
 
 
 # A stand-in for COLMAP that writes its commands to the file `commands`. The mapper finds two models.

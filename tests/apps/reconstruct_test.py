@@ -60,6 +60,7 @@ case "$name $1" in
   ReconstructMesh*) touch out/scene_dense_mesh.ply ;;
   RefineMesh*) touch out/scene_dense_refined.ply ;;
   TextureMesh*) touch out/scene_textured.glb out/scene_textured.ply ;;
+  CompareSurveys*) touch out/scene_change.json ;;
   MapSurface*) touch out/scene_map.dem.tif out/scene_map.ortho.tif out/scene_map.views.tif ;;
 esac
 """
@@ -73,7 +74,8 @@ class WithStandIns(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         for name in ("colmap", "RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud",
-                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface", "ViewScene"):
+                     "ReconstructMesh", "RefineMesh", "TextureMesh", "MapSurface", "CompareSurveys",
+                     "ViewScene"):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         for name in ("lens", "housing"):
@@ -190,6 +192,24 @@ class WithStandIns(unittest.TestCase):
         self.assertEqual(done_before(), 1)
         self.assertEqual(done_before(), 10)
 
+    def test_an_earlier_survey_is_compared(self):
+        (self.folder / "before").mkdir()
+        (self.folder / "before" / "scene_dense_mesh.ply").touch()
+        said = self.ended("--earlier", "before", "--without", "refine-mesh,texture,map,page")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        out, commands = self.folder / "out", (self.folder / "commands").read_text().splitlines()
+        self.assertEqual(commands[-1], f"CompareSurveys -i {self.folder}/before/scene_dense_mesh.ply "
+                         f"--other {out}/scene_dense_mesh.ply -o {out}/scene_change --align icp")
+        self.assertEqual([line for line in commands for name in ("RefineMesh", "TextureMesh", "MapS")
+                          if line.startswith(name)], [])
+        self.assertIn(f"Mesh: {out}/scene_dense_mesh.ply   Changes: {out}/scene_change.*   Report:",
+                      said.stdout)
+        (self.folder / "before" / "scene_dense_refined.ply").touch()
+        self.ended("--earlier", "before", "--without", "map,page", "--compare=--align none")
+        commands = (self.folder / "commands").read_text().splitlines()
+        self.assertEqual(commands[-1], f"CompareSurveys -i {self.folder}/before/scene_dense_refined.ply "
+                         f"--other {out}/scene_dense_refined.ply -o {out}/scene_change --align none")
+
     def test_a_matcher_without_its_input_is_refused_at_once(self):
         for options, said in (
                 (["spatial"], "--matcher spatial: none of the photographs in "
@@ -290,6 +310,13 @@ class Reconstruct(unittest.TestCase):
                  "--mesh --decimate 0.5: ReconstructMesh does not run with --until cloud"),
                 (["--tiles", "2", "--map=--hillshade"],
                  "--map --hillshade: MapSurface does not run with --until texture"),
+                (["--without", "mesh"], "--without mesh: mesh is not one of refine-mesh, texture, map, "
+                 "page"),
+                (["--without", "map", "--map=--hillshade"],
+                 "--map --hillshade: contradicts --without map"),
+                (["--compare=--align none"], "--compare --align none: is only for --earlier"),
+                (["--earlier", str(self.scene)], f"--earlier {self.scene.resolve()}: has neither "
+                 "scene_dense_refined.ply nor scene_dense_mesh.ply"),
                 (["--tiles", "0"], "--tiles 0: must be from 1 to 1000"),
                 (["--programs", str(self.scene)],
                  f"--programs {self.scene.resolve()}: RefinePoses not found; build the programs first")]:

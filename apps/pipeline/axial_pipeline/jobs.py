@@ -26,7 +26,7 @@ NEEDS = {"features": (8000, 0, 30, 0.1), "matches": (8000, 0, 60, 1), "poses": (
          "refine": (2000, 4, 60, 0.2), "import": (2000, 2, 30, 0.02), "plan": (2000, 2, 30, 0.02),
          "densify": (4000, 0, 60, 0.2), "mesh": (8000, 4, 60, 0.5),
          "refine-mesh": (8000, 4, 60, 1), "texture": (8000, 4, 60, 0.5), "map": (8000, 4, 60, 0.5),
-         "page": (8000, 1, 30, 0.05),
+         "compare": (8000, 4, 30, 0.1), "page": (8000, 1, 30, 0.05),
          "evaluate": (8000, 0, 60, 0)}
 PAIR_CPU_SECONDS = 0.9  # of COLMAP's matcher, for photographs of 6 megapixels
 SECONDS_TO_READ = 0.2  # an image and its depth map
@@ -75,7 +75,7 @@ class Job:
 
 
 class Survey:
-    """All jobs of a run. `config`: what cluster.py wrote to OPTIONS. `steps`: reconstruct.steps."""
+    """All jobs of a run. `config`: what cluster.py wrote to OPTIONS. `steps`: reconstruct_steps.steps."""
 
     def __init__(self, config, steps):
         given = argparse.Namespace(**config["given"])

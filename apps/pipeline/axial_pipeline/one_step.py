@@ -6,7 +6,7 @@ import json
 import os
 import pathlib
 
-from . import reconstruct
+from . import reconstruct_steps
 from .failure import run_main
 from .jobs import Survey
 from .running import die_with
@@ -30,7 +30,7 @@ def limits_of(command, cpus, memory):
 def run(options):
     config = json.loads(pathlib.Path(options.config).read_text())
     os.chdir(config["folder"])
-    survey = Survey(config, reconstruct.steps)
+    survey = Survey(config, reconstruct_steps.steps)
     step, chain = survey.step(options.name)
     records = Records(survey.out / "steps")
     if not is_done(step, chain, records):

@@ -6,267 +6,23 @@ them, in one command:
 
 COLMAP computes poses with a lens that it calibrates itself. RefinePoses turns them into refractive
 poses. DensifyPointCloud computes the cloud. ReconstructMesh, RefineMesh and TextureMesh turn the
-cloud into a textured mesh, and MapSurface maps it. ViewScene writes a page for the browser that shows
-cloud, mesh and photographs. The command of every step is printed and can be typed by hand. A killed
+cloud into a textured mesh, and MapSurface maps it. With --earlier, CompareSurveys finds what changed
+since an earlier survey. ViewScene writes a page for the browser that shows the results. The command of every step is printed and can be typed by hand. A killed
 run that is started again with the same options continues with the step that was killed; with other
 options, it continues with the first step that differs. A second run in the same folder is refused
 until the first run ends. With --cluster, a workflow of Snakemake runs the same commands, and several
 nodes of a cluster compute the depth maps (docs/cluster.md).
 """
 
-import argparse
 import fcntl
 import json
-import os
 import pathlib
-import shlex
 
-from . import cluster, colmap, files, lens, matching, positions
+from . import cluster, files
 from .failure import Failure, run_main
-from .programs import Programs, default_folder
-from .steps import Files, Step, Tiles, run_all
-
-
-PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
-            "TextureMesh", "MapSurface", "ViewScene")
-# Options whose values are options for a program, and this program.
-MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
-                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
-                "map": "MapSurface", "page": "ViewScene"}
-RESULTS = ("cloud", "mesh", "texture", "map", "page")
-MOST_TILES = 1000  # as in the programs
-
-
-def options(script_folder):
-    programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
-    parser = argparse.ArgumentParser(description=__doc__.split(":\n\n")[0] + ".")
-    parser.add_argument("--images", required=True, help="folder of the raw underwater photographs")
-    parser.add_argument("--lens", required=True,
-                        help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
-                        "calibration.yaml")
-    parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
-                        "calibration.yaml")
-    parser.add_argument("-o", "--output", required=True, help="folder for all output files")
-    parser.add_argument("--scale-from", default="",
-                        help="known lengths or positions [m], as for RefinePoses")
-    parser.add_argument("--refine", default="",
-                        help="further unknowns, as for RefinePoses")
-    parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
-                        help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
-                        "in space, or images that look alike (default: %(default)s)")
-    parser.add_argument("--vocabulary", default="",
-                        help="vocabulary tree for COLMAP, for --matcher vocabulary")
-    parser.add_argument("--lens-model", default="OPENCV",
-                        help="lens model that COLMAP calibrates; it absorbs the refraction "
-                        "(default: %(default)s)")
-    for name, program in MORE_OPTIONS.items():
-        parser.add_argument(f"--{name}", default="",
-                            help=f"more options for {program}, in one word" +
-                            (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
-    parser.add_argument("--tiles", type=int, default=1,
-                        help="make cloud, mesh and textures in this many tiles, so that less memory is "
-                        "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
-                        "mesh in as many jobs (default: %(default)s)")
-    parser.add_argument("--until", choices=RESULTS, default="",
-                        help="last result to make (default: page, or map if the build has no page; "
-                        "with --tiles: texture, because MapSurface and ViewScene need the whole mesh)")
-    parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
-                        "positions: gives: the cloud is measured against it")
-    parser.add_argument("--cluster", choices=["slurm", "local"], default="",
-                        help="run the steps as a workflow of Snakemake, with the depth maps in several "
-                        "jobs: on a cluster with Slurm, or on this machine (docs/cluster.md)")
-    parser.add_argument("--snakemake", default="", help="more options for snakemake with --cluster, "
-                        "in one word")
-    parser.add_argument("--programs", default=programs,
-                        help="folder of the programs (default: %(default)s)")
-    return parser.parse_args()
-
-
-def words_of(name, given):
-    """The words in the value of the option --`name`, which are options for a program."""
-    value = getattr(given, name.replace("-", "_"))
-    try:
-        return shlex.split(value)
-    except ValueError as error:
-        raise Failure(f"--{name} {value}: {error}") from None
-
-
-# Options of programs that contradict tiles, which `reconstruct` asks for.
-NOT_WITH_TILES = {"densify": ("--fusion-tiles", "--tile", "--estimate-normals", "--estimate-colors"),
-                  "mesh": ("--tiles", "--tile", "--decimate", "--target-face-num", "--edge-length"),
-                  "texture": ("--tiles",)}
-
-
-def last_result(given):
-    has_page = Programs(given.programs).has_page()
-    if given.until == "page" and not has_page:
-        raise Failure("--until page: the page was not built (docs/view.md)")
-    return given.until or ("texture" if given.tiles > 1 else "page" if has_page else "map")
-
-
-def check_tiles(given):
-    """Refuses options of programs that contradict --tiles. The programs would refuse them after hours."""
-    for name, refused in NOT_WITH_TILES.items():
-        for word in words_of(name, given):
-            option = word.split("=")[0]
-            always = option == "--tile" or name == "texture"
-            if option in refused and (given.tiles > 1 or always):
-                raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
-
-
-# The first result of --until for which the program with these options runs.
-NEEDED_FOR = {"mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map", "page": "page"}
-
-
-def check_results(given):
-    """Refuses options of programs that do not run, because --until ends before them."""
-    for name, result in NEEDED_FOR.items():
-        value = getattr(given, name.replace("-", "_"))
-        if value and RESULTS.index(given.until) < RESULTS.index(result):
-            raise Failure(f"--{name} {value}: {MORE_OPTIONS[name]} does not run with --until "
-                          f"{given.until}")
-
-
-def check(given):
-    """Checks everything that can be known before hours of work, and makes all paths absolute,
-    because the programs look up relative paths in different folders."""
-    for name in ("images", "lens", "housing", "truth", "programs"):
-        path = getattr(given, name)
-        if path and not pathlib.Path(path).exists():
-            raise Failure(f"--{name} {path}: not found")
-        if path:
-            setattr(given, name, str(pathlib.Path(path).resolve()))
-    file = positions.file_of(given.scale_from)
-    if file is not None:
-        if not pathlib.Path(file).is_file():
-            raise Failure(f"--scale-from {given.scale_from}: file not found")
-        given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
-        positions.check(pathlib.Path(file), pathlib.Path(given.images))
-    for program in PROGRAMS:
-        if not (pathlib.Path(given.programs) / program).is_file():
-            raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
-    for name in (*MORE_OPTIONS, "snakemake"):
-        words_of(name, given)
-    if not 1 <= given.tiles <= MOST_TILES:
-        raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
-    check_tiles(given)
-    given.until = last_result(given)
-    check_results(given)
-    if given.snakemake and not given.cluster:
-        raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
-    colmap.check_installed()
-    matching.check(given)
-    given.output = str(pathlib.Path(given.output).resolve())
-    if pathlib.Path(given.output).is_relative_to(given.images):
-        raise Failure(f"--output {given.output}: lies in the folder of the images")
-    if given.cluster:
-        cluster.check(given)
-
-
-def take_largest(models):
-    """Renames the model with the most images to models/best."""
-    best, count = colmap.largest(models, models.parent / "logs" / "poses.log")
-    others = [str(size) for _, size in colmap.by_size(models)[1:]]
-    print(f"    {count} images have poses", flush=True)
-    if others:
-        print(f"    COLMAP could not join all images: {len(others)} more models, of "
-              f"{', '.join(others)} images, remain in {models}", flush=True)
-    best.rename(models / "best")
-
-
-def colmap_steps(given, out):
-    features, database, models = out / "features.db", out / "database.db", out / "colmap"
-    start = lens.start_under_water(given.lens, given.lens_model)
-    yield Step("features", colmap.features(features, given.images, given.lens_model, start),
-               makes=features, reads=[given.images], changed=colmap.database_files(features))
-    yield matching.step(given, features, database)
-    yield Step("poses", colmap.mapper(database, given.images, models), makes=models / "best",
-               anew=[models], before=models.mkdir, after=lambda: take_largest(models))
-
-
-def existing_files(words):
-    return [word for word in words if pathlib.Path(word).exists()]
-
-
-def refine_options(given):
-    known = ["--scale-from", given.scale_from] if given.scale_from else []
-    refine = ["--refine", given.refine] if given.refine else []
-    return [*known, *refine, *words_of("refine-poses", given)]
-
-
-def mask_words(words, given_again):
-    """The options of TextureMesh for masks among `words`, which MapSurface has, too. Options that are
-    among `given_again` are left out."""
-    kept, again = [], {word.partition("=")[0] for word in given_again}
-    for word, value in zip(words, [*words[1:], ""]):
-        option, equals, _ = word.partition("=")
-        if option in ("--mask-path", "--ignore-mask-label") and option not in again:
-            kept += [word] if equals else [word, value]
-    return kept
-
-
-def tile_options(option, given):
-    """The option of a program for the tiles."""
-    return (option, given.tiles) if given.tiles > 1 else ()
-
-
-def mesh_steps(given, out):
-    programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
-    mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
-    textured = out / "scene_textured"
-    options = {name: words_of(name, given) for name in ("mesh", "refine-mesh", "texture", "map", "page")}
-    reads = {name: existing_files(words) for name, words in options.items()}
-    wanted = RESULTS[:RESULTS.index(given.until) + 1]
-    if "mesh" not in wanted:
-        return
-    yield Step("mesh", programs.reconstruct_mesh(scene, mesh, *refractive,
-                                                 *tile_options("--tiles", given), *options["mesh"]),
-               makes=mesh, reads=reads["mesh"])
-    yield Step("refine-mesh", programs.refine_mesh(scene, mesh, refined, *refractive,
-                                                   *options["refine-mesh"]),
-               makes=refined, reads=reads["refine-mesh"])
-    if "texture" in wanted:
-        yield Step("texture", programs.texture_mesh(scene, refined, textured, "--export-type",
-                                                    "glb,ply", *refractive,
-                                                    *tile_options("--tiles", given),
-                                                    *options["texture"]),
-                   makes=Tiles(out, f"scene_textured.tile*-{given.tiles}.glb") if given.tiles > 1
-                   else Files(textured.with_suffix(".glb"), textured.with_suffix(".ply")),
-                   reads=reads["texture"])
-    # MapSurface gives the mesh textures itself if they are in several files.
-    whole = refined if given.tiles > 1 else textured.with_suffix(".ply")
-    if "map" in wanted:
-        yield Step("map", programs.map_surface(scene, whole, out / "scene_map", *refractive,
-                                               *mask_words(options["texture"], options["map"]),
-                                               *options["map"]),
-                   makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
-                   reads=reads["map"] + reads["texture"])
-    if "page" in wanted:
-        yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
-                                               *refractive, *options["page"]),
-                   makes=out / "page" / "index.html", reads=reads["page"])
-
-
-def steps(given, out):
-    programs, densify = Programs(given.programs), words_of("densify", given)
-    refined, scene, cloud = out / "refined", out / "scene.mvs", out / "scene_dense.ply"
-    known_positions = positions.file_of(given.scale_from)
-    yield from colmap_steps(given, out)
-    yield Step("refine", programs.refine_poses(out / "colmap" / "best", given.lens, given.housing,
-                                               refined, *refine_options(given)),
-               makes=refined / "report.json",
-               reads=[given.lens, given.housing, *([known_positions] if known_positions else []),
-                      *existing_files(words_of("refine-poses", given))])
-    yield Step("import", programs.import_scene(refined, given.images, scene,
-                                               refined / "housing.json"), makes=scene)
-    yield Step("densify", programs.densify(scene, out, "--refractive", 1,
-                                           *tile_options("--fusion-tiles", given), *densify),
-               makes=cloud, reads=existing_files(densify))
-    yield from mesh_steps(given, out)
-    if given.truth:
-        yield Step("evaluate", programs.evaluate(cloud, given.truth, "--json",
-                                                 out / "evaluation.json", "--align", "icp"),
-                   makes=out / "evaluation.json", reads=[given.truth])
+from .reconstruct_options import check, options, wanted_steps
+from .reconstruct_steps import best_mesh, steps
+from .steps import run_all
 
 
 def lines_of_poses(refined):
@@ -315,12 +71,20 @@ def only_run_in(out):
     return lock
 
 
-def mesh_of(given, out):
+def results_of(given, out):
+    """The line that names the results."""
+    wanted = wanted_steps(given)
     textured = f"scene_textured.tile*-{given.tiles}.glb" if given.tiles > 1 else "scene_textured.glb"
-    name = {"cloud": "", "mesh": "scene_dense_refined.ply"}.get(given.until, textured)
-    maps = f"Maps: {out / 'scene_map.*'}   " if given.until in ("map", "page") else ""
-    page = f"Page: {out / 'page' / 'index.html'}   " if given.until == "page" else ""
-    return f"Mesh: {out / name}   {maps}{page}" if name else ""
+    found = [("Cloud", out / "scene_dense.ply")]
+    if "mesh" in wanted:
+        found.append(("Mesh", out / textured if "texture" in wanted else best_mesh(given, out)))
+    if "map" in wanted:
+        found.append(("Maps", out / "scene_map.*"))
+    if "compare" in wanted:
+        found.append(("Changes", out / "scene_change.*"))
+    if "page" in wanted:
+        found.append(("Page", out / "page" / "index.html"))
+    return "   ".join(f"{name}: {path}" for name, path in [*found, ("Report", out / "report.md")])
 
 
 def reconstruct(given):
@@ -332,10 +96,11 @@ def reconstruct(given):
         seconds = (cluster.run_all(todo, given, out, lock) if given.cluster
                    else run_all(todo, out))
         files.write(out / "report.md", report(out, seconds))
-    print(f"Cloud: {out / 'scene_dense.ply'}   {mesh_of(given, out)}Report: {out / 'report.md'}")
+    print(results_of(given, out))
 
 
 def main(script_folder):
     """`script_folder`: the folder of the command that the user typed."""
-    run_main("reconstruct", lambda: reconstruct(options(script_folder)),
+    description = __doc__.split(":\n\n")[0] + "."
+    run_main("reconstruct", lambda: reconstruct(options(script_folder, description)),
              "stopped; the same command continues from here")

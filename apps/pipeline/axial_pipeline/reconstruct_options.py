@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The options of `reconstruct`, and the checks that are made before hours of work."""
+
+import argparse
+import os
+import pathlib
+import shlex
+
+from . import cluster, colmap, matching, positions
+from .failure import Failure
+from .programs import Programs, default_folder
+
+PROGRAMS = ("RefinePoses", "InterfaceCOLMAP", "DensifyPointCloud", "ReconstructMesh", "RefineMesh",
+            "TextureMesh", "MapSurface", "CompareSurveys", "ViewScene")
+# Options whose values are options for a program, and this program.
+MORE_OPTIONS = {"refine-poses": "RefinePoses", "densify": "DensifyPointCloud",
+                "mesh": "ReconstructMesh", "refine-mesh": "RefineMesh", "texture": "TextureMesh",
+                "map": "MapSurface", "compare": "CompareSurveys", "page": "ViewScene"}
+RESULTS = ("cloud", "mesh", "texture", "map", "page")
+SKIPPED = ("refine-mesh", "texture", "map", "page")  # steps that may be left out
+MOST_TILES = 1000  # as in the programs
+
+
+def options(script_folder, description):
+    programs = os.environ.get("AXIAL_BIN", str(default_folder(script_folder)))
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--images", required=True, help="folder of the raw underwater photographs")
+    parser.add_argument("--lens", required=True,
+                        help="the lens as calibrated in air: a COLMAP cameras.txt, or Calibmar's "
+                        "calibration.yaml")
+    parser.add_argument("--housing", required=True, help="the port (docs/formats.md), or Calibmar's "
+                        "calibration.yaml")
+    parser.add_argument("-o", "--output", required=True, help="folder for all output files")
+    parser.add_argument("--scale-from", default="",
+                        help="known lengths or positions [m], as for RefinePoses")
+    parser.add_argument("--refine", default="",
+                        help="further unknowns, as for RefinePoses")
+    parser.add_argument("--matcher", choices=matching.MATCHERS, default="exhaustive",
+                        help="pairs of images that COLMAP matches: all, neighbours in time, neighbours "
+                        "in space, or images that look alike (default: %(default)s)")
+    parser.add_argument("--vocabulary", default="",
+                        help="vocabulary tree for COLMAP, for --matcher vocabulary")
+    parser.add_argument("--lens-model", default="OPENCV",
+                        help="lens model that COLMAP calibrates; it absorbs the refraction "
+                        "(default: %(default)s)")
+    for name, program in MORE_OPTIONS.items():
+        parser.add_argument(f"--{name}", default="",
+                            help=f"more options for {program}, in one word" +
+                            (": --refine-poses='--scale-sigma 0.1'" if name == "refine-poses" else ""))
+    parser.add_argument("--tiles", type=int, default=1,
+                        help="make cloud, mesh and textures in this many tiles, so that less memory is "
+                        "needed; RefineMesh still works on the whole mesh; with --cluster, cloud and "
+                        "mesh in as many jobs (default: %(default)s)")
+    parser.add_argument("--until", choices=RESULTS, default="",
+                        help="last result to make (default: page, or map if the build has no page; "
+                        "with --tiles: texture, because MapSurface and ViewScene need the whole mesh)")
+    parser.add_argument("--without", default="", metavar="STEPS",
+                        help=f"steps to leave out, separated by commas: {', '.join(SKIPPED)}")
+    parser.add_argument("--earlier", default="",
+                        help="mesh of an earlier survey of the same place, or the output folder of its "
+                        "reconstruction: find what changed. The positions of both surveys must agree "
+                        "to some decimetres (docs/compare.md)")
+    parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
+                        "positions: gives: the cloud is measured against it")
+    parser.add_argument("--cluster", choices=["slurm", "local"], default="",
+                        help="run the steps as a workflow of Snakemake, with the depth maps in several "
+                        "jobs: on a cluster with Slurm, or on this machine (docs/cluster.md)")
+    parser.add_argument("--snakemake", default="", help="more options for snakemake with --cluster, "
+                        "in one word")
+    parser.add_argument("--programs", default=programs,
+                        help="folder of the programs (default: %(default)s)")
+    return parser.parse_args()
+
+
+def words_of(name, given):
+    """The words in the value of the option --`name`, which are options for a program."""
+    value = getattr(given, name.replace("-", "_"))
+    try:
+        return shlex.split(value)
+    except ValueError as error:
+        raise Failure(f"--{name} {value}: {error}") from None
+
+
+# Options of programs that contradict tiles, which `reconstruct` asks for.
+NOT_WITH_TILES = {"densify": ("--fusion-tiles", "--tile", "--estimate-normals", "--estimate-colors"),
+                  "mesh": ("--tiles", "--tile", "--decimate", "--target-face-num", "--edge-length"),
+                  "texture": ("--tiles",)}
+
+
+def last_result(given):
+    has_page = Programs(given.programs).has_page()
+    if given.until == "page" and not has_page:
+        raise Failure("--until page: the page was not built (docs/view.md)")
+    return given.until or ("texture" if given.tiles > 1 else "page" if has_page else "map")
+
+
+def check_tiles(given):
+    """Refuses options of programs that contradict --tiles. The programs would refuse them after hours."""
+    for name, refused in NOT_WITH_TILES.items():
+        for word in words_of(name, given):
+            option = word.split("=")[0]
+            always = option == "--tile" or name == "texture"
+            if option in refused and (given.tiles > 1 or always):
+                raise Failure(f"--{name}: {option} contradicts --tiles {given.tiles}")
+
+
+# The first result of --until for which the steps run.
+NEEDED_FOR = {"mesh": "mesh", "refine-mesh": "mesh", "texture": "texture", "map": "map",
+              "compare": "mesh", "page": "page"}
+
+
+def skipped(given):
+    """The steps of --without."""
+    names = given.without.split(",") if given.without else []
+    for name in names:
+        if name not in SKIPPED:
+            raise Failure(f"--without {given.without}: {name or 'an empty name'} is not one of "
+                          f"{', '.join(SKIPPED)}")
+    return names
+
+
+def wanted_steps(given):
+    """The names of the steps after the cloud that run."""
+    last, left_out = RESULTS.index(given.until), skipped(given)
+    return [name for name, result in NEEDED_FOR.items()
+            if RESULTS.index(result) <= last and name not in left_out
+            and (name != "compare" or given.earlier)]
+
+
+def check_results(given):
+    """Refuses options of programs that do not run."""
+    left_out = skipped(given)
+    for name, result in NEEDED_FOR.items():
+        value = getattr(given, name.replace("-", "_"))
+        if value and name in left_out:
+            raise Failure(f"--{name} {value}: contradicts --without {given.without}")
+        if value and RESULTS.index(given.until) < RESULTS.index(result):
+            raise Failure(f"--{name} {value}: {MORE_OPTIONS[name]} does not run with --until "
+                          f"{given.until}")
+    if given.compare and not given.earlier:
+        raise Failure(f"--compare {given.compare}: is only for --earlier")
+    if given.earlier and given.until == "cloud":
+        raise Failure(f"--earlier {given.earlier}: needs the mesh, which --until cloud does not make")
+
+
+def mesh_of_earlier_survey(path):
+    """`path`: a mesh, or the output folder of `reconstruct`."""
+    if not path.is_dir():
+        return path
+    meshes = [path / f"scene_dense_{name}.ply" for name in ("refined", "mesh")]
+    found = next(filter(pathlib.Path.exists, meshes), None)
+    if not found:
+        raise Failure(f"--earlier {path}: has neither {meshes[0].name} nor {meshes[1].name}")
+    return found
+
+
+def check(given):
+    """Checks everything that can be known before hours of work, and makes all paths absolute,
+    because the programs look up relative paths in different folders."""
+    for name in ("images", "lens", "housing", "truth", "earlier", "programs"):
+        path = getattr(given, name)
+        if path and not pathlib.Path(path).exists():
+            raise Failure(f"--{name} {path}: not found")
+        if path:
+            setattr(given, name, str(pathlib.Path(path).resolve()))
+    file = positions.file_of(given.scale_from)
+    if file is not None:
+        if not pathlib.Path(file).is_file():
+            raise Failure(f"--scale-from {given.scale_from}: file not found")
+        given.scale_from = positions.PREFIX + str(pathlib.Path(file).resolve())
+        positions.check(pathlib.Path(file), pathlib.Path(given.images))
+    for program in PROGRAMS:
+        if not (pathlib.Path(given.programs) / program).is_file():
+            raise Failure(f"--programs {given.programs}: {program} not found; build the programs first")
+    for name in (*MORE_OPTIONS, "snakemake"):
+        words_of(name, given)
+    if not 1 <= given.tiles <= MOST_TILES:
+        raise Failure(f"--tiles {given.tiles}: must be from 1 to {MOST_TILES}")
+    check_tiles(given)
+    given.until = last_result(given)
+    check_results(given)
+    if given.earlier:
+        given.earlier = str(mesh_of_earlier_survey(pathlib.Path(given.earlier)))
+    if given.snakemake and not given.cluster:
+        raise Failure(f"--snakemake {given.snakemake}: is only for --cluster")
+    colmap.check_installed()
+    matching.check(given)
+    given.output = str(pathlib.Path(given.output).resolve())
+    if pathlib.Path(given.output).is_relative_to(given.images):
+        raise Failure(f"--output {given.output}: lies in the folder of the images")
+    if given.cluster:
+        cluster.check(given)

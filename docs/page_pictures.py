@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Takes the pictures of docs/view.md from a page that ViewScene wrote:
+
+    python3 docs/page_pictures.py build/demo/refractive_page -o docs/images
+
+Needs Chromium. Each picture is a JPEG file."""
+
+import argparse
+import base64
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "apps"))
+from browser import CHROMIUM, Browser  # noqa: E402
+
+WIDE, NARROW = (1280, 800), (390, 844)  # [CSS px]
+QUALITY = 82
+
+
+def at(browser, x, y):
+    """Clicks on the canvas at these shares of its width and height."""
+    width, height = browser.value("axial.view.size")
+    browser.click(x * width, y * height)
+
+
+def tab(browser, name):
+    browser.click_on(f"[data-tab={name}]")
+
+
+def point(browser):
+    at(browser, 0.5, 0.5)
+    browser.wait_for("[...document.querySelectorAll('#point img')].every(image => image.complete)")
+
+
+def measure(browser):
+    tab(browser, "measure")
+    for x, y in ((0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6)):
+        at(browser, x, y)
+    browser.click_on(".volume")
+
+
+# The name of each picture, the size of its window, and what is done before it.
+PICTURES = {
+    "view_point": (WIDE, point),
+    "view_measure": (WIDE, measure),
+    "view_narrow": (NARROW, point),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("page", type=pathlib.Path, help="folder that ViewScene wrote")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    given = parser.parse_args()
+    if not CHROMIUM:
+        sys.exit("Chromium is not installed")
+    for name, (size, prepare) in PICTURES.items():
+        browser = Browser((given.page / "index.html").resolve().as_uri(), *size)
+        try:
+            browser.wait_for("globalThis.axial && axial.ready && axial.view.complete")
+            prepare(browser)
+            browser.wait_for("axial.view.complete")
+            picture = browser.send("Page.captureScreenshot", format="jpeg", quality=QUALITY)["data"]
+        finally:
+            browser.close()
+        (given.output / f"{name}.jpg").write_bytes(base64.b64decode(picture))
+
+
+if __name__ == "__main__":
+    main()
