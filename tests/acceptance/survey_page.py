@@ -57,11 +57,12 @@ def loading_times(browser, begin):
 
 def large_page(work):
     _, folder = survey_with_maps(work)
-    if not (folder / "scene_dense.ply").exists():
+    cloud, page = folder / "whole.ply", folder / "page"
+    if not cloud.exists():
         fused(folder, "whole")
-    page = folder / "page"
-    cost = measured(folder / "page.log", BIN / "ViewScene", "-i", folder / "scene.mvs", "-p",
-                    folder / "scene_dense.ply", "--report", page, "--max-points", POINTS_SHOWN)
+        (folder / "scene_dense.ply").rename(cloud)
+    cost = measured(folder / "page.log", BIN / "ViewScene", "-i", folder / "scene.mvs", "-p", cloud,
+                    "--report", page, "--max-points", POINTS_SHOWN)
     return page, cost
 
 

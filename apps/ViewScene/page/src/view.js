@@ -10,14 +10,24 @@ import { Mesh } from "./mesh.js";
 const GROUND = 0x171a1e;
 const STILL = 250; // [ms] without a move before more points are drawn
 // The time that a picture may take while the view moves, and a portion when it stands still [ms].
-const MOVING_TIME = 60, PORTION_TIME = 150;
+const MOVING_TIME = 30, PORTION_TIME = 150;
+
+/** Whether the processor draws, because there is no graphics card. Smooth edges would then take most
+ * of the time of a picture. */
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl ? gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER) : "";
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
 
 export class View {
   /** `clicked(x, y)`: called for a click on the canvas. `drawn()`: called after each drawing. */
   constructor(scene, clicked, drawn) {
     this.canvas = byId("canvas");
     this.renderer = new three.WebGLRenderer({
-      canvas: this.canvas, antialias: true, preserveDrawingBuffer: true // for drawMore()
+      canvas: this.canvas, antialias: !drawsInSoftware(),
+      preserveDrawingBuffer: true // for drawMore()
     });
     this.renderer.setClearColor(GROUND);
     this.camera = new three.PerspectiveCamera(50, 1, 0.01, 100);
@@ -97,7 +107,7 @@ export class View {
     const begin = performance.now();
     this.drawAndWait();
     const perPoint = (performance.now() - begin) / Math.max(points, 1);
-    if (points > 100000) this.moving = Math.max(MOVING_TIME / perPoint, 200000);
+    if (points > 10000) this.moving = Math.max(MOVING_TIME / perPoint, 10000);
     this.drawMore(points, Math.max(PORTION_TIME / perPoint, 50000));
   }
 
