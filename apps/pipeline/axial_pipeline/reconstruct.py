@@ -24,6 +24,7 @@ import shlex
 from . import cluster, colmap, files, lens, matching, positions
 from .failure import Failure, run_main
 from .programs import Programs, default_folder
+from .run_file import write_run
 from .steps import Files, Step, Tiles, run_all
 
 
@@ -196,6 +197,25 @@ def tile_options(option, given):
     return (option, given.tiles) if given.tiles > 1 else ()
 
 
+RUN_FILE = "run.json"
+
+
+def survey_words(given, out):
+    """The options of ViewScene for what the earlier steps made, except those that the user gave."""
+    again = {word.partition("=")[0] for word in words_of("page", given)}
+    kept_maps = not any(word.startswith("--remove-d") for word in words_of("densify", given))
+    words = {"--map": out / "scene_map", "--run": out / RUN_FILE,
+             **({"--depth-maps": out} if kept_maps else {})}
+    return [word for option, value in words.items() if option not in again for word in (option, value)]
+
+
+def write_run_before(name, given, out):
+    """Writes the file of the run about the steps before the step `name`."""
+    todo = list(steps(given, out))
+    number = [step.name for step in todo].index(name)
+    write_run(out / RUN_FILE, given, todo[:number], out)
+
+
 def mesh_steps(given, out):
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
     mesh, refined = out / "scene_dense_mesh.ply", out / "scene_dense_refined.ply"
@@ -229,8 +249,10 @@ def mesh_steps(given, out):
                    reads=reads["map"] + reads["texture"])
     if "page" in wanted:
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
-                                               *refractive, *options["page"]),
-                   makes=out / "page" / "index.html", reads=reads["page"])
+                                               *refractive, *survey_words(given, out),
+                                               *options["page"]),
+                   makes=out / "page" / "index.html", reads=reads["page"],
+                   before=lambda: write_run_before("page", given, out))
 
 
 def steps(given, out):
