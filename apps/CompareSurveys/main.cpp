@@ -130,6 +130,7 @@ int run(int argc, char** argv) {
                              settings.after.filename().string()};
   if (settings.epsg > 0) facts.crs = map::crs_of_epsg(settings.epsg, option_of);
   const LocalFrame frame = frame_of_survey(settings.before);
+  facts.mesh_frame = frame;
   const Mesh before = read_survey(settings, settings.before, frame);
   const Mesh after = read_survey(settings, settings.after, frame);
   facts.aligned = settings.compare.align;

@@ -93,6 +93,7 @@ void keep_inputs(const Settings& settings, const texture::Photographs& photograp
 
 struct PlacedMap {
   map::MapFrame frame;
+  LocalFrame mesh_frame;
   map::MapGrid grid;
   bool is_georeferenced = false;
 };
@@ -122,6 +123,7 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame
                              : has_system ? Eigen::Vector3d::UnitZ()
                                           : map::fitted_up(mesh, centres_of(views));
   PlacedMap map;
+  map.mesh_frame = frame;
   map.frame = map::frame_with_up(up, frame);
   map.is_georeferenced = has_system && map.frame.axes.isIdentity(0);
   map.grid = map::grid_around(mesh, map.frame, pixel_of(settings, mesh, views), option_of);
@@ -175,6 +177,7 @@ void write(const Settings& settings, const TexturedMesh& mesh,
   map::WriteOptions options;
   options.crs = crs;
   options.is_georeferenced = place.is_georeferenced;
+  options.mesh_frame = place.mesh_frame;
   options.contour_interval = settings.contours;
   options.memory = memory_of(settings);
   options.name_of = option_of;

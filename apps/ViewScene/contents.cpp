@@ -14,11 +14,14 @@
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/version.h"
+#include "depth_maps.h"
 #include "folder.h"
 #include "io/images/bit_depth.h"
 #include "io/images/image.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
+#include "maps.h"
+#include "run.h"
 #include "scene/resolution.h"
 #include "view/camera_data.h"
 #include "view/cloud_data.h"
@@ -167,6 +170,15 @@ Json write_cameras(const Contents& contents, const Options& options, const fs::p
   return cameras;
 }
 
+// What the page shows of the maps, of the run and of the depth maps.
+void add_survey(const Contents& contents, const Options& options, const fs::path& staging,
+                Json& data) {
+  if (!options.run.empty()) data["run"] = run_report(options.run);
+  if (Json maps = write_maps(options.maps, staging); !maps.is_null()) data["map"] = std::move(maps);
+  Json depths = write_depth_maps(contents.scene.scene, options.depth_maps, staging);
+  if (!depths.empty()) data["depth_maps"] = std::move(depths);
+}
+
 Json files_of(const Options& options) {
   Json files{{"scene", options.scene.scene.filename().string()},
              {"cloud", options.cloud.filename().string()}};
@@ -208,6 +220,7 @@ void write_contents(const Contents& contents, const Options& options, const fs::
                   {"radius", first.radius},
                   {"towards", list(first.towards)},
                   {"up", list(first.up)}};
+  add_survey(contents, options, staging, data);
   data["cameras"] = write_cameras(contents, options, staging);
   data["chunks"] = write_cloud(contents, options, staging);
   if (contents.mesh || contents.textured) data["mesh"] = write_mesh(contents, options, staging);

@@ -15,9 +15,33 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, cloud, mesh, report;
+  std::string input, cloud, mesh, report, maps, changes, depth_maps, run;
   io::SceneOptions scene;
 };
+
+void declare_survey(OptionList& list, Raw& raw, Options& options) {
+  list.add("map", &raw.maps, "maps to show: the begin of their names, -o of MapSurface")
+      .add("change", &raw.changes,
+           "changes to show: the begin of the names of their files, -o of CompareSurveys")
+      .add_with_default("map-size", &options.maps.longest_side,
+                        "longest side of the maps in the folder [px]")
+      .add("depth-maps", &raw.depth_maps,
+           "folder of the depth maps (.dmap) to show (that of the scene)")
+      .add_with_default("depth-map-size", &options.depth_maps.longest_side,
+                        "longest side of the pictures of depth maps in the folder [px]; 0: no "
+                        "depth maps")
+      .add("run", &raw.run, "file with the steps of a run to show, which reconstruct writes");
+}
+
+void take_survey(const Raw& raw, const CommonOptions& common, Options& options) {
+  options.maps.maps = in_working_folder(common, raw.maps).string();
+  options.maps.changes = in_working_folder(common, raw.changes).string();
+  options.depth_maps.is_given = !raw.depth_maps.empty();
+  options.depth_maps.folder = options.depth_maps.is_given
+                                  ? in_working_folder(common, raw.depth_maps)
+                                  : options.scene.scene.parent_path();
+  options.run = in_working_folder(common, raw.run);
+}
 
 void declare(OptionList& list, Raw& raw, Options& options) {
   list.add("input-file,i", &raw.input, "scene with cameras and images (.mvs)")
@@ -30,6 +54,7 @@ void declare(OptionList& list, Raw& raw, Options& options) {
                         "longest side of the photographs in the folder [px]")
       .add_with_default("texture-size", &options.texture_size,
                         "longest side of the textures in the folder [px]");
+  declare_survey(list, raw, options);
   io::declare_bit_depth(list, options.bit_depth);
   io::declare_scene_options(list, raw.scene);
 }
@@ -57,11 +82,15 @@ Options parse_command_line(int argc, const char* const* argv) {
   check_range("max-points", options.max_points, std::uint64_t{1}, std::uint64_t{1} << 30);
   check_range("photograph-size", options.photograph_size, 16, 1 << 16);
   check_range("texture-size", options.texture_size, 16, 1 << 15);
+  check_range("map-size", options.maps.longest_side, 16, 1 << 14);
+  if (options.depth_maps.longest_side != 0)
+    check_range("depth-map-size", options.depth_maps.longest_side, 16, 1 << 14);
   io::check_bit_depth(options.bit_depth, "--bit-depth");
   options.scene = io::scene_files(raw.scene, raw.input, common);
   options.cloud = raw.cloud.empty() ? fs::path(options.scene.scene).replace_extension(".ply")
                                     : in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
+  take_survey(raw, common, options);
   options.report = in_working_folder(common, raw.report).lexically_normal();
   if (!options.report.has_filename()) options.report = options.report.parent_path();
   return options;

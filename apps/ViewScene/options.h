@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "base/program.h"
+#include "depth_maps.h"
 #include "io/openmvs/scene_with_cameras.h"
+#include "maps.h"
 
 namespace axial::apps {
 
@@ -14,6 +16,9 @@ struct Options {
   io::SceneFiles scene;
   std::filesystem::path cloud, mesh;  // an empty `mesh`: none
   std::filesystem::path report;       // the folder to write
+  MapOptions maps;
+  DepthMapOptions depth_maps;
+  std::filesystem::path run;  // what `reconstruct` says about its run; empty: none
   std::uint64_t max_points = 10'000'000;
   int photograph_size = 1024;  // longest side of the reduced photographs [px]
   int texture_size = 4096;     // longest side of the reduced textures [px]

@@ -2,6 +2,7 @@
 #include "base/log.h"
 
 #include <fmt/format.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -28,6 +29,27 @@ constexpr std::array kLevels{spdlog::level::trace, spdlog::level::debug, spdlog:
 
 spdlog::level::level_enum level_of(LogLevel level) {
   return kLevels[static_cast<std::size_t>(level)];
+}
+
+// The mark of warnings, so that people and programs find them in a log: "%*" of a pattern.
+class WarningMark : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& line) override {
+    constexpr std::string_view kMark = "warning: ";
+    if (message.level == spdlog::level::warn)
+      line.append(kMark.data(), kMark.data() + kMark.size());
+  }
+  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+    return std::make_unique<WarningMark>();
+  }
+};
+
+// `time`: the pattern of the beginning of a line.
+std::unique_ptr<spdlog::formatter> line_format(const std::string& time) {
+  auto format = std::make_unique<spdlog::pattern_formatter>();
+  format->add_flag<WarningMark>('*').set_pattern(time + " [%n] %*%v");
+  return format;
 }
 
 std::shared_ptr<spdlog::sinks::sink>& file_sink() {
@@ -58,7 +80,7 @@ void log_to_file_too(const std::filesystem::path& file) {
     fail("{}: is not a log file, and nothing is added to it", file.string());
   try {
     const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
-    sink->set_pattern("%Y-%m-%d %H:%M:%S [%n] %v");
+    sink->set_formatter(line_format("%Y-%m-%d %H:%M:%S"));
     spdlog::default_logger()->sinks().push_back(sink);
     file_sink() = sink;
   } catch (const spdlog::spdlog_ex& error) {
@@ -90,7 +112,7 @@ bool logs(LogLevel level) {
 void start_log(const std::string& name, const std::string& line_start) {
   const auto log =
       std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stdout_sink_mt>());
-  log->set_pattern(line_start + "%H:%M:%S [%n] %v");
+  log->set_formatter(line_format(line_start + "%H:%M:%S"));
   log->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(log);
 }

@@ -79,8 +79,9 @@ Json json_of(const std::vector<Region>& regions) {
 }
 
 void write_map(const fs::path& path, map::MapKind kind, const cv::Mat& pixels,
-               const Comparison& comparison, const std::string& crs) {
-  map::GeoTiff file(path, kind, comparison.grid, crs);
+               const Comparison& comparison, const ChangeFacts& facts) {
+  map::GeoTiff file(path, kind, comparison.grid, facts.crs);
+  file.state_axes(map::world_axes(comparison.frame, facts.mesh_frame));
   file.write(cv::Rect({}, pixels.size()), pixels);
   file.finish();
 }
@@ -128,11 +129,11 @@ void write_changes(const ChangeFiles& files, const Comparison& comparison,
     remove_abandoned(path.parent_path(), path.stem().string());
   write_together(files.all(), [&](const std::vector<fs::path>& temporary) {
     write_map(temporary[0], map::MapKind::heights, with_no_height(comparison.difference),
-              comparison, facts.crs);
+              comparison, facts);
     write_map(temporary[1], map::MapKind::classes, comparison.changes.classes, comparison,
-              facts.crs);
+              facts);
     write_map(temporary[2], map::MapKind::heights, with_no_height(comparison.sigma), comparison,
-              facts.crs);
+              facts);
     write_atomically(temporary[3], io::to_text(to_json(comparison, facts), 1) + "\n");
     io::write_jpeg(temporary[4], draw_changes(comparison, facts.is_georeferenced), kJpegQuality);
   });

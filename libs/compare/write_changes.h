@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/compare.h"
+#include "scene/local_frame.h"
 
 namespace axial::compare {
 
@@ -29,6 +30,7 @@ struct ChangeFacts {
   bool is_georeferenced = false;  // y of the map is north
   bool aligned = false;           // the surveys were registered
   std::string crs = {};           // WKT; empty: none
+  LocalFrame mesh_frame = {};     // of the surveys, for the axes that the maps state
 };
 
 // All numbers of a comparison. docs/compare.md describes the fields.

@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "private/gdal_calls.h"
+#include "private/map_metadata.h"
 
 namespace axial::map {
 namespace {
@@ -103,6 +104,12 @@ GeoTiff::GeoTiff(const fs::path& path, MapKind kind, const MapGrid& grid, const 
 GeoTiff::~GeoTiff() {
   const GdalErrors unreported;  // without finish() the blocks are not needed
   state_.reset();
+}
+
+void GeoTiff::state_axes(const WorldAxes& axes) {
+  const GdalErrors errors;
+  map::state_axes(state_->file.get(), axes);
+  errors.require(true, state_->name());
 }
 
 void GeoTiff::write(const cv::Rect& at, const cv::Mat& pixels) {

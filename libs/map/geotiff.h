@@ -10,6 +10,7 @@
 #include <string>
 
 #include "map/frame.h"
+#include "map/world_axes.h"
 
 namespace axial::map {
 
@@ -45,6 +46,10 @@ class GeoTiff {
   ~GeoTiff();
   GeoTiff(const GeoTiff&) = delete;
   GeoTiff& operator=(const GeoTiff&) = delete;
+
+  // States the axes of the map in the file, as the metadata items AXIALMVS_AXES and AXIALMVS_OFFSET
+  // (docs/maps.md). Without this call the file does not state them.
+  void state_axes(const WorldAxes& axes);
 
   // Writes the pixels `at` of the map. The type of `pixels` is that of the kind: CV_32FC1, CV_8UC4
   // (R G B alpha), CV_16UC1 or CV_8UC1. Pixels that are never written have no surface.

@@ -29,9 +29,13 @@ constexpr fs::path MapFiles::*kMembers[] = {&MapFiles::heights,  &MapFiles::colo
 // The open maps. Blocks are written by one thread at a time.
 class OpenMaps {
  public:
-  OpenMaps(const MapFiles& files, const MapGrid& grid, const std::string& crs) {
+  OpenMaps(const MapFiles& files, const MapContent& content, const WriteOptions& options) {
+    const WorldAxes axes = world_axes(content.frame, options.mesh_frame);
     const auto open = [&](const fs::path& path, MapKind kind) {
-      return path.empty() ? nullptr : std::make_unique<GeoTiff>(path, kind, grid, crs);
+      if (path.empty()) return std::unique_ptr<GeoTiff>();
+      auto map = std::make_unique<GeoTiff>(path, kind, content.grid, options.crs);
+      map->state_axes(axes);
+      return map;
     };
     heights_ = open(files.heights, MapKind::heights);
     colors_ = open(files.colors, MapKind::colors);
@@ -100,7 +104,7 @@ MapReport make_maps(const MapFiles& files, const MapContent& content, const Writ
   const auto sink = [&](const char* stage) { return progress ? progress(stage) : ProgressSink{}; };
   const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
   const std::size_t at_once = blocks_at_once(content, options, samples);
-  OpenMaps maps(files, content.grid, options.crs);
+  OpenMaps maps(files, content, options);
   {
     const FaceBins bins(content.mesh.mesh, content.frame, content.grid, options.block_size);
     ProgressCounter counter(sink("Maps"), bins.blocks());

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/setting_names.h"
 #include "map/map_block.h"
+#include "scene/local_frame.h"
 
 namespace axial::map {
 
@@ -31,6 +32,7 @@ struct MapFiles {
 struct WriteOptions {
   std::string crs = {};           // WKT; empty: none
   bool is_georeferenced = false;  // y of the map is north, for the arrow in the picture
+  LocalFrame mesh_frame = {};     // for the axes that the files state
   int block_size = 512;           // [px]; affects the memory, but not the result
   int samples = 0;                // along each side of a pixel, odd; 0: samples_per_pixel()
   double contour_interval = 0;    // height between contour lines [m]

@@ -51,7 +51,7 @@ class Programs:
         return [self.folder / "CompareSurveys", "-i", before, "--other", after, "-o", output, *options]
 
     def view_scene(self, scene, cloud, mesh, folder, *options):
-        """`folder`: of the page."""
+        """`folder`: of the page. `options`: for the maps, the depth maps and the run, too."""
         return [self.folder / "ViewScene", "-i", scene, "-p", cloud, "-m", mesh, "--report", folder,
                 *options]
 

@@ -6,6 +6,7 @@ import pathlib
 from . import colmap, lens, matching, positions
 from .programs import Programs
 from .reconstruct_options import wanted_steps, words_of
+from .run_file import write_run
 from .steps import Files, Step, Tiles
 
 
@@ -98,6 +99,28 @@ def mesh_steps(given, out):
                    reads=reads["texture"])
 
 
+RUN_FILE = "run.json"
+
+
+def words_about_results(given, out):
+    """The options of ViewScene for the results of earlier steps, except those that the user gave."""
+    again = {word.partition("=")[0] for word in words_of("page", given)}
+    kept_maps = not any(word.startswith("--remove-d") for word in words_of("densify", given))
+    wanted = wanted_steps(given)
+    words = {"--run": out / RUN_FILE,
+             **({"--map": out / "scene_map"} if "map" in wanted else {}),
+             **({"--change": out / "scene_change"} if "compare" in wanted else {}),
+             **({"--depth-maps": out} if kept_maps else {})}
+    return [word for option, value in words.items() if option not in again for word in (option, value)]
+
+
+def write_run_before(name, given, out):
+    """Writes the file of the run about the steps before the step `name`."""
+    todo = list(steps(given, out))
+    number = [step.name for step in todo].index(name)
+    write_run(out / RUN_FILE, given, todo[:number], out)
+
+
 def survey_steps(given, out):
     """The steps from the mesh to maps, to the comparison with an earlier survey, and to the page."""
     programs, scene, refractive = Programs(given.programs), out / "scene_dense.mvs", ("--refractive", 1)
@@ -119,8 +142,10 @@ def survey_steps(given, out):
                    makes=out / "scene_change.json", reads=[given.earlier, *reads["compare"]])
     if "page" in wanted:
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
-                                               *refractive, *options["page"]),
-                   makes=out / "page" / "index.html", reads=reads["page"])
+                                               *refractive, *words_about_results(given, out),
+                                               *options["page"]),
+                   makes=out / "page" / "index.html", reads=reads["page"],
+                   before=lambda: write_run_before("page", given, out))
 
 
 def steps(given, out):

@@ -11,6 +11,7 @@ import time
 
 from . import files
 from .running import logged
+from .versions import version_of
 
 
 class Step:
@@ -122,7 +123,8 @@ def perform(step, chain, records, logs, limits=()):
     logged([*step.command, *limits], logs / f"{step.name}.log", step.name)
     step.after()
     seconds = round(time.monotonic() - begin, 1)
-    records.write(step, "done", {"chain": digest(chain), "seconds": seconds})
+    records.write(step, "done", {"chain": digest(chain), "seconds": seconds,
+                                 "version": version_of(step.command)})
     return seconds
 
 

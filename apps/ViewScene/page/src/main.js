@@ -6,9 +6,10 @@ import { drawOverlay } from "./overlay.js";
 import { Paths } from "./paths.js";
 import { listPhotographs, showPoint } from "./photographs.js";
 import { largestError } from "./project.js";
+import { showStage, shownTabs, startSurvey } from "./survey.js";
 import { View } from "./view.js";
 
-const TABS = ["point", "measure", "photographs", "about"];
+const TABS = ["point", "measure", "photographs", "map", "run", "about"];
 const state = { tab: "point", picked: null, keyboard: false };
 const count = value => value.toLocaleString("en-US");
 
@@ -17,6 +18,7 @@ function choose(tab) {
   for (const button of document.querySelectorAll("nav button"))
     button.setAttribute("aria-selected", button.dataset.tab === tab);
   for (const name of TABS) byId(name).hidden = name !== tab;
+  showStage(tab);
 }
 
 function toggle(id, group, view) {
@@ -36,7 +38,7 @@ function about(scene) {
                 ["Touch", "one finger turns, two fingers move and zoom, a tap picks"],
                 ["Arrows", "turn; with Shift: move"], ["+ and −", "zoom"],
                 ["Enter", "pick the point in the middle"], ["Backspace", "remove the last point of a path"],
-                ["1 to 4", "choose a tab"], ["R", "reset the view"]];
+                [`1 to ${shownTabs().length}`, "choose a tab"], ["R", "reset the view"]];
   byId("about").replaceChildren(
     make("h2", {}, "Reconstruction"),
     table([["Scene", scene.files.scene], ["Cloud", scene.files.cloud],
@@ -81,8 +83,14 @@ function start(scene) {
     button.onclick = () => choose(button.dataset.tab);
   listKeys(view, paths, pick);
   listPhotographs(scene, number => view.lookFrom(scene.cameras[number], number));
+  const map = startSurvey(scene, place => {
+    choose("point");
+    state.picked = place;
+    showPoint(scene, place, view.cloud.nearest(place)?.views ?? null);
+    view.lookAt(place);
+  });
   about(scene);
-  return { view, paths };
+  return { view, paths, map };
 }
 
 function listKeys(view, paths, pick) {
@@ -100,12 +108,12 @@ function listKeys(view, paths, pick) {
     if (event.key === "r") byId("reset").click();
   });
   document.addEventListener("keydown", event => {
-    if (!event.ctrlKey && !event.altKey && !event.metaKey && TABS[event.key - 1])
-      choose(TABS[event.key - 1]);
+    const tab = shownTabs()[event.key - 1];
+    if (!event.ctrlKey && !event.altKey && !event.metaKey && tab) choose(tab);
   });
 }
 
-async function load(scene, { view }) {
+async function load(scene, { view, map }) {
   await loadAll("cloud", scene.chunks, (entry, bytes) => {
     view.cloud.add(entry, bytes);
     byId("status").textContent = `${count(view.cloud.points)} of ${count(scene.points)} points`;
@@ -119,6 +127,7 @@ async function load(scene, { view }) {
     await loadAll("mesh", scene.mesh.parts, (entry, bytes) => view.mesh.add(entry, bytes));
     view.move();
   }
+  await map?.load();
   byId("status").textContent = `${count(view.cloud.points)} points`;
   view.rest();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The photographs that see a point, and the list of all photographs.
 import { PORTS, portOf } from "./cameras.js";
+import { withDepthMaps } from "./depth_pictures.js";
 import { byId, make, table } from "./elements.js";
 import { inImage, project } from "./project.js";
 
@@ -46,10 +47,12 @@ export function showPoint(scene, position, views) {
 /** Lists all photographs. `look(number)` is called for the one that is chosen. */
 export function listPhotographs(scene, look) {
   const chosen = make("div", { class: "cards" });
+  const show = (camera, number) => chosen.replaceChildren(...withDepthMaps(
+    figure(camera, null), scene.depth_maps?.[number], scene.metric ? "m" : ""));
   const buttons = scene.cameras.map((camera, number) => {
     const [port, color] = PORTS[portOf(camera)];
     return make("button", {
-      onclick: () => { chosen.replaceChildren(figure(camera, null)); look(number); }
+      onclick: () => { show(camera, number); look(number); }
     }, make("span", {}, camera.name), make("span", {
       class: "kind", style: `--color:#${color.toString(16)}`
     }, camera.port?.name || port));

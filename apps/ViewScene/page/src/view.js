@@ -80,6 +80,13 @@ export class View {
     this.controls.place(eye);
   }
 
+  /** Looks at a place from near, in the direction of the last view. */
+  lookAt(place) {
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    this.controls.target.fromArray(place);
+    this.controls.place(arm.setLength(this.scene.view.radius / 2).add(this.controls.target));
+  }
+
   moving = 300000; // the most points while the view moves
   loading = true; // until the first call of rest()
 

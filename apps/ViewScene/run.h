@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+namespace axial::apps {
+
+// What the page shows of a run of `reconstruct`, from the file that `reconstruct` wrote
+// (docs/view.md): "command", a list of words, and "steps", a list of objects with "name",
+// "command", "seconds", "version" (a text or null) and "warnings", a list of "text" and "times".
+// Error that names the file and the field if the file is missing or malformed.
+nlohmann::ordered_json run_report(const std::filesystem::path& file);
+
+}  // namespace axial::apps

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The file that tells the page of ViewScene how a survey was made: the steps of `reconstruct` with
+their commands, times, versions and warnings (docs/view.md)."""
+
+import collections
+import json
+import re
+
+from . import files, jobs
+from .steps import Records, chain_to, digest, read_record
+
+# The jobs of which `reconstruct --cluster` makes a step.
+PARTS = {"densify": ("plan", "depth-*", "densify-tile-*"), "mesh": ("mesh-tile-*",)}
+
+WARNINGS = re.compile(
+    r"^\d\d:\d\d:\d\d \[\w+\] warning: (?P<ours>.*)$"  # libs/base/log.cpp
+    r"|^W\d{4,8} [\d:.]+ +\d+ (?P<colmap>.*)$"  # COLMAP, by glog
+    r"|^WARNING: (?P<old_colmap>.*)$", re.MULTILINE)
+
+
+def warnings_of(logs):
+    """The warnings in the files `logs`, each once with the number of times that it occurs."""
+    counts = collections.Counter()
+    for log in logs:
+        if log.is_file():
+            found = WARNINGS.finditer(log.read_text(errors="replace"))
+            counts.update(match[match.lastgroup].strip() for match in found)
+    return [{"text": text, "times": times} for text, times in counts.items()]
+
+
+def parts_of(name, chain, out):
+    """The records of the jobs that made parts of the step `name` with this chain, by their names."""
+    found = {}
+    for pattern in PARTS.get(name, ()):
+        for path in sorted(out.glob(jobs.done(pattern))):
+            record = read_record(path)
+            if record.get("chain") == digest(chain):
+                found[path.name.removesuffix(".done.json")] = record
+    return found
+
+
+def entry_of(step, todo, out):
+    record = Records(out / "steps").read(step, "done")
+    parts = parts_of(step.name, chain_to(step.name, todo), out)
+    logs = [out / "logs" / f"{name}.log" for name in (*parts, step.name)]
+    seconds = sum(one.get("seconds", 0) for one in (record, *parts.values()))
+    return {"name": step.name, "command": step.command, "seconds": round(seconds, 1),
+            "version": record.get("version"), "warnings": warnings_of(logs)}
+
+
+def write_run(path, given, todo, out):
+    """Writes the file `path` about the steps `todo`, which are done, of a run in the folder `out`.
+    `given`: the options of `reconstruct`."""
+    options = [f"--{name.replace('_', '-')}={value}" for name, value in vars(given).items() if value]
+    steps = [entry_of(step, todo, out) for step in todo]
+    files.write(path, json.dumps({"command": ["reconstruct", *options], "steps": steps}, indent=1))

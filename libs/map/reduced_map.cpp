@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/reduced_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "private/gdal_calls.h"
+#include "private/map_metadata.h"
+
+namespace axial::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BandsOfKind {
+  const char* name;
+  int count;
+  GDALDataType type;
+};
+
+BandsOfKind bands_of(MapKind kind) {
+  switch (kind) {
+    case MapKind::heights:
+      return {"heights", 1, GDT_Float32};
+    case MapKind::colors:
+      return {"colours", 4, GDT_Byte};
+    case MapKind::counts:
+      return {"numbers of views", 1, GDT_UInt16};
+    case MapKind::classes:
+      return {"classes", 1, GDT_Byte};
+    case MapKind::shades:
+      break;
+  }
+  return {"shades", 1, GDT_Byte};
+}
+
+std::string words_of(int count, GDALDataType type) {
+  return fmt::format("{} band{} of {}", count, count == 1 ? "" : "s", GDALGetDataTypeName(type));
+}
+
+void check_bands(GDALDatasetH file, MapKind kind, const fs::path& path) {
+  const BandsOfKind wanted = bands_of(kind);
+  const int count = GDALGetRasterCount(file);
+  if (count == 0) fail("{}: has no bands", path.string());
+  const GDALDataType type = GDALGetRasterDataType(GDALGetRasterBand(file, 1));
+  if (count != wanted.count || type != wanted.type)
+    fail("{}: has {}, but a map of {} has {}", path.string(), words_of(count, type), wanted.name,
+         words_of(wanted.count, wanted.type));
+}
+
+MapGrid grid_of(GDALDatasetH file, const fs::path& path) {
+  std::array<double, 6> t{};
+  const bool is_stated = GDALGetGeoTransform(file, t.data()) == CE_None;
+  const bool is_finite = std::ranges::all_of(t, [](double value) { return std::isfinite(value); });
+  constexpr double kTolerance = 1e-6;
+  if (!is_stated || !is_finite || !(t[1] > 0) || t[2] != 0 || t[4] != 0 ||
+      !(std::abs(t[5] + t[1]) <= kTolerance * t[1]))
+    fail("{}: has no geotransform of a map with square pixels whose y axis points upwards",
+         path.string());
+  return {t[0], t[3], t[1], GDALGetRasterXSize(file), GDALGetRasterYSize(file)};
+}
+
+// The pixels of the file with `size` pixels, in their own type for colours and otherwise as float.
+cv::Mat read_pixels(GDALDatasetH file, MapKind kind, const MapGrid& grid, cv::Size size,
+                    const GdalErrors& errors, const fs::path& path) {
+  const bool colors = kind == MapKind::colors;
+  cv::Mat pixels(size, colors ? CV_8UC4 : CV_32FC1);
+  GDALRasterIOExtraArg how;
+  INIT_RASTERIO_EXTRA_ARG(how);
+  if (kind != MapKind::classes) how.eResampleAlg = GRIORA_Average;
+  const int bands = pixels.channels();
+  const auto bytes = static_cast<GSpacing>(pixels.elemSize1());
+  const CPLErr done =
+      GDALDatasetRasterIOEx(file, GF_Read, 0, 0, grid.columns, grid.rows, pixels.data, size.width,
+                            size.height, colors ? GDT_Byte : GDT_Float32, bands, nullptr,
+                            bytes * bands, static_cast<GSpacing>(pixels.step[0]), bytes, &how);
+  errors.require(done == CE_None, path.string());
+  return pixels;
+}
+
+void mark_missing(GDALDatasetH file, cv::Mat1f values) {
+  int is_stated = 0;
+  const double no_value = GDALGetRasterNoDataValue(GDALGetRasterBand(file, 1), &is_stated);
+  if (!is_stated) return;
+  for (float& value : values)
+    if (value == static_cast<float>(no_value)) value = std::numeric_limits<float>::quiet_NaN();
+}
+
+}  // namespace
+
+ReducedMap read_reduced_map(const fs::path& path, MapKind kind, int longest_side) {
+  const GdalErrors errors;
+  const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
+  errors.require(file != nullptr, path.string());
+  check_bands(file.get(), kind, path);
+  ReducedMap map;
+  map.grid = grid_of(file.get(), path);
+  map.axes = axes_in(file.get(), path);
+  const int longest = std::max(map.grid.columns, map.grid.rows);
+  const double scale = std::min(1.0, static_cast<double>(longest_side) / longest);
+  const auto reduced = [&](int side) { return std::max(1, static_cast<int>(side * scale + 0.5)); };
+  map.pixels = read_pixels(file.get(), kind, map.grid,
+                           {reduced(map.grid.columns), reduced(map.grid.rows)}, errors, path);
+  if (kind != MapKind::colors) mark_missing(file.get(), map.pixels);
+  return map;
+}
+
+}  // namespace axial::map
