@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, cloud, mesh, report;
+  std::string input, cloud, mesh, report, sfm_model, truth;
   io::SceneOptions scene;
 };
 
@@ -24,6 +24,10 @@ void declare(OptionList& list, Raw& raw, Options& options) {
       .add("pointcloud-file,p", &raw.cloud, "cloud to show, PLY (<input>.ply)")
       .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB")
       .add("report", &raw.report, "folder to write; a browser shows its index.html")
+      .add("sfm-model", &raw.sfm_model,
+           "COLMAP model from which the scene was made: the page shows its reprojection errors")
+      .add("truth", &raw.truth,
+           "true mesh, PLY, in the scene's coordinates: the page shows the cloud's distances to it")
       .add_with_default("max-points", &options.max_points,
                         "largest number of points; a larger cloud is thinned out randomly")
       .add_with_default("photograph-size", &options.photograph_size,
@@ -62,6 +66,8 @@ Options parse_command_line(int argc, const char* const* argv) {
   options.cloud = raw.cloud.empty() ? fs::path(options.scene.scene).replace_extension(".ply")
                                     : in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
+  options.sfm_model = in_working_folder(common, raw.sfm_model);
+  options.truth = in_working_folder(common, raw.truth);
   options.report = in_working_folder(common, raw.report).lexically_normal();
   if (!options.report.has_filename()) options.report = options.report.parent_path();
   return options;

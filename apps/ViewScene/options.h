@@ -14,6 +14,8 @@ struct Options {
   io::SceneFiles scene;
   std::filesystem::path cloud, mesh;  // an empty `mesh`: none
   std::filesystem::path report;       // the folder to write
+  std::filesystem::path sfm_model;    // folder of a COLMAP model, for residuals; empty: none
+  std::filesystem::path truth;        // true mesh, for distances of the cloud; empty: none
   std::uint64_t max_points = 10'000'000;
   int photograph_size = 1024;  // longest side of the reduced photographs [px]
   int texture_size = 4096;     // longest side of the reduced textures [px]

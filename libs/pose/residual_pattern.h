@@ -46,6 +46,6 @@ inline constexpr std::size_t kLeastInCell = 12;
 // columns, and fewer if a cell would have fewer than about 30 observations.
 ResidualPattern residual_pattern(std::span<const Eigen::Vector2d> pixels,
                                  std::span<const Eigen::Vector2d> errors, int width, int height,
-                                 int most_columns = 16);
+                                 int most_columns = 12);
 
 }  // namespace axial::pose
