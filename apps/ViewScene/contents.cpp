@@ -22,7 +22,9 @@
 #include "io/textured/textured_mesh.h"
 #include "maps.h"
 #include "run.h"
+#include "residuals.h"
 #include "scene/resolution.h"
+#include "truth.h"
 #include "view/camera_data.h"
 #include "view/cloud_data.h"
 #include "view/cloud_sample.h"
@@ -85,18 +87,20 @@ std::vector<std::vector<Eigen::Vector3f>> points_to_check(const Contents& conten
 
 Json write_cloud(const Contents& contents, const Options& options, const fs::path& staging) {
   const std::vector<std::uint32_t> cameras = camera_numbers(contents.scene.scene);
+  const view::PointErrors errors{contents.distances, view::error_step(contents.distances)};
   DataFiles files(staging, "cloud");
   Json chunks = Json::array();
   for (const view::PointChunk& chunk :
        view::divide_into_chunks(contents.cloud, view::kMostChunkPoints)) {
-    const view::ChunkData data =
-        naming(options.cloud, [&] { return view::chunk_data(contents.cloud, chunk, cameras); });
+    const view::ChunkData data = naming(
+        options.cloud, [&] { return view::chunk_data(contents.cloud, chunk, cameras, errors); });
     chunks.push_back({{"file", files.add(data.bytes)},
                       {"level", chunk.level},
                       {"points", chunk.points.size()},
                       {"low", list(data.low.cast<double>())},
                       {"size", list(data.size.cast<double>())},
-                      {"lists", data.lists}});
+                      {"lists", data.lists},
+                      {"error_step", errors.step}});
   }
   return chunks;
 }
@@ -204,6 +208,8 @@ Contents read_contents(const Options& options) {
   log_info("{}: {} of {} points are shown", options.cloud.string(), contents.cloud.size(),
            contents.all_points);
   read_mesh(options, contents);
+  if (!options.truth.empty())
+    contents.distances = distances_to_truth(contents.scene.frame, contents.cloud, options.truth);
   return contents;
 }
 
@@ -221,6 +227,8 @@ void write_contents(const Contents& contents, const Options& options, const fs::
                   {"towards", list(first.towards)},
                   {"up", list(first.up)}};
   add_survey(contents, options, staging, data);
+  if (!options.sfm_model.empty()) data["residuals"] = residual_data(scene, options.sfm_model);
+  if (!contents.distances.empty()) data["truth"] = options.truth.filename().string();
   data["cameras"] = write_cameras(contents, options, staging);
   data["chunks"] = write_cloud(contents, options, staging);
   if (contents.mesh || contents.textured) data["mesh"] = write_mesh(contents, options, staging);

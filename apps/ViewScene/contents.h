@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "io/openmvs/scene_with_cameras.h"
 #include "options.h"
@@ -16,8 +17,9 @@ namespace axial::apps {
 // What the viewer shows, in the frame of the scene.
 struct Contents {
   io::SceneWithCameras scene;
-  PointCloud cloud;            // at most about Options::max_points points
-  std::size_t all_points = 0;  // of the file of the cloud
+  PointCloud cloud;              // at most about Options::max_points points
+  std::size_t all_points = 0;    // of the file of the cloud
+  std::vector<float> distances;  // of the points to the true mesh [m]; empty: no true mesh
   // At most one of the two meshes.
   std::optional<Mesh> mesh;
   std::optional<TexturedMesh> textured;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 // The values of the command line before they are checked and converted.
 struct Raw {
-  std::string input, cloud, mesh, report, maps, changes, depth_maps, run;
+  std::string input, cloud, mesh, report, maps, changes, depth_maps, run, sfm_model, truth;
   io::SceneOptions scene;
 };
 
@@ -48,6 +48,10 @@ void declare(OptionList& list, Raw& raw, Options& options) {
       .add("pointcloud-file,p", &raw.cloud, "cloud to show, PLY (<input>.ply)")
       .add("mesh-file,m", &raw.mesh, "mesh to show, with or without textures: PLY, OBJ, GLB")
       .add("report", &raw.report, "folder to write; a browser shows its index.html")
+      .add("sfm-model", &raw.sfm_model,
+           "COLMAP model from which the scene was made: the page shows its reprojection errors")
+      .add("truth", &raw.truth,
+           "true mesh, PLY, in the scene's coordinates: the page shows the cloud's distances to it")
       .add_with_default("max-points", &options.max_points,
                         "largest number of points; a larger cloud is thinned out randomly")
       .add_with_default("photograph-size", &options.photograph_size,
@@ -91,6 +95,8 @@ Options parse_command_line(int argc, const char* const* argv) {
                                     : in_working_folder(common, raw.cloud);
   options.mesh = in_working_folder(common, raw.mesh);
   take_survey(raw, common, options);
+  options.sfm_model = in_working_folder(common, raw.sfm_model);
+  options.truth = in_working_folder(common, raw.truth);
   options.report = in_working_folder(common, raw.report).lexically_normal();
   if (!options.report.has_filename()) options.report = options.report.parent_path();
   return options;

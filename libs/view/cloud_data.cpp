@@ -2,6 +2,7 @@
 #include "view/cloud_data.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -72,16 +73,34 @@ void append_views(const PointCloud& cloud, const PointChunk& chunk,
   data.lists = lists.size();
 }
 
+void append_errors(const PointErrors& errors, const PointChunk& chunk, ChunkData& data) {
+  if (errors.distances.empty()) return;
+  for (const std::uint32_t i : chunk.points)
+    append_u16(data.bytes, static_cast<std::uint16_t>(std::lround(
+                               std::clamp(errors.distances[i] / errors.step, 0.0, 65535.0))));
+}
+
 }  // namespace
 
+double error_step(std::span<const float> distances) {
+  if (distances.empty()) return 0;
+  std::vector<float> sorted(distances.begin(), distances.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  const double most = *std::ranges::max_element(distances);
+  const double limit = *middle > 0 ? std::min(most, 200.0 * *middle) : most;
+  return std::max(limit, 1e-9) / 65535;
+}
+
 ChunkData chunk_data(const PointCloud& cloud, const PointChunk& chunk,
-                     std::span<const std::uint32_t> camera_of) {
+                     std::span<const std::uint32_t> camera_of, const PointErrors& errors) {
   if (chunk.points.empty() || chunk.points.size() > kMostChunkPoints)
     fail("a chunk has {} points, expected 1 to {}", chunk.points.size(), kMostChunkPoints);
   constexpr Rgb kGrey{160, 160, 160};
   ChunkData data;
   append_positions(cloud, chunk, data);
   append_views(cloud, chunk, camera_of, data);
+  append_errors(errors, chunk, data);
   for (const std::uint32_t i : chunk.points)
     for (const std::uint8_t value : cloud.colors.empty() ? kGrey : cloud.colors[i])
       data.bytes.push_back(static_cast<char>(value));

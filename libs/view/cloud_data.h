@@ -20,6 +20,7 @@ inline constexpr std::size_t kMostChunkPoints = 65536;
 //   - n uint16: the number of the list of views of each point, if the cloud has views
 //   - the lists of views, if the cloud has views, in the order of their numbers: a uint16 with the
 //     length of the list, and as many uint16, the numbers of cameras
+//   - n uint16: the errors of the points in units of PointErrors::step, if there are errors
 //   - 3 n uint8: red, green, blue; grey if the cloud has no colours
 // Points with the same views share one list.
 struct ChunkData {
@@ -29,10 +30,21 @@ struct ChunkData {
   std::string bytes;
 };
 
+// The distances [m] of all points of a cloud to the true surface. 65535 `step`s mean this distance
+// or more.
+struct PointErrors {
+  std::span<const float> distances;  // empty: no errors
+  double step = 0;                   // [m]; 0: no errors
+};
+
+// The step for `distances`: fine enough for their median, and coarse enough for the largest, up to
+// 200 times the median. 0 without distances.
+double error_step(std::span<const float> distances);
+
 // The bytes of `chunk`. `camera_of[i]` is the number of the camera that belongs to view i of the
 // cloud (PointCloud::view_images). Error for a chunk with more than kMostChunkPoints points, for a
 // view without a camera number, and for a camera number above 65535.
 ChunkData chunk_data(const PointCloud& cloud, const PointChunk& chunk,
-                     std::span<const std::uint32_t> camera_of);
+                     std::span<const std::uint32_t> camera_of, const PointErrors& errors = {});
 
 }  // namespace axial::view

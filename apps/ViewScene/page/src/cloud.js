@@ -24,7 +24,8 @@ export class Cloud {
     this.points = 0;
   }
 
-  /** Adds a chunk. `entry`: its description in data/scene.js. */
+  /** Adds a chunk and returns it. `entry`: its description in data/scene.js. Its recolor(colors)
+   * replaces the colours of its points; null: those of the file. */
   add(entry, bytes) {
     const n = entry.points, views = entry.lists > 0;
     const words = new Uint16Array(bytes.buffer, bytes.byteOffset, bytes.byteLength >> 1);
@@ -41,10 +42,18 @@ export class Cloud {
     object.updateMatrixWorld();
     const end = (bytes.length - 3 * n) >> 1;
     this.group.add(object);
-    this.chunks.push({ entry, object, positions,
-                       views: views ? words.slice(3 * n, 4 * n) : null,
-                       lists: views ? listsOf(words.slice(4 * n, end), entry.lists) : [] });
+    const chunk = { entry, object, positions,
+                    views: views ? words.slice(3 * n, 4 * n) : null,
+                    lists: views ? listsOf(words.slice(4 * n, end), entry.lists) : [],
+                    errors: entry.error_step ? words.slice(end - n, end) : null };
+    chunk.recolor = painted => {
+      const attribute = geometry.getAttribute("color");
+      attribute.array = painted ?? colors;
+      attribute.needsUpdate = true;
+    };
+    this.chunks.push(chunk);
     this.points += n;
+    return chunk;
   }
 
   /** Chooses the points to draw: about those from number `first` to `last`, in an order in which the
@@ -75,7 +84,17 @@ export class Cloud {
     return chunk.views ? chunk.lists[chunk.views[i]] : null;
   }
 
-  /** The point at (x, y) of the canvas [CSS px], as { position, views }, or null. Of the points
+  /** The distance to the true surface, or null. */
+  errorOf(chunk, i) {
+    return chunk.errors ? chunk.entry.error_step * chunk.errors[i] : null;
+  }
+
+  at(chunk, i) {
+    return { position: this.position(chunk, i), views: this.viewsOf(chunk, i),
+             error: this.errorOf(chunk, i) };
+  }
+
+  /** The point at (x, y) of the canvas [CSS px], as { position, views, error }, or null. Of the points
    * within `radius` pixels, a nearer one is preferred to one that lies better. */
   pick(camera, width, height, x, y, radius = 7) {
     const world = new three.Matrix4()
@@ -97,10 +116,10 @@ export class Cloud {
         if (cost < least) { least = cost; best = [chunk, i / 3]; }
       }
     }
-    return best && { position: this.position(...best), views: this.viewsOf(...best) };
+    return best && this.at(...best);
   }
 
-  /** The point nearest to `place` [scene], as { position, views }, or null. */
+  /** The point nearest to `place` [scene], as { position, views, error }, or null. */
   nearest(place) {
     let best = null, least = Infinity;
     for (const chunk of this.chunks) {
@@ -115,7 +134,7 @@ export class Cloud {
         if (d < least) { least = d; best = [chunk, i / 3]; }
       }
     }
-    return best && { position: this.position(...best), views: this.viewsOf(...best) };
+    return best && this.at(...best);
   }
 }
 

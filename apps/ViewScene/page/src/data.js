@@ -15,7 +15,14 @@ function bytesOf(text) {
 let description = null;
 globalThis.axialData = {
   scene: value => { description = value; },
-  put: (kind, number, text) => waiting.get(`${kind} ${number}`)?.(bytesOf(text))
+  put: (kind, number, text) => {
+    try {
+      waiting.get(`${kind} ${number}`)?.(bytesOf(text));
+      waiting.delete(`${kind} ${number}`);
+    } catch (error) {
+      console.warn(error); // loadAll() reports the entry, which is still waiting
+    }
+  }
 };
 
 function load(file) {
@@ -36,8 +43,13 @@ export async function loadScene() {
 }
 
 /** Loads the entries of `list`, in its order, and calls receive(entry, bytes) for each. An entry
- * names its file; consecutive entries may share one. */
+ * names its file; consecutive entries may share one. Throws an Error that names the file if it
+ * cannot be read or lacks an entry. */
 export async function loadAll(kind, list, receive) {
   list.forEach((entry, k) => waiting.set(`${kind} ${k}`, bytes => receive(entry, bytes)));
-  for (const file of new Set(list.map(entry => entry.file))) await load(file);
+  for (const file of new Set(list.map(entry => entry.file))) {
+    await load(file);
+    if (list.some((entry, k) => entry.file === file && waiting.has(`${kind} ${k}`)))
+      throw new Error(`${file} is damaged: write the page again`);
+  }
 }

@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The viewer of a folder that ViewScene wrote.
 import { loadAll, loadScene } from "./data.js";
+import { Colours } from "./colours.js";
 import { byId, make, table } from "./elements.js";
 import { drawOverlay } from "./overlay.js";
 import { Paths } from "./paths.js";
 import { listPhotographs, showPoint } from "./photographs.js";
 import { largestError } from "./project.js";
-import { showStage, shownTabs, startSurvey } from "./survey.js";
+import { Residuals } from "./residuals.js";
+import { showStage, startSurvey } from "./survey.js";
 import { View } from "./view.js";
 
-const TABS = ["point", "measure", "photographs", "map", "run", "about"];
 const state = { tab: "point", picked: null, keyboard: false };
 const count = value => value.toLocaleString("en-US");
 
+// The buttons of the tabs that this scene has.
+const tabs = () => [...document.querySelectorAll("nav button:not([hidden])")];
+
 function choose(tab) {
   state.tab = tab;
-  for (const button of document.querySelectorAll("nav button"))
+  for (const button of tabs()) {
     button.setAttribute("aria-selected", button.dataset.tab === tab);
-  for (const name of TABS) byId(name).hidden = name !== tab;
+    byId(button.dataset.tab).hidden = button.dataset.tab !== tab;
+  }
   showStage(tab);
 }
 
@@ -38,7 +43,7 @@ function about(scene) {
                 ["Touch", "one finger turns, two fingers move and zoom, a tap picks"],
                 ["Arrows", "turn; with Shift: move"], ["+ and −", "zoom"],
                 ["Enter", "pick the point in the middle"], ["Backspace", "remove the last point of a path"],
-                [`1 to ${shownTabs().length}`, "choose a tab"], ["R", "reset the view"]];
+                ["1, 2, …", "choose a tab"], ["R", "reset the view"]];
   byId("about").replaceChildren(
     make("h2", {}, "Reconstruction"),
     table([["Scene", scene.files.scene], ["Cloud", scene.files.cloud],
@@ -48,8 +53,9 @@ function about(scene) {
            ["Unit", scene.metric ? "metre" : "not known (no port)"],
            ["Written by", scene.program]]),
     make("h2", {}, "Projection"),
-    make("p", { id: "projection" }, `The pixels of this page agree with AxialMVS to ${error.toExponential(1)} px ` +
-      `(${count(checks)} points).`),
+    make("p", { id: "projection" }, checks ? "The pixels of this page agree with AxialMVS to " +
+      `${error.toExponential(1)} px (${count(checks)} points).` :
+      "Not checked: the cloud has no views."),
     make("h2", {}, "Keys"), table(keys));
 }
 
@@ -61,7 +67,7 @@ function start(scene) {
     if (state.tab === "measure") return paths.add(point.position);
     state.picked = point.position;
     if (state.tab !== "point") choose("point");
-    showPoint(scene, point.position, point.views);
+    showPoint(scene, point);
     view.drawn();
   };
   const overlay = () => drawOverlay(place => view.screenOf(place), state.picked,
@@ -90,7 +96,10 @@ function start(scene) {
     view.lookAt(place);
   });
   about(scene);
-  return { view, paths, map };
+  const colours = new Colours(scene, view.cloud, () => view.move());
+  document.querySelector("[data-tab=residuals]").hidden = !scene.residuals;
+  const residuals = scene.residuals ? new Residuals(scene) : null;
+  return { view, paths, map, colours, residuals };
 }
 
 function listKeys(view, paths, pick) {
@@ -105,17 +114,18 @@ function listKeys(view, paths, pick) {
     aim(true);
     if (event.key === "Enter") pick(view.size[0] / 2, view.size[1] / 2);
     if (event.key === "Backspace") paths.removeLast();
-    if (event.key === "r") byId("reset").click();
+    if (event.key.toLowerCase() === "r") byId("reset").click();
   });
   document.addEventListener("keydown", event => {
-    const tab = shownTabs()[event.key - 1];
-    if (!event.ctrlKey && !event.altKey && !event.metaKey && tab) choose(tab);
+    const tab = tabs()[event.key - 1];
+    const writing = event.target instanceof HTMLSelectElement;
+    if (tab && !writing && !event.ctrlKey && !event.altKey && !event.metaKey) choose(tab.dataset.tab);
   });
 }
 
-async function load(scene, { view, map }) {
+async function load(scene, { view, paths, map, colours }) {
   await loadAll("cloud", scene.chunks, (entry, bytes) => {
-    view.cloud.add(entry, bytes);
+    colours.paint(view.cloud.add(entry, bytes));
     byId("status").textContent = `${count(view.cloud.points)} of ${count(scene.points)} points`;
     view.move();
   });
@@ -125,11 +135,11 @@ async function load(scene, { view, map }) {
     await loadAll("texture", scene.mesh.textures, (entry, bytes) => images.push(bytes));
     for (const image of images) await view.mesh.addTexture(image);
     await loadAll("mesh", scene.mesh.parts, (entry, bytes) => view.mesh.add(entry, bytes));
+    paths.meshLoaded();
     view.move();
   }
   await map?.load();
   byId("status").textContent = `${count(view.cloud.points)} points`;
-  view.rest();
 }
 
 function report(error) {
@@ -143,8 +153,12 @@ async function run() {
   document.title = scene.files.scene;
   const parts = start(scene);
   globalThis.axial = { scene, ...parts, state, ready: false }; // for tests
-  await load(scene, parts);
-  globalThis.axial.ready = true;
+  try {
+    await load(scene, parts);
+    globalThis.axial.ready = true;
+  } finally {
+    parts.view.rest(); // what could be loaded is drawn in full
+  }
 }
 
 run().catch(report);

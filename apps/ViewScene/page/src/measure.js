@@ -39,7 +39,7 @@ export function quantity(value, unit, power = 1) {
 /** The table of `paths`, with coordinates in the world: `origin` is the origin of the scene's
  * frame. A path may have the property `volumes`. */
 export function csv(paths, origin) {
-  const rows = ["path,point,x,y,z,segment,length,area,volume_above,volume_below"];
+  const rows = ["path,point,x,y,z,segment,length,area,volume_above,volume_below,surface,rugosity"];
   paths.forEach((path, number) => {
     let sum = 0;
     path.forEach((place, k) => {
@@ -48,8 +48,9 @@ export function csv(paths, origin) {
       const last = k + 1 === path.length;
       rows.push([number + 1, k + 1, ...place.map((v, axis) => (v + origin[axis]).toFixed(6)),
                  step.toFixed(6), sum.toFixed(6), last ? areaOf(path).toFixed(6) : "",
-                 ...["above", "below"].map(side => last && path.volumes
-                   ? path.volumes[side].toFixed(9) : "")].join(","));
+                 ...[["above", 9], ["below", 9], ["surface", 6], ["rugosity", 6]].map(
+                   ([name, digits]) => last && path.volumes
+                     ? path.volumes[name]?.toFixed(digits) ?? "" : "")].join(","));
     });
   });
   return rows.join("\n") + "\n";

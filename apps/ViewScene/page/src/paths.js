@@ -2,7 +2,7 @@
 // The tab "Measure": paths of picked points, their lengths and areas, saved as CSV.
 import { byId, make, table } from "./elements.js";
 import { areaOf, csv, quantity, segmentsOf, total } from "./measure.js";
-import { volumesOf } from "./volume.js";
+import { surfaceOf } from "./volume.js";
 
 export class Paths {
   /** `mesh`: for volumes. `changed`: called after each change. */
@@ -11,6 +11,7 @@ export class Paths {
     this.mesh = mesh;
     this.changed = changed;
     this.all = [[]];
+    this.meshIsThere = false;
     byId("undo").onclick = () => this.removeLast();
     byId("next").onclick = () => { if (this.all.at(-1).length) this.all.push([]); this.show(); };
     byId("clear").onclick = () => { this.all = [[]]; this.show(); };
@@ -31,8 +32,14 @@ export class Paths {
     this.show();
   }
 
-  measureVolume(path) {
-    path.volumes = volumesOf(path, this.mesh.arrays(), this.scene.view.towards);
+  /** Called when all parts of the mesh are loaded. */
+  meshLoaded() {
+    this.meshIsThere = true;
+    this.show();
+  }
+
+  measureSurface(path) {
+    path.volumes = surfaceOf(path, this.mesh.arrays(), this.scene.view.towards);
     this.show();
   }
 
@@ -51,14 +58,23 @@ export class Paths {
       if (volumes)
         rows.push(["Mesh above the plane", quantity(volumes.above, unit, 3)],
                   ["Mesh below the plane", quantity(volumes.below, unit, 3)],
+                  ["Surface of the mesh", quantity(volumes.surface, unit, 2)],
+                  ["Rugosity (surface / plane)", rugosityText(volumes)],
                   ["Covered by the mesh", `${(100 * volumes.covered).toFixed(1)} %`]);
       const more = areaOf(path) > 0 && !volumes && this.scene.mesh
-        ? [make("button", { class: "volume", onclick: () => this.measureVolume(path) }, "Volume")] : [];
+        ? [make("button", { class: "volume", disabled: !this.meshIsThere,
+                            onclick: () => this.measureSurface(path) },
+                this.meshIsThere ? "Volume and rugosity" : "The mesh is not loaded yet")] : [];
       return make("div", {}, make("h2", {}, `Path ${number + 1}: ${path.length} point` +
         (path.length === 1 ? "" : "s")), table(rows, "number"), ...more);
     }));
     this.changed();
   }
+}
+
+// A surface with holes has less area than the whole one.
+function rugosityText({ rugosity, covered }) {
+  return rugosity === null ? "–" : rugosity.toFixed(3) + (covered < 0.99 ? " of the covered part" : "");
 }
 
 function save(name, text) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The photographs that see a point, and the list of all photographs.
 import { PORTS, portOf } from "./cameras.js";
+import { distance } from "./colours.js";
 import { withDepthMaps } from "./depth_pictures.js";
 import { byId, make, table } from "./elements.js";
 import { inImage, project } from "./project.js";
@@ -27,12 +28,15 @@ function figure(camera, pixel) {
                                         make("span", {}, place)));
 }
 
-/** Shows the picked point: its coordinates in the world and the photographs that see it. Without
+/** Shows the picked point: its coordinates in the world, the number of its views, its distance to the
+ * true surface if that is known, and the photographs that see it. Without
  * views in the cloud, these are all photographs in whose image it lies. */
-export function showPoint(scene, position, views) {
+export function showPoint(scene, { position, views, error }) {
   const rows = ["x", "y", "z"].map(
     (axis, k) => [axis, (position[k] + scene.origin[k]).toFixed(4)]);
   const known = views !== null;
+  if (known) rows.push(["Views", views.length]);
+  if (error !== null) rows.push(["Distance to the truth", distance(error, scene)]);
   const numbers = known ? [...views] : scene.cameras.map((_, number) => number);
   const seen = numbers.map(number => [scene.cameras[number], project(scene.cameras[number], position)])
     .filter(([camera, pixel]) => inImage(camera, pixel));

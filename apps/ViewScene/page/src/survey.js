@@ -19,10 +19,6 @@ export function startSurvey(scene, show) {
   return map;
 }
 
-/** The names of the tabs that the page shows, in their order. */
-export const shownTabs = () => [...document.querySelectorAll("nav button")]
-  .filter(button => !button.hidden).map(button => button.dataset.tab);
-
 /** To be called when a tab is chosen: the map covers the 3D view. */
 export function showStage(tab) {
   byId("map-stage").hidden = tab !== "map";

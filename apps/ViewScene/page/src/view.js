@@ -154,15 +154,16 @@ export class View {
     return [(p.x + 1) * width / 2, (1 - p.y) * height / 2];
   }
 
-  /** The point at (x, y) as { position, views }, or null: a point of the cloud, or of the mesh if
-   * only the mesh is shown. A point of the mesh has the views of the nearest point of the cloud. */
+  /** The point at (x, y) as { position, views, error }, or null: a point of the cloud, or of the mesh
+   * if only the mesh is shown. A point of the mesh has the views of the nearest point of the cloud,
+   * and no error. */
   pick(x, y) {
     if (this.cloud.group.visible) return this.cloud.pick(this.camera, ...this.size, x, y);
     if (!this.mesh.group.visible) return null;
     const [width, height] = this.size, caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(2 * x / width - 1, 1 - 2 * y / height), this.camera);
     const position = this.mesh.pick(caster);
-    return position && { position, views: this.cloud.nearest(position)?.views ?? null };
+    return position && { position, error: null, views: this.cloud.nearest(position)?.views ?? null };
   }
 
   /** The share of the pixels that show something. For tests. */

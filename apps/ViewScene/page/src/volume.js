@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The volume between a mesh and the plane of a path, inside the path.
-import { normalOf } from "./measure.js";
+// The mesh inside a path: the volume between it and the plane of the path, its surface and rugosity.
+import { areaInside, inside } from "./clip.js";
+import { areaOf, normalOf } from "./measure.js";
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const CELLS = 500; // along the longer side of the path
@@ -23,15 +24,6 @@ function planeOf(path, towards) {
   };
 }
 
-function inside(polygon, x, y) {
-  let odd = false;
-  polygon.forEach(([ax, ay], k) => {
-    const [bx, by] = polygon[(k + 1) % polygon.length];
-    if (ay > y !== by > y && x < ax + (y - ay) * (bx - ax) / (by - ay)) odd = !odd;
-  });
-  return odd;
-}
-
 // Raises the heights of the cells whose middles the triangle covers. Corners are [column, row,
 // height], in cells.
 function raise(heights, columns, rows, a, b, c) {
@@ -51,10 +43,12 @@ function raise(heights, columns, rows, a, b, c) {
   }
 }
 
-/** The volumes of the mesh above and below the plane of the path, inside the path, and the share of
- * the path that the mesh covers. Where surfaces lie above each other, the one nearest to the
- * cameras counts. `parts`: { positions, indices } of the mesh. */
-export function volumesOf(path, parts, towards) {
+/** Inside the path, seen along the normal of its plane: the volumes of the mesh above and below the
+ * plane, the share of the path that the mesh covers, the area of the mesh, and its rugosity: this
+ * area divided by the area of the covered part of the path, or null without a covered part. Where
+ * surfaces lie above each other, the one nearest to the cameras counts for volumes, and all count
+ * for the area. `parts`: { positions, indices } of the mesh. */
+export function surfaceOf(path, parts, towards) {
   const inPlane = planeOf(path, towards);
   const polygon = path.map(inPlane);
   const low = [0, 1].map(k => Math.min(...polygon.map(place => place[k])));
@@ -62,15 +56,22 @@ export function volumesOf(path, parts, towards) {
   const cell = Math.max(...size) / CELLS;
   const [columns, rows] = size.map(side => Math.ceil(side / cell) + 1);
   const heights = new Float64Array(columns * rows).fill(NaN);
+  const outline = polygon.map(([x, y]) => [(x - low[0]) / cell, (y - low[1]) / cell]);
+  let surface = 0; // in cells
   for (const { positions, indices } of parts) {
     const corner = i => {
       const [x, y, height] = inPlane([...positions.subarray(3 * i, 3 * i + 3)]);
-      return [(x - low[0]) / cell, (y - low[1]) / cell, height];
+      return [(x - low[0]) / cell, (y - low[1]) / cell, height / cell];
     };
+    const apart = corners => [columns, rows].some((end, k) => corners.every(place => place[k] < 0) ||
+      corners.every(place => place[k] > end));
     const corners = Array.from({ length: positions.length / 3 }, (_, i) => corner(i));
-    for (let f = 0; f < indices.length; f += 3)
-      raise(heights, columns, rows, corners[indices[f]], corners[indices[f + 1]],
-            corners[indices[f + 2]]);
+    for (let f = 0; f < indices.length; f += 3) {
+      const face = [0, 1, 2].map(k => corners[indices[f + k]]);
+      if (apart(face)) continue;
+      raise(heights, columns, rows, ...face);
+      surface += areaInside(outline, ...face);
+    }
   }
   let above = 0, below = 0, covered = 0, all = 0;
   heights.forEach((height, k) => {
@@ -82,5 +83,8 @@ export function volumesOf(path, parts, towards) {
     if (height > 0) above += height;
     else below -= height;
   });
-  return { above: above * cell * cell, below: below * cell * cell, covered: covered / all };
+  const share = covered / all, square = cell * cell;
+  return { above: above * square * cell, below: below * square * cell, covered: share,
+           surface: surface * square,
+           rugosity: covered ? surface * square / (share * areaOf(path)) : null };
 }

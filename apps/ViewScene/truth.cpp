@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truth.h"
+
+#include "base/log.h"
+#include "base/naming.h"
+#include "evaluate/surface.h"
+#include "io/openmvs/point_source.h"
+
+namespace axial::apps {
+
+std::vector<float> distances_to_truth(const LocalFrame& frame, const PointCloud& cloud,
+                                      const std::filesystem::path& truth) {
+  const Mesh mesh = io::read_mesh_of_scene(frame, truth);
+  const evaluate::Surface surface = naming(truth, [&] { return evaluate::Surface(mesh); });
+  log_info("{}: {} faces", truth.string(), mesh.faces.size());
+  return evaluate::distances_to(surface, cloud.positions);
+}
+
+}  // namespace axial::apps

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pose/residuals.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace axial::pose {
+namespace {
+
+constexpr double kOutlier = 4;  // in robust standard deviations
+
+const Eigen::Vector2d kNoError =
+    Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+double deviation_of(std::span<const ObservationTerm> terms, const Eigen::Vector<double, 6>& step) {
+  std::vector<double> values;
+  for (const ObservationTerm& term : terms) {
+    const Eigen::Vector2d error = term.error - term.by_pose * step;
+    values.insert(values.end(), {error.x(), error.y()});
+  }
+  return robust_deviation(std::move(values));
+}
+
+// The change of the pose that fits the terms best.
+Eigen::Vector<double, 6> pose_step(std::span<const ObservationTerm> terms) {
+  Eigen::Vector<double, 6> step = Eigen::Vector<double, 6>::Zero();
+  for (int round = 0; round < 3; ++round) {
+    const double limit = kOutlier * deviation_of(terms, step);
+    Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Vector<double, 6> b = Eigen::Vector<double, 6>::Zero();
+    for (const ObservationTerm& term : terms) {
+      if ((term.error - term.by_pose * step).cwiseAbs().maxCoeff() > limit) continue;
+      A += term.by_pose.transpose() * term.by_pose;
+      b += term.by_pose.transpose() * term.error;
+    }
+    // Without this, the step of points on a line would not be determined.
+    A.diagonal() *= 1 + 1e-9;
+    A.diagonal().array() += 1e-12 * A.trace() + std::numeric_limits<double>::min();
+    step = A.ldlt().solve(b);
+  }
+  return step;
+}
+
+}  // namespace
+
+double robust_deviation(std::vector<double> values) {
+  if (values.empty()) return 0;
+  for (double& value : values) value = std::abs(value);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return 1.4826 * *middle;
+}
+
+ObservationTerm observation_term(const AnyCamera<double>& camera, const Pose& pose,
+                                 const Eigen::Vector3d& point, const Eigen::Vector2d& pixel) {
+  ObservationTerm term;
+  const Eigen::Vector3d X = pose.to_camera(point);
+  refractive::Matrix23<double> by_camera_point;
+  const refractive::Projection<double> seen = camera.project(X, &by_camera_point);
+  term.visible = seen.visible && seen.pixel.allFinite() && by_camera_point.allFinite();
+  if (!term.visible) return term;
+  Eigen::Matrix3d cross;
+  cross << 0, -X.z(), X.y(), X.z(), 0, -X.x(), -X.y(), X.x(), 0;
+  term.error = pixel - seen.pixel;
+  term.by_point = by_camera_point * pose.rotation;
+  term.by_pose << -by_camera_point * cross, -term.by_point;
+  return term;
+}
+
+std::vector<AnyCamera<double>> cameras_of(const TrackedPhotographs& photographs) {
+  std::vector<AnyCamera<double>> cameras;
+  for (const CameraModel& model : photographs.cameras)
+    cameras.emplace_back(make_camera<double>(model));
+  return cameras;
+}
+
+ResidualVectors residual_vectors(const TrackedPhotographs& photographs) {
+  const std::vector<AnyCamera<double>> cameras = cameras_of(photographs);
+  std::vector<std::vector<std::size_t>> of_image(photographs.images.size());
+  for (std::size_t i = 0; i < photographs.observations.size(); ++i)
+    of_image[photographs.observations[i].image].push_back(i);
+  ResidualVectors result;
+  result.stated.assign(photographs.observations.size(), kNoError);
+  result.freed = result.stated;
+  parallel_for(of_image.size(), [&](std::size_t number) {
+    const BundleImage& image = photographs.images[number];
+    std::vector<ObservationTerm> terms;
+    std::vector<std::size_t> seen;
+    for (const std::size_t i : of_image[number]) {
+      const Observation& observation = photographs.observations[i];
+      const ObservationTerm term =
+          observation_term(cameras[image.camera], image.pose, photographs.points[observation.point],
+                           observation.pixel);
+      if (!term.visible) continue;
+      result.stated[i] = term.error;
+      terms.push_back(term);
+      seen.push_back(i);
+    }
+    if (terms.size() < kLeastObservations) return;
+    const Eigen::Vector<double, 6> step = pose_step(terms);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      result.freed[seen[k]] = terms[k].error - terms[k].by_pose * step;
+  });
+  return result;
+}
+
+}  // namespace axial::pose
