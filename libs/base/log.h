@@ -24,11 +24,11 @@ LogLevel log_level();
 // True if lines of `level` are written.
 bool logs(LogLevel level);
 
-// Starts the log. From now on lines go to standard output as "HH:MM:SS [name] text". `line_start`
-// is written before each line and must not contain '%'. If standard output is a terminal, the
-// caller passes the control characters that erase a line of progress, otherwise "". The level
-// becomes `info`, and lines no longer go to an earlier file of log_to_file_too() (base/log_file.h).
-// So call set_log_level() and log_to_file_too() after start_log().
+// Starts the log. From now on lines go to standard output as "HH:MM:SS [name] text", and a warning
+// as "HH:MM:SS [name] warning: text". `line_start` is written before each line and must not contain
+// '%'. If standard output is a terminal, the caller passes the control characters that erase a line
+// of progress, otherwise "". The level becomes `info`, and lines no longer go to an earlier file of
+// log_to_file_too() (log_file.h). Call set_log_level() and log_to_file_too() after start_log().
 void start_log(const std::string& name, const std::string& line_start);
 
 // Writes one line, unless `level` is below the log's level.

@@ -26,7 +26,8 @@ struct ReducedMap {
 
 // Reads the map at `path`. If a side has more than `longest_side` pixels, the map is reduced so
 // that its longest side has `longest_side` pixels. A reduced pixel is the mean of those pixels of
-// its area that have a value, or that are not transparent. Classes are those of single pixels.
+// its area that have a value, or that are not transparent. If the file has reduced copies, the mean
+// is that of the pixels of the next larger copy. Classes are those of single pixels.
 //
 // Error that names the file if it cannot be read, if its bands are not those of `kind`, and if its
 // geotransform is not that of a map with square pixels whose y axis points upwards, as those of

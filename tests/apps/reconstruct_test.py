@@ -44,6 +44,7 @@ def camera_centres(images):
 STAND_IN = """#!/bin/sh
 [ "$2" = --help ] && { echo "--SpatialMatching.is_gps "; exit; }
 name=${0##*/}
+case $1 in --version|help) echo "$name 7.8"; exit ;; esac
 echo "$name $*" >> commands
 if [ -p "pipe-$name" ]; then exec > "pipe-$name"; echo begun; exec sleep 60; fi
 if [ -p "child-pipe-$name" ]; then
@@ -158,6 +159,58 @@ class WithStandIns(unittest.TestCase):
         run_were = (self.folder / "commands").read_text().splitlines()
         self.assertEqual([" ".join([pathlib.Path(program).name, *arguments]) for program, *arguments
                           in map(shlex.split, printed)], run_were)
+
+    def test_records_say_which_version_made_a_step(self):
+        self.assertEqual(self.ended().returncode, 0)
+        records = self.folder / "out" / "steps"
+        for step, program in (("features", "colmap"), ("map", "MapSurface")):
+            record = json.loads((records / f"{step}.done.json").read_text())
+            self.assertEqual(record["version"], f"{program} 7.8")
+
+    def test_the_page_shows_the_run_and_is_made_once(self):
+        programs = self.folder / "prefix" / "bin"
+        programs.mkdir(parents=True)
+        page = self.folder / "prefix" / "share" / "axialmvs" / "view" / "viewer.js"
+        page.parent.mkdir(parents=True)
+        page.touch()
+        for program in self.folder.glob("[A-Z]*"):
+            shutil.copy(program, programs)
+        with (programs / "ViewScene").open("a") as script:
+            script.write("mkdir -p out/page; touch out/page/index.html; cp out/run.json shown.json\n")
+        with (programs / "DensifyPointCloud").open("a") as script:
+            script.write("echo '12:34:56 [DensifyPointCloud] warning: far away'\n" * 2 +
+                         "echo '12:34:56 [DensifyPointCloud] no warning: a result'\n")
+        with (self.folder / "colmap").open("a") as script:
+            script.write('[ "$1" != mapper ] || echo "W20240131 01:02:03.456789  12 ba.cc:7] no convergence"\n')
+        again = ["--programs", str(programs), "--densify=--iters 3", "--truth", "lens"]
+        shutil.copy(self.folder / "MapSurface", programs / "EvaluateReconstruction")
+        with (programs / "EvaluateReconstruction").open("a") as script:
+            script.write("echo '{\"accuracy\": {\"mean\": 0, \"median\": 0, \"count\": 1}}' > "
+                         "out/evaluation.json\n")
+        first = self.ended(*again)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        shown = json.loads((self.folder / "shown.json").read_text())
+        self.assertEqual([step["name"] for step in shown["steps"]], STEPS[:10])
+        steps = {step["name"]: step for step in shown["steps"]}
+        self.assertEqual(steps["densify"]["warnings"], [{"text": "far away", "times": 2}])
+        self.assertEqual(steps["poses"]["warnings"], [{"text": "ba.cc:7] no convergence", "times": 1}])
+        self.assertEqual(steps["refine"]["warnings"], [])
+        self.assertEqual(steps["densify"]["version"], "DensifyPointCloud 7.8")
+        self.assertEqual(steps["densify"]["command"][-2:], ["--iters", "3"])
+        self.assertGreaterEqual(steps["mesh"]["seconds"], 0)
+        self.assertIn("--densify=--iters 3", shown["command"])
+        command = next(shlex.split(line) for line in (self.folder / "commands").read_text().splitlines()
+                       if line.startswith("ViewScene "))
+        out = str(self.folder / "out")
+        for option, value in (("--map", f"{out}/scene_map"), ("--run", f"{out}/run.json"),
+                              ("--depth-maps", out)):
+            self.assertEqual(command[command.index(option) + 1], value)
+
+        second = self.ended(*again)
+        self.assertEqual(second.stdout.count("done before"), 12, second.stdout)
+        third = self.ended(*again, "--page=--map other")
+        self.assertEqual(third.stdout.count("done before"), 10, third.stdout)
+        self.assertEqual((self.folder / "commands").read_text().count("--map "), 2)
 
     def test_other_options_redo_the_steps_after_them(self):
         names = [f"{number}.jpg" for number in range(3)]
@@ -298,6 +351,18 @@ class Reconstruct(unittest.TestCase):
         for kind in ("dem", "ortho", "views"):
             self.assertTrue((out / f"scene_map.{kind}.tif").read_bytes().startswith(b"II"), kind)
         self.assertEqual((out / "page" / "index.html").exists(), "page" in STEPS)
+        if "page" in STEPS:
+            self.check_page(out)
+
+    def check_page(self, out):
+        scene = json.loads(read(out / "page" / "data" / "scene.js").decode()
+                           .removeprefix("axialData.scene(").removesuffix(");\n"))
+        self.assertEqual([step["name"] for step in scene["run"]["steps"]], STEPS[:-2])
+        for step in scene["run"]["steps"]:
+            program = pathlib.Path(step["command"][0]).name
+            self.assertTrue(step["version"].lower().startswith(program.lower() + " "), step["version"])
+        self.assertEqual(len(scene["depth_maps"]), 6)
+        self.assertTrue({"ortho", "height", "views"} <= {layer["id"] for layer in scene["map"]["layers"]})
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"

@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ViewScene with maps, changes, depth maps and a run, at UTM coordinates: the folder, and its page in
+Chromium."""
+
+import base64
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import unittest
+import zlib
+
+from browser import CHROMIUM, Browser
+from geotiff import read_geotiff
+from openmvs_scene import ascii_ply
+from programs import contents, files_below, main, read, write
+from texture_mesh_test import mesh_ply, wall
+from tiny_scene import DENSIFY
+from view_scene_test import PAGE, ViewCase, points
+
+EAST, NORTH, UP = 500000, 4500000, 30
+BLOCK = 0.05  # half of the side of the block that came, in the middle of the wall [m]
+PIXEL = 0.0125
+CAME, UNCHANGED = (66, 130, 190), (110, 116, 124)
+RUN = {"command": ["reconstruct", "--images=my photographs"], "steps": [
+    {"name": "poses", "command": ["colmap", "mapper"], "seconds": 3.25, "version": None, "warnings": []},
+    {"name": "densify", "command": ["DensifyPointCloud", "-i", "a scene.mvs"], "seconds": 3724,
+     "version": "DensifyPointCloud 1.2.3", "warnings": [
+         {"text": "image 7 has <no> neighbours", "times": 1}, {"text": "low contrast", "times": 4}]}]}
+
+
+def height(x):
+    """The surface of the survey, in the frame of the scene."""
+    return 1 + 0.2 * x
+
+
+def utm(text):
+    """A PLY with coordinates in the frame of the scene."""
+    return text.replace("format ascii 1.0", f"format ascii 1.0\ncomment geo_offset {EAST} {NORTH} {UP}")
+
+
+def pixels(png):
+    """The pixels (R, G, B) of a PNG of 8 bits, row by row."""
+    width, height_, bits, kind = struct.unpack_from(">IIBB", png, 16)
+    assert bits == 8 and kind in (2, 6)
+    size, at, data = 3 if kind == 2 else 4, 8, b""
+    while at < len(png):
+        length, name = struct.unpack_from(">I4s", png, at)
+        data += png[at + 8:at + 8 + length] if name == b"IDAT" else b""
+        at += 12 + length
+    data, rows, above = zlib.decompress(data), [], bytes(size * width)
+    for y in range(height_):
+        start = y * (size * width + 1)
+        row = bytearray(data[start + 1:start + 1 + size * width])
+        for i in range(len(row)):
+            left, up = row[i - size] if i >= size else 0, above[i]
+            corner = above[i - size] if i >= size else 0
+            guess = left + up - corner
+            paeth = min((left, up, corner), key=lambda value: abs(guess - value))
+            row[i] = (row[i] + (0, left, up, (left + up) // 2, paeth)[data[start]]) & 255
+        rows += [tuple(row[i:i + 3]) for i in range(0, len(row), size)]
+        above = row
+    return rows
+
+
+@unittest.skipUnless(os.path.exists(PAGE), "the page of ViewScene was not built")
+class SurveyCase(ViewCase):
+    @classmethod
+    def setUpClass(cls):
+        """Maps, changes and depth maps, made once: work/{map,change}.* and work/depth*.dmap."""
+        made = cls("setUp")
+        made.setUp()
+        cls.addClassCleanup(made.doCleanups)
+        vertices, faces = wall(cells=24)
+        tilted = [(x, y, height(x)) for x, y, _ in vertices]
+        raised = [(x, y, z + 0.03 * (max(abs(x), abs(y)) < BLOCK - 0.01)) for x, y, z in tilted]
+        for name, corners in (("before", tilted), ("after", raised)):
+            write(made.path("work", name + ".ply"), utm(mesh_ply(corners, faces)))
+        made.succeeds(*DENSIFY, "-i", made.scene, "-w", made.work)
+        made.place_in_utm()
+        made.succeeds("MapSurface", "-i", made.scene, "-w", made.work, "-m", "before.ply", "-o", "map",
+                      "--gsd", PIXEL, "--housing", made.port)
+        made.succeeds("CompareSurveys", "-i", "before.ply", "-w", made.work, "--other", "after.ply", "-o",
+                      "change", "--gsd", PIXEL, "--sigma-before", 0.001, "--sigma-after", 0.001)
+        cls.made = made
+
+    def place_in_utm(self):
+        write(self.path("work", "scene.geo.json"),
+              json.dumps({"version": 1, "geo_offset": [EAST, NORTH, UP]}))
+        write(self.cloud, utm(ascii_ply(points())))
+
+    def setUp(self):
+        super().setUp()
+        if not hasattr(type(self), "made"):
+            return
+        self.place_in_utm()
+        for name in os.listdir(self.made.work):
+            if re.match(r"map\.|change\.|depth", name):
+                shutil.copy(os.path.join(self.made.work, name), self.work)
+        write(self.path("work", "run.json"), json.dumps(RUN))
+
+    def survey(self, *more):
+        return self.view("--map", "map", "--change", "change", "--run", "run.json", *more)
+
+    def shown(self):
+        """The description of the scene, data/scene.js."""
+        return json.loads(read(os.path.join(self.report, "data", "scene.js"))
+                          .decode().removeprefix("axialData.scene(").removesuffix(");\n"))
+
+
+class Folder(SurveyCase):
+    def test_it_holds_the_pictures(self):
+        self.succeeds(*self.survey())
+        names = files_below(self.report)
+        layers = ["ortho.jpg", "height.jpg", "views.jpg", "difference.jpg", "significant.png",
+                  "difference-sigma.jpg"]
+        self.assertEqual({name for name in names if name.startswith("maps/")},
+                         {"maps/" + name for name in layers})
+        self.assertEqual({name for name in names if name.startswith("depth/")},
+                         {f"depth/{i:05}.{kind}.jpg" for i in range(3) for kind in ("depth", "normal", "confidence")})
+        for entry in self.shown()["depth_maps"]:
+            # The wall is 1 m away. The line of sight to the corner of a photograph is 1.2 m long.
+            self.assertAlmostEqual(entry["depth"]["low"], 1, delta=0.03)
+            self.assertAlmostEqual(entry["depth"]["high"], 1.15, delta=0.05)
+
+    def test_it_is_the_same_for_any_number_of_threads(self):
+        self.succeeds(*self.survey("--max-threads", 1))
+        one = contents(self.report)
+        self.succeeds(*self.survey("--max-threads", 4))
+        self.assertEqual(contents(self.report), one)
+
+    def test_pictures_are_reduced(self):
+        self.succeeds(*self.survey("--map-size", 20, "--depth-map-size", 32))
+        scene = self.shown()
+        for layer in scene["map"]["layers"]:
+            self.assertEqual(max(layer["size"]), 20)
+            self.assertAlmostEqual(layer["place"][2], 0.6, 6)
+        self.succeeds(*self.view("--depth-map-size", 0))
+        self.assertFalse({"map", "run", "depth_maps"} & set(self.shown()))
+        self.assertFalse([name for name in files_below(self.report) if name.startswith(("maps/", "depth/"))])
+
+    def test_errors_of_heights_are_shown_if_there_are_some(self):
+        shutil.copy(self.path("work", "change.sigma.tif"), self.path("work", "map.sigma.tif"))
+        shutil.copy(self.path("work", "change.difference.tif"), self.path("work", "map.dem.tif"))
+        for name in ("ortho", "views"):  # of the same pixels as the comparison
+            self.assertEqual(read_geotiff(read(self.path("work", f"map.{name}.tif"))).pixel, PIXEL)
+        self.succeeds(*self.view("--map", "map"))
+        self.assertIn("sigma", [layer["id"] for layer in self.shown()["map"]["layers"]])
+
+    def test_damaged_depth_maps_are_left_out_unless_they_are_asked_for(self):
+        path = self.path("work", "depth0001.dmap")
+        write(path, read(path)[:-100])
+        said = self.succeeds(*self.view()).stdout
+        self.assertRegex(said, r"(?m)^\d\d:\d\d:\d\d \[ViewScene\] warning: a depth map is left out: .*0001\.dmap")
+        self.assertEqual([entry is None for entry in self.shown()["depth_maps"]], [False, True, False])
+        self.refuses_and_keeps("depth0001.dmap", *self.view("--depth-maps", "."))
+        shutil.copy(self.path("work", "depth0002.dmap"), path)
+        shutil.copy(self.path("work", "depth0002.dmap.json"), path + ".json")
+        self.refuses_and_keeps("depth0001.dmap: is the depth map of 0002.png, but image 1 of the scene is "
+                               "0001.png", *self.view("--depth-maps", "."))
+        os.mkdir(self.path("work", "empty"))
+        self.refuses_and_keeps("has no depth map of the scene's photographs, such as depth0000.dmap",
+                               *self.view("--depth-maps", "empty"))
+
+    def test_wrong_files_are_refused(self):
+        whole = {name: read(self.path("work", name)) for name in ("map.dem.tif", "map.ortho.tif", "change.json")}
+        change = json.loads(whole["change.json"])
+
+        def refused(expected, name, data):
+            write(self.path("work", name), data)
+            self.refuses_and_keeps(expected, *self.survey())
+            if name in whole:
+                write(self.path("work", name), whole[name])
+
+        refused("map.dem.tif: ", "map.dem.tif", b"II*\0 but no map")
+        refused("map.dem.tif: has 4 bands of Byte, but a map of heights has 1 band of Float32",
+                "map.dem.tif", whole["map.ortho.tif"])
+        refused("map.dem.tif: ", "map.dem.tif", whole["map.dem.tif"][:300])
+        refused("change.json: ", "change.json", "{")
+        refused("change.json: came.volume is missing", "change.json", json.dumps({**change, "came": {}}))
+        refused('change.json: regions[0].x "a": must be a number', "change.json",
+                json.dumps({**change, "regions": [{**change["regions"][0], "x": "a"}]}))
+        for expected, run in (("the content []: must be an object", []),
+                              ("steps is missing", {"command": []}),
+                              ("steps 7: must be a list", {**RUN, "steps": 7}),
+                              ("steps[0].seconds -1: must be at least 0",
+                               {**RUN, "steps": [{**RUN["steps"][0], "seconds": -1}]}),
+                              ("command[0] 3: must be a text", {**RUN, "command": [3]})):
+            refused("run.json: " + expected, "run.json", json.dumps(run))
+        self.refuses_and_keeps("none.dem.tif: ", *self.view("--map", "none"))
+        self.refuses_and_keeps("none.json: ", *self.view("--change", "none"))
+        self.refuses_and_keeps("none.json: ", *self.view("--run", "none.json"))
+        self.refuses_and_keeps("--map-size 1: must be from 16", *self.view("--map-size", 1))
+
+    def test_maps_of_other_planes_are_refused(self):
+        self.succeeds("CompareSurveys", "-i", self.made.path("work", "before.ply"), "-w", self.work, "--other",
+                      self.made.path("work", "after.ply"), "-o", "change", "--up", "0,0.2,1", "--gsd", PIXEL)
+        said = self.refuses("change.difference.tif: has other axes than", *self.survey())
+        self.assertIn("map.dem.tif; give MapSurface and CompareSurveys the same --up", said.stderr)
+
+
+@unittest.skipUnless(CHROMIUM, "Chromium is not installed")
+class Page(SurveyCase):
+    def opened(self, **window):
+        self.succeeds(*self.survey())
+        browser = Browser(pathlib.Path(self.report, "index.html").as_uri(), **window)
+        self.addCleanup(browser.close)
+        browser.wait_for("globalThis.axial && axial.ready")
+        browser.click_on("[data-tab=map]")
+        browser.wait_for("axial.map.image && !axial.map.asked")
+        return browser
+
+    def choose(self, page, layer):
+        page.value(f"document.querySelector('[data-layer={layer}]').click()")
+        page.wait_for("axial.map.image && !axial.map.asked")
+
+    def screen(self, x, y, width=920, height_=800):
+        """Where the page, after its start, shows a place in the frame of the scene: the map of 0.6 m
+        fills 94 % of the shorter side."""
+        scale = 0.94 * min(width, height_) / 0.6
+        return width / 2 + x * scale, height_ / 2 - y * scale
+
+    def colors(self, page, x, y, side=16):
+        """The colours of the page around (x, y)."""
+        clip = {"x": x - side / 2, "y": y - side / 2, "width": side, "height": side, "scale": 1}
+        return pixels(base64.b64decode(page.send("Page.captureScreenshot", clip=clip)["data"]))
+
+    def test_the_map_shows_its_layers_and_coordinates(self):
+        page = self.opened()
+        self.check_layers(page)
+        self.check_points(page)
+        self.check_changes(page)
+        self.check_depth(page)
+        self.check_run(page)
+        self.assertEqual(page.errors, [])
+
+    def check_layers(self, page):
+        seen = {}
+        for layer in ("ortho", "height", "views", "difference"):
+            self.choose(page, layer)
+            seen[layer] = self.colors(page, *self.screen(-0.1, 0.05), side=60)
+        self.assertEqual(len(set(map(tuple, seen.values()))), 4)
+        self.assertGreater(len(set(seen["ortho"])), 9)  # of about 16 pixels of the map
+        self.choose(page, "height")
+        legend = page.value("document.querySelector('#map .legend').innerText")
+        low, high = map(float, re.findall(r"-?\d+\.\d+", legend))
+        self.assertAlmostEqual(low, UP + height(-0.3), delta=0.01)
+        self.assertAlmostEqual(high, UP + height(0.3), delta=0.01)
+        # The block lies where the coordinates say, and nothing beside it changed.
+        self.choose(page, "significant")
+        self.assertEqual(set(self.colors(page, *self.screen(0, 0))), {CAME})
+        for x, y in ((0.15, 0.15), (-0.15, 0.15), (0.15, -0.15), (-0.15, -0.15)):
+            self.assertEqual(set(self.colors(page, *self.screen(x, y))), {UNCHANGED})
+
+    def check_points(self, page):
+        places = [(-0.2, 0.1), (0.2, -0.15)]
+        for x, y in places:
+            page.click(*self.screen(x, y))
+        shown = page.value("[...document.querySelectorAll('#map .grid td')].map(cell => cell.innerText)")
+        for number, (x, y) in enumerate(places):
+            text = shown[4 * number:4 * number + 4]
+            self.assertEqual(text[0], str(number + 1))
+            self.assertTrue(all(re.fullmatch(r"\d+\.\d{3}", value) for value in text[1:]), text)
+            for value, expected in zip(map(float, text[1:]), (EAST + x, NORTH + y, UP + height(x))):
+                self.assertAlmostEqual(value, expected, delta=0.001)  # a pixel is 0.8 mm
+        self.assertAlmostEqual(float(shown[9].split()[0]), (0.4 ** 2 + 0.25 ** 2) ** 0.5, delta=0.002)
+        self.assertAlmostEqual(float(shown[10].split()[0]), 0.08, delta=0.002)
+        page.value("document.getElementById('map-show').click()")
+        x, y = places[1]
+        for value, expected in zip(page.value("axial.state.picked.map((v, k) => v + axial.scene.origin[k] - "
+                                              f"[{EAST}, {NORTH}, {UP}][k])"), (x, y, height(x))):
+            self.assertAlmostEqual(value, expected, delta=0.001)
+        self.assertEqual(page.value("axial.state.tab"), "point")
+        page.click_on("[data-tab=map]")
+        page.click_on("#map-canvas")
+        page.press("Backspace", 8)
+        self.assertEqual(page.value("axial.map.path.length"), 2)
+        before = page.value("axial.map.placeOf(0, 0)")
+        page.press("ArrowLeft", 37)
+        self.assertNotEqual(page.value("axial.map.placeOf(0, 0)"), before)
+
+    def check_changes(self, page):
+        text = page.value("document.getElementById('map').innerText")
+        report = json.loads(read(self.path("work", "change.json")))
+        self.assertEqual(len(report["regions"]), 1)
+        self.assertIn(f"{1e6 * report['came']['volume']:.1f} ± {1e6 * report['came']['volume_sigma']:.1f} cm³", text)
+        page.value("document.querySelector('[data-region=\"0\"]').click()")
+        centre = page.value("axial.map.placeOf(460, 400)")
+        self.assertAlmostEqual(centre[0], EAST, delta=0.005)
+        self.assertAlmostEqual(centre[1], NORTH, delta=0.005)
+
+    def check_depth(self, page):
+        page.click_on("[data-tab=photographs]")
+        page.value("document.querySelectorAll('#photographs .list button')[1].click()")
+        for kind in ("depth", "normal", "confidence", "photograph"):
+            page.click_on(f"[data-depth={kind}]")
+            self.assertTrue(page.value("document.querySelector('#photographs img').decode().then(() => true)"))
+            source = page.value("document.querySelector('#photographs img').src")
+            self.assertRegex(source, "photographs/00001.jpg$" if kind == "photograph" else f"depth/00001.{kind}.jpg$")
+            legend = page.value("document.querySelector('#photographs .legend').innerText")
+            self.assertEqual(len(re.findall(r"[01]\.\d{3} m", legend)), 2 if kind == "depth" else 0)
+
+    def check_run(self, page):
+        page.click_on("[data-tab=run]")
+        text = page.value("document.getElementById('run').textContent")
+        for part in ("2 steps in 1 h 2 min", "2 warnings", "poses", "3.3 s", "densify",
+                     "DensifyPointCloud -i 'a scene.mvs'", "DensifyPointCloud 1.2.3", "Version not known",
+                     "image 7 has <no> neighbours", "low contrast (4 times)", "'--images=my photographs'"):
+            self.assertIn(part, text)
+
+    def test_a_narrow_page_works_with_touch(self):
+        page = self.opened(width=390, height=844, touch=True)
+        width, height_ = page.value("axial.map.size")
+        page.tap(*self.screen(0.1, 0.1, width, height_))
+        (x, y), z = page.value("[axial.map.path[0].place, axial.map.path[0].height]")
+        for value, expected in zip((x, y, z), (EAST + 0.1, NORTH + 0.1, UP + height(0.1))):
+            self.assertAlmostEqual(value, expected, delta=0.001)  # half a pixel
+        self.assertGreater(len(set(self.colors(page, *self.screen(-0.1, 0, width, height_), 40))), 9)
+        for tab in ("map", "run", "photographs"):
+            page.click_on(f"[data-tab={tab}]")
+            self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 390)
+        self.assertEqual(page.errors, [])
+
+
+if __name__ == "__main__":
+    main()
