@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes maps of a mesh: heights, an orthomosaic of photographs, and the numbers of views.
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_extension.h"
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
 #include "base/same_file.h"
 #include "io/cameras/geo_offset.h"
 #include "io/cameras/lenses.h"
-#include "io/images/image.h"
 #include "io/openmvs/mvs_counts.h"
 #include "io/openmvs/point_source.h"
 #include "io/textured/textured_mesh.h"
+#include "map/height_error.h"
 #include "map/pixel_width.h"
 #include "map/write_maps.h"
 #include "scene/check_mesh.h"
@@ -42,32 +44,25 @@ map::MapFiles map_files(const Settings& settings) {
   files.heights = named(".dem.tif");
   files.colors = named(".ortho.tif");
   files.counts = named(".views.tif");
+  if (settings.image_noise > 0) files.errors = named(".sigma.tif");
   if (settings.hillshade) files.shades = named(".hillshade.tif");
   if (settings.contours > 0) files.contours = named(".contours.geojson");
   files.picture = named(".jpg");
   return files;
 }
 
-// The memory [bytes] that reading the mesh needs, with the textures that a PLY names.
-std::uint64_t bytes_to_read(const fs::path& mesh) {
-  std::uint64_t bytes = io::bytes_to_read_mesh(mesh), largest = 0;
-  if (lower_extension(mesh) != ".ply" || !io::is_textured_mesh(mesh)) return bytes;
-  for (const std::string& texture : io::textures_of_ply(mesh)) {
-    const io::ImageHeader header = io::read_image_header(mesh.parent_path() / texture);
-    bytes += 3 * static_cast<std::uint64_t>(header.size.area());
-    largest = std::max(largest, io::bytes_needed(header));
-  }
-  return bytes + largest;
-}
-
 // The mesh, with its textures if it has some.
 TexturedMesh read_mesh(const Settings& settings, const LocalFrame& frame) {
-  memory_of(settings).require(bytes_to_read(settings.mesh), "reading " + settings.mesh.string());
+  const std::string work = "reading " + settings.mesh.string();
+  const std::uint64_t bytes = io::bytes_to_read_mesh(settings.mesh);
+  memory_of(settings).require(bytes, work);
   TexturedMesh mesh;
-  if (io::is_textured_mesh(settings.mesh))
+  if (io::is_textured_mesh(settings.mesh)) {
+    memory_of(settings).require(bytes + io::bytes_to_read_textures(settings.mesh), work);
     mesh = io::read_textured_mesh(settings.mesh, frame);
-  else
+  } else {
     mesh.mesh = io::read_mesh_of_scene(frame, settings.mesh);
+  }
   if (mesh.mesh.faces.empty()) fail("{}: the mesh has no faces", settings.mesh.string());
   log_info("{}: {} vertices, {} faces, {} textures", settings.mesh.string(),
            mesh.mesh.vertices.size(), mesh.mesh.faces.size(), mesh.textures.size());
@@ -81,9 +76,11 @@ void keep_inputs(const Settings& settings, const texture::Photographs& photograp
   inputs.insert(inputs.end(),
                 {scene, settings.mesh, io::housing_file(settings.scene), io::lenses_beside(scene),
                  io::geo_offset_beside(scene), settings.photographs.views_file});
-  if (lower_extension(settings.mesh) == ".ply" && io::is_textured_mesh(settings.mesh))
-    for (const std::string& texture : io::textures_of_ply(settings.mesh))
-      inputs.push_back(settings.mesh.parent_path() / texture);
+  if (io::is_textured_mesh(settings.mesh)) {
+    const io::TextureFiles files = io::texture_files_of(settings.mesh);
+    inputs.insert(inputs.end(), files.textures.begin(), files.textures.end());
+    inputs.insert(inputs.end(), files.materials.begin(), files.materials.end());
+  }
   const std::vector<fs::path> outputs = map_files(settings).all();
   require_no_inputs(outputs, inputs, "--output-file");
   std::error_code ignored;
@@ -105,13 +102,18 @@ std::vector<Eigen::Vector3d> centres_of(const std::vector<texture::View>& views)
   return centres;
 }
 
-double pixel_of(const Settings& settings, const Mesh& mesh,
-                const std::vector<texture::View>& views) {
-  if (settings.pixel > 0) return settings.pixel;
+std::vector<map::Photo> photos_of(const std::vector<texture::View>& views) {
   std::vector<map::Photo> photos;
   photos.reserve(views.size());
   for (const texture::View& view : views) photos.push_back({view.camera, view.pose});
-  return map::rounded_width(map::median_pixel_width(mesh, photos));
+  return photos;
+}
+
+double pixel_of(const Settings& settings, const Mesh& mesh,
+                const std::vector<texture::View>& views) {
+  if (settings.pixel > 0) return settings.pixel;
+  memory_of(settings).require(map::bytes_of_pixel_width(mesh), "the width of a pixel");
+  return map::rounded_width(map::median_pixel_width(mesh, photos_of(views)));
 }
 
 // Heights are along z if the coordinates of the scene are those of a reference system: if the scene
@@ -135,45 +137,88 @@ PlacedMap place_map(const Settings& settings, const Mesh& mesh, const LocalFrame
   return map;
 }
 
-texture::Options texture_options(const Settings& settings,
-                                 const texture::Photographs& photographs) {
+// What the map shows of the views of a face.
+struct FaceFacts {
+  std::vector<std::uint16_t> views;  // the number of views that see each face
+  std::vector<float> errors;         // MapContent::errors
+};
+
+// The memory [bytes] of facts_of(), with the result.
+std::uint64_t bytes_of_facts(const Mesh& mesh) {
+  return mesh.faces.size() * (sizeof(std::uint16_t) + sizeof(float));
+}
+
+// The middle of a face, and its normal, of any length.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> middle_and_normal(const Mesh& mesh, std::size_t face) {
+  Eigen::Matrix3d at;
+  for (int k = 0; k < 3; ++k)
+    at.col(k) = mesh.vertices[mesh.faces[face][static_cast<std::size_t>(k)]].cast<double>();
+  return {at.rowwise().mean(), (at.col(1) - at.col(0)).cross(at.col(2) - at.col(0))};
+}
+
+FaceFacts facts_of(const Mesh& mesh, const texture::FaceViews& seen,
+                   const std::optional<map::HeightErrors>& errors) {
+  FaceFacts facts;
+  facts.views.resize(seen.faces());
+  if (errors) facts.errors.resize(seen.faces());
+  constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max() - 1u;  // the last is none
+  parallel_for(
+      seen.faces(),
+      [&](std::size_t f) {
+        const auto sights = seen.of(f);
+        facts.views[f] = static_cast<std::uint16_t>(std::min(sights.size(), kMost));
+        if (!errors) return;
+        std::vector<std::uint32_t> views;
+        for (const texture::Sight& sight : sights) views.push_back(sight.view);
+        const auto [middle, normal] = middle_and_normal(mesh, f);
+        facts.errors[f] = errors->at(middle, normal, views);
+      },
+      kPointGrain);
+  return facts;
+}
+
+texture::ImageSource source_of(const texture::Photographs& photographs) {
+  return [&](std::size_t view) { return already_named([&] { return photographs.load(view); }); };
+}
+
+// The memory [bytes] that is left besides FaceFacts, at least 1, because 0 stands for no limit.
+// Splitting adds few faces to a large mesh.
+std::uint64_t left_for_views(const Mesh& mesh, const Settings& settings) {
+  const std::uint64_t left = memory_of(settings).left();
+  const std::uint64_t facts = bytes_of_facts(mesh);
+  return left > facts ? left - facts : 1;
+}
+
+// The views of the faces of a mesh that has its textures.
+FaceFacts look_at_faces(const Mesh& mesh, const Settings& settings,
+                        const texture::Photographs& photographs,
+                        const std::optional<map::HeightErrors>& errors) {
+  const texture::FaceViews seen = texture::find_face_views(
+      mesh, photographs.views(), source_of(photographs), {}, console_progress("Numbers of views"),
+      {texture::Budget(left_for_views(mesh, settings), option_of), photographs.bytes_to_load()});
+  return facts_of(mesh, seen, errors);
+}
+
+// Gives the mesh textures. `facts`: of the faces of the textured mesh.
+TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
+                      const texture::Photographs& photographs,
+                      const std::optional<map::HeightErrors>& errors, FaceFacts& facts) {
   texture::Options options;
-  options.max_bytes = std::max<std::uint64_t>(memory_of(settings).left(), 1);  // 0: no limit
+  options.max_bytes = left_for_views(mesh.mesh, settings);
   options.image_bytes = photographs.bytes_to_load();
   options.name_of = option_of;
-  return options;
-}
-
-// The number of views that see each face.
-std::vector<std::uint16_t> count_views(const Mesh& mesh, const Settings& settings,
-                                       const texture::Photographs& photographs) {
-  const texture::FaceViews seen = texture::find_face_views(
-      mesh, photographs.views(), [&](std::size_t view) { return photographs.load(view); }, {},
-      console_progress("Numbers of views"),
-      {texture::Budget(std::max<std::uint64_t>(memory_of(settings).left(), 1), option_of),
-       photographs.bytes_to_load()});
-  std::vector<std::uint16_t> counts(seen.faces());
-  constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max() - 1u;  // the last is none
-  for (std::size_t f = 0; f < counts.size(); ++f)
-    counts[f] = static_cast<std::uint16_t>(std::min(seen.of(f).size(), kMost));
-  return counts;
-}
-
-TexturedMesh textured(TexturedMesh mesh, const Settings& settings,
-                      const texture::Photographs& photographs) {
-  if (!mesh.textures.empty()) return mesh;
+  options.take_views = [&](const Mesh& split, const texture::FaceViews& seen) {
+    facts = facts_of(split, seen, errors);
+  };
   TexturedMesh result = texture::texture_mesh(
-      std::move(mesh.mesh), photographs.views(),
-      [&](std::size_t view) { return photographs.load(view); },
-      texture_options(settings, photographs), nullptr,
+      std::move(mesh.mesh), photographs.views(), source_of(photographs), options, nullptr,
       [](const std::string& stage) { return console_progress(stage); });
   return_freed_memory();
   return result;
 }
 
-void write(const Settings& settings, const TexturedMesh& mesh,
-           const std::vector<std::uint16_t>& views, const PlacedMap& place,
-           const std::string& crs) {
+void write(const Settings& settings, const TexturedMesh& mesh, const FaceFacts& facts,
+           const PlacedMap& place, const std::string& crs) {
   map::WriteOptions options;
   options.crs = crs;
   options.is_georeferenced = place.is_georeferenced;
@@ -183,7 +228,7 @@ void write(const Settings& settings, const TexturedMesh& mesh,
   options.name_of = option_of;
   const map::MapFiles files = map_files(settings);
   const map::MapReport report =
-      map::write_maps(files, {mesh, views, place.frame, place.grid}, options,
+      map::write_maps(files, {mesh, facts.views, facts.errors, place.frame, place.grid}, options,
                       [](const std::string& stage) { return console_progress(stage); });
   const auto share = [&](std::int64_t pixels) {
     return 100.0 * static_cast<double>(pixels) / static_cast<double>(place.grid.pixels());
@@ -214,10 +259,16 @@ int run(int argc, char** argv) {
     check_mesh(mesh.mesh);
     const PlacedMap place = place_map(settings, mesh.mesh, frame, views);
     keep_inputs(settings, photographs);
-    mesh = textured(std::move(mesh), settings, photographs);
-    const std::vector<std::uint16_t> counts = count_views(mesh.mesh, settings, photographs);
+    std::optional<map::HeightErrors> errors;
+    if (settings.image_noise > 0)
+      errors.emplace(photos_of(views), place.frame.axes.row(2).transpose(), settings.image_noise);
+    FaceFacts facts;
+    if (mesh.textures.empty())
+      mesh = textured(std::move(mesh), settings, photographs, errors, facts);
+    else
+      facts = look_at_faces(mesh.mesh, settings, photographs, errors);
     return_freed_memory();
-    write(settings, mesh, counts, place, crs);
+    write(settings, mesh, facts, place, crs);
   });
   return 0;
 }

@@ -51,6 +51,9 @@ void declare_map(OptionList& list, Raw& raw, Settings& settings) {
       .add_with_default("epsg", &settings.epsg,
                         "EPSG code of the coordinate reference system of the scene, a projected "
                         "one in metres (0: none)")
+      .add_with_default("image-noise", &settings.image_noise,
+                        "standard deviation of a place in a photograph [px], for the map of the "
+                        "expected errors of heights (0: no such map)")
       .add_switch("hillshade", &settings.hillshade, "write a picture of the relief, too")
       .add_with_default("contours", &settings.contours,
                         "write contour lines with this difference of heights [m] (0: none)");
@@ -76,6 +79,7 @@ void check_range(const char* name, T value, T low, T high) {
 void check_values(const Raw& raw, const Settings& settings) {
   check_range("ground-sample-distance", settings.pixel, 0.0, 1e6);
   check_range("epsg", settings.epsg, 0, 1 << 20);
+  check_range("image-noise", settings.image_noise, 0.0, 1000.0);
   check_range("contours", settings.contours, 0.0, 1e6);
   check_range("ignore-mask-label", raw.ignore_mask_label, -2, 65535);
   check_range("max-memory", settings.max_memory, std::uint64_t{0}, std::uint64_t{1} << 40);
@@ -131,6 +135,8 @@ Options parse_command_line(int argc, const char* const* argv) {
                      "text file with the IDs or names of the images to use, one per line");
   options.parsed = parse_options(argc, argv, program);
   if (!options.parsed.run) return options;
+  if (given(options.parsed, "gsd") && given(options.parsed, "ground-sample-distance"))
+    fail("--gsd: is the same as --ground-sample-distance; give one of them");
   check_values(raw, options.settings);
   convert(raw, options);
   return options;

@@ -9,6 +9,7 @@
 
 #include "base/program.h"
 #include "io/openmvs/scene_with_cameras.h"
+#include "map/height_error.h"
 #include "texture/photographs.h"
 
 namespace axial::apps {
@@ -21,7 +22,9 @@ struct Settings {
   double pixel = 0;                   // of the map [m]; 0: from the photographs
   int epsg = 0;                       // 0: no coordinate reference system
   bool hillshade = false;
-  double contours = 0;  // height between contour lines [m]; 0: none
+  double image_noise =
+      map::kDefaultNoise;  // for the expected errors of heights [px]; 0: no map of them
+  double contours = 0;     // height between contour lines [m]; 0: none
   texture::PhotographOptions photographs;
   std::uint64_t max_memory = 0;  // [MB]; 0: 70 % of the free memory
 };

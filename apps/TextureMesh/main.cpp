@@ -124,7 +124,8 @@ void texture_and_write(const Settings& settings, Mesh mesh, const texture::Photo
   naming(settings.mesh, [&] {
     texture::texture_tiles(
         std::move(mesh), photographs.views(),
-        [&](std::size_t view) { return photographs.load(view); }, options,
+        [&](std::size_t view) { return already_named([&] { return photographs.load(view); }); },
+        options,
         [&](std::size_t tile, const TexturedMesh& textured) {
           return_freed_memory();
           keep_inputs(settings, photographs, tile, textured.textures.size());

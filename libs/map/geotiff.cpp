@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -147,6 +148,17 @@ void GeoTiff::finish() {
   s.file.reset();
 }
 
+cv::Size reduced_size(const MapGrid& grid, int longest_side) {
+  const int longest = std::max(grid.columns, grid.rows),
+            shortest = std::min(grid.columns, grid.rows);
+  if (longest <= longest_side) return {grid.columns, grid.rows};
+  const auto few =
+      static_cast<int>(std::max<std::int64_t>(1, std::int64_t{shortest} * longest_side / longest));
+  const auto exact = std::lround(double{1} * longest / shortest * few);
+  const auto many = static_cast<int>(std::clamp<std::int64_t>(exact, 1, longest_side));
+  return grid.columns > grid.rows ? cv::Size(many, few) : cv::Size(few, many);
+}
+
 StoredMap read_map(const fs::path& path, int longest_side) {
   const GdalErrors errors;
   const DatasetPtr file(GDALOpen(path.c_str(), GA_ReadOnly));
@@ -164,10 +176,7 @@ StoredMap read_map(const fs::path& path, int longest_side) {
   const double no_value = GDALGetRasterNoDataValue(first, &is_stated);
   if (is_stated) map.no_value = no_value;
   const int depth = type == GDT_Float32 ? CV_32F : type == GDT_UInt16 ? CV_16U : CV_8U;
-  const int longest = std::max(map.grid.columns, map.grid.rows);
-  const double scale = std::min(1.0, static_cast<double>(longest_side) / longest);
-  const auto reduced = [&](int side) { return std::max(1, static_cast<int>(side * scale + 0.5)); };
-  map.pixels.create(reduced(map.grid.rows), reduced(map.grid.columns), CV_MAKETYPE(depth, bands));
+  map.pixels.create(reduced_size(map.grid, longest_side), CV_MAKETYPE(depth, bands));
   GDALRasterIOExtraArg how;
   INIT_RASTERIO_EXTRA_ARG(how);
   if (bands == 4) how.eResampleAlg = GRIORA_Average;

@@ -16,7 +16,7 @@ namespace axial::map {
 
 // What the pixels of a map are.
 enum class MapKind {
-  heights,  // one band of float [m]; kNoHeight: no surface
+  heights,  // one band of float [m], also for errors of heights; kNoHeight: no surface
   colors,   // bands red, green, blue and alpha of 8 bits; alpha 0: no colour
   counts,   // one band of 16 bits; kNoCount: no surface
   shades,   // one band of 8 bits, grey; 0: no surface
@@ -33,6 +33,8 @@ inline constexpr std::uint64_t kCacheBytes = 64'000'000;
 // A map that is written block by block. The blocks go into a second file beside the map, whose name
 // ends in ".blocks.tif". finish() makes the map from it: a Cloud Optimized GeoTIFF in tiles of 512
 // x 512 pixels, compressed by DEFLATE, with reduced copies (overviews) of half the size and so on.
+// Reduced heights, colours and shades are means of the pixels with surface; reduced counts and
+// classes are those of single pixels.
 // Files larger than 4 GB become BigTIFF. The file holds no date: the same pixels give the same
 // bytes, in whichever order the blocks were written. The destructor removes the second file.
 //
@@ -73,8 +75,14 @@ struct StoredMap {
   cv::Mat pixels;
 };
 
+// The size of a map whose longest side is reduced to at most `longest_side` pixels. Pixels stay
+// square up to half a pixel of the longer side, also where the shorter side has few pixels: the
+// longest side is then up to half as long. Exception: the shorter side keeps one pixel if the map
+// is longer than wide by more than the factor `longest_side`.
+cv::Size reduced_size(const MapGrid& grid, int longest_side);
+
 // Reads a map that GeoTiff wrote. If a side has more than `longest_side` pixels, the map is reduced
-// so that its longest side has `longest_side` pixels; the colours are then averaged, and heights
+// to reduced_size(); the colours are then averaged, and heights
 // and counts are those of single pixels. `grid` is that of the whole map. Error that names the file
 // if it cannot be read.
 StoredMap read_map(const std::filesystem::path& path, int longest_side = 1 << 30);

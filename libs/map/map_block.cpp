@@ -98,6 +98,7 @@ void fill(const MapContent& content, const SurfaceBlock& surface, int border, Ma
   block.heights = cv::Mat1f(block.pixels.size(), kNoHeight);
   block.shades = cv::Mat1b(block.pixels.size(), std::uint8_t{0});
   if (!content.views.empty()) block.counts = cv::Mat1w(block.pixels.size(), kNoCount);
+  if (!content.errors.empty()) block.errors = cv::Mat1f(block.pixels.size(), kNoHeight);
   for (int y = 0; y < block.heights.rows; ++y)
     for (int x = 0; x < block.heights.cols; ++x) {
       const int v = y + border, u = x + border;
@@ -105,8 +106,9 @@ void fill(const MapContent& content, const SurfaceBlock& surface, int border, Ma
       block.is_empty = false;
       block.heights(y, x) = static_cast<float>(heights(v, u) + content.frame.origin.z());
       block.shades(y, x) = shade_at(heights, v, u, content.grid.pixel);
-      if (!content.views.empty())
-        block.counts(y, x) = content.views[surface.face(v * n + n / 2, u * n + n / 2)];
+      const std::uint32_t face = surface.face(v * n + n / 2, u * n + n / 2);
+      if (!content.views.empty()) block.counts(y, x) = content.views[face];
+      if (!content.errors.empty()) block.errors(y, x) = content.errors[face];
     }
 }
 
@@ -117,6 +119,8 @@ void check_content(const MapContent& content) {
   const std::size_t faces = mesh.mesh.faces.size();
   if (!content.views.empty() && content.views.size() != faces)
     fail("there are {} numbers of views for {} faces", content.views.size(), faces);
+  if (!content.errors.empty() && content.errors.size() != faces)
+    fail("there are {} expected errors for {} faces", content.errors.size(), faces);
   if (mesh.textures.empty()) return;
   if (mesh.uv.size() != faces || mesh.texture_of.size() != faces)
     fail("{} faces have {} texture coordinates and {} texture numbers", faces, mesh.uv.size(),
@@ -131,6 +135,7 @@ void check_content(const MapContent& content) {
 
 int samples_per_pixel(const MapContent& content) {
   std::vector<double> widths;
+  widths.reserve(bytes_of_samples(content) / sizeof(double));
   for (std::uint32_t f = 0; f < content.mesh.mesh.faces.size() && !content.mesh.textures.empty();
        ++f) {
     const TexturedMesh::Corners& uv = content.mesh.uv[f];
@@ -148,6 +153,10 @@ int samples_per_pixel(const MapContent& content) {
   int samples = 1;
   while (samples < wanted && samples < 9) samples += 2;
   return samples;
+}
+
+std::uint64_t bytes_of_samples(const MapContent& content) {
+  return content.mesh.textures.empty() ? 0 : content.mesh.mesh.faces.size() * sizeof(double);
 }
 
 MapBlock make_block(const MapContent& content, const FaceBins& bins, std::size_t block,
@@ -170,7 +179,7 @@ MapBlock make_block(const MapContent& content, const FaceBins& bins, std::size_t
 
 std::uint64_t bytes_of_block(int block_size, int samples) {
   const auto side = static_cast<std::uint64_t>(block_size + 2);
-  const auto per_pixel = static_cast<std::uint64_t>(8 * samples * samples + 4 + 4 + 4 + 2 + 1);
+  const auto per_pixel = static_cast<std::uint64_t>(8 * samples * samples + 4 + 4 + 4 + 4 + 2 + 1);
   return side * side * per_pixel;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pixels of a block of a map: heights, colours of the mesh's textures, numbers of views, relief
-// shading.
+// The pixels of a block of a map: heights, colours of the mesh's textures, numbers of views,
+// expected errors of heights, relief shading.
 //
 // The colours are those of the textures, each of which shows a place as one photograph shows it:
 // TextureMesh has chosen one photograph for each face and has levelled the seams between the
@@ -23,13 +23,15 @@ namespace axial::map {
 struct MapContent {
   const TexturedMesh& mesh;              // without textures: the map has no colours
   std::span<const std::uint16_t> views;  // for each face the number of views that see it, or empty
+  // For each face the expected error of its height [m], kNoHeight: unknown. Or empty.
+  std::span<const float> errors;
   MapFrame frame;
   MapGrid grid;
 };
 
 // Throws an Error unless uv and texture_of have one entry for each face if there are textures, each
-// texture_of names a texture with pixels, all texture coordinates are finite, and `views` is empty
-// or has one entry for each face.
+// texture_of names a texture with pixels, all texture coordinates are finite, and `views` and
+// `errors` are empty or have one entry for each face.
 void check_content(const MapContent& content);
 
 // The number of samples along each side of a pixel: odd, 1 to 9, and at least 1.5 times the width
@@ -37,12 +39,16 @@ void check_content(const MapContent& content);
 // with known colours. 1 without such faces.
 int samples_per_pixel(const MapContent& content);
 
+// The memory [bytes] of samples_per_pixel().
+std::uint64_t bytes_of_samples(const MapContent& content);
+
 struct MapBlock {
   cv::Rect pixels;
   bool is_empty = true;  // no pixel has a height or a colour
   cv::Mat1f heights;     // at the centre of the pixel [map, m]; kNoHeight: no surface
   cv::Mat4b colors;      // R G B alpha; alpha is 0 or 255. Empty if the mesh has no textures
   cv::Mat1w counts;      // views of the face at the centre; kNoCount: no surface. Or empty
+  cv::Mat1f errors;      // of the face at the centre [m]; kNoHeight: unknown. Or empty
   cv::Mat1b shades;      // relief shading; 0: no surface
 };
 

@@ -26,6 +26,7 @@ Eigen::Vector3d corner(const Mesh& mesh, std::size_t face, std::size_t k) {
 // ratio's multiples, which spread evenly.
 std::vector<Place> places_on(const Mesh& mesh, int count) {
   std::vector<double> until;  // area of the faces up to and with this one
+  until.reserve(mesh.faces.size());
   double area = 0;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const Eigen::Vector3d a = corner(mesh, f, 0);
@@ -87,6 +88,10 @@ double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int p
   const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
   std::nth_element(areas.begin(), middle, areas.end());
   return 1 / std::sqrt(*middle);
+}
+
+std::uint64_t bytes_of_pixel_width(const Mesh& mesh) {
+  return mesh.faces.size() * sizeof(double);
 }
 
 double rounded_width(double width) {

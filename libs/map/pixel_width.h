@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "scene/camera_model.h"
@@ -23,6 +24,9 @@ struct Photo {
 // surface that a pixel shows, as the exact camera projects it. Photographs that other parts of the
 // mesh hide from the place count, too. Error if no place is in a photograph that faces it.
 double median_pixel_width(const Mesh& mesh, std::span<const Photo> photos, int places = 2000);
+
+// The memory [bytes] of median_pixel_width().
+std::uint64_t bytes_of_pixel_width(const Mesh& mesh);
 
 // `width` rounded to two significant digits. Precondition: `width` is above 0.
 double rounded_width(double width);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map/up_direction.h"
 
-#include <cmath>
-
 #include "base/error.h"
 #include "base/parse_number.h"
 #include "base/split.h"
@@ -18,8 +16,9 @@ std::optional<Eigen::Vector3d> parse_up(const std::string& text, int epsg, Setti
     if (!number) fail("{} {}: must be three numbers X,Y,Z", name_of("up"), text);
     up[static_cast<Eigen::Index>(k)] = *number;
   }
-  if (!(up.norm() > 0) || !std::isfinite(up.norm()))
-    fail("{} {}: is no direction", name_of("up"), text);
+  const double largest = up.cwiseAbs().maxCoeff();
+  if (!(largest > 0)) fail("{} {}: is no direction", name_of("up"), text);
+  up /= largest;  // the square of a tiny or huge number is 0 or infinite
   if (epsg > 0 && !(up.z() > 0 && up.head<2>().isZero(0)))
     fail("{} {}: must be 0,0,1 with {}, whose heights are along z", name_of("up"), text,
          name_of("epsg"));

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 constexpr int kJpegQuality = 92;
 
 // In the order of MapFiles::all().
-constexpr fs::path MapFiles::*kMembers[] = {&MapFiles::heights,  &MapFiles::colors,
-                                            &MapFiles::counts,   &MapFiles::shades,
-                                            &MapFiles::contours, &MapFiles::picture};
+constexpr fs::path MapFiles::*kMembers[] = {
+    &MapFiles::heights, &MapFiles::colors,   &MapFiles::counts, &MapFiles::errors,
+    &MapFiles::shades,  &MapFiles::contours, &MapFiles::picture};
 
 // The open maps. Blocks are written by one thread at a time.
 class OpenMaps {
@@ -40,6 +40,7 @@ class OpenMaps {
     heights_ = open(files.heights, MapKind::heights);
     colors_ = open(files.colors, MapKind::colors);
     counts_ = open(files.counts, MapKind::counts);
+    errors_ = open(files.errors, MapKind::heights);
     shades_ = open(files.shades, MapKind::shades);
   }
 
@@ -49,6 +50,7 @@ class OpenMaps {
     if (heights_) heights_->write(block.pixels, block.heights);
     if (colors_) colors_->write(block.pixels, block.colors);
     if (counts_) counts_->write(block.pixels, block.counts);
+    if (errors_) errors_->write(block.pixels, block.errors);
     if (shades_) shades_->write(block.pixels, block.shades);
     report_.surface += cv::countNonZero(block.heights != kNoHeight);
     if (block.colors.empty()) return;
@@ -61,7 +63,7 @@ class OpenMaps {
   // room in the cache writes blocks of the files of other threads.
   MapReport finish(const ProgressSink& progress) {
     std::vector<std::unique_ptr<GeoTiff>*> maps;
-    for (auto* map : {&heights_, &colors_, &counts_, &shades_})
+    for (auto* map : {&heights_, &colors_, &counts_, &errors_, &shades_})
       if (*map) maps.push_back(map);
     ProgressCounter counter(progress, maps.size());
     for (auto* map : maps) {
@@ -73,7 +75,7 @@ class OpenMaps {
   }
 
  private:
-  std::unique_ptr<GeoTiff> heights_, colors_, counts_, shades_;
+  std::unique_ptr<GeoTiff> heights_, colors_, counts_, errors_, shades_;
   std::mutex mutex_;
   MapReport report_;
 };
@@ -92,8 +94,9 @@ std::size_t blocks_at_once(const MapContent& content, const WriteOptions& option
 
 void write_picture(const fs::path& path, const fs::path& colors, const WriteOptions& options) {
   const StoredMap map = read_map(colors, options.longest_side);
-  const double reduction =
-      static_cast<double>(map.grid.columns) / static_cast<double>(map.pixels.cols);
+  const bool is_wide = map.grid.columns > map.grid.rows;  // the longer side has less rounding
+  const double reduction = is_wide ? double{1} * map.grid.columns / map.pixels.cols
+                                   : double{1} * map.grid.rows / map.pixels.rows;
   io::write_jpeg(path,
                  draw_overview(map.pixels, {map.grid.pixel * reduction, options.is_georeferenced}),
                  kJpegQuality);
@@ -102,6 +105,8 @@ void write_picture(const fs::path& path, const fs::path& colors, const WriteOpti
 MapReport make_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
                     const StageProgress& progress) {
   const auto sink = [&](const char* stage) { return progress ? progress(stage) : ProgressSink{}; };
+  if (options.samples == 0)
+    options.memory.require(bytes_of_samples(content), "the width of a pixel in texels");
   const int samples = options.samples > 0 ? options.samples : samples_per_pixel(content);
   const std::size_t at_once = blocks_at_once(content, options, samples);
   OpenMaps maps(files, content, options);
@@ -148,6 +153,7 @@ MapReport write_maps(const MapFiles& files, const MapContent& content, const Wri
   check_content(content);
   if (!files.colors.empty() && content.mesh.textures.empty()) fail("the mesh has no textures");
   if (!files.counts.empty() && content.views.empty()) fail("the numbers of views are missing");
+  if (!files.errors.empty() && content.errors.empty()) fail("the expected errors are missing");
   if (!files.contours.empty() && (files.heights.empty() || !(options.contour_interval > 0)))
     fail("{} {}: contour lines need an interval above 0 and the map of heights",
          options.name_of("contour_interval"), options.contour_interval);

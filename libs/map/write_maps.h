@@ -21,6 +21,7 @@ struct MapFiles {
   std::filesystem::path heights;   // GeoTIFF (MapKind::heights)
   std::filesystem::path colors;    // GeoTIFF (MapKind::colors); needs textures
   std::filesystem::path counts;    // GeoTIFF (MapKind::counts); needs MapContent::views
+  std::filesystem::path errors;    // GeoTIFF (MapKind::heights); needs MapContent::errors
   std::filesystem::path shades;    // GeoTIFF (MapKind::shades)
   std::filesystem::path contours;  // GeoJSON of write_contours(); needs `heights`
   std::filesystem::path picture;   // JPEG of draw_overview(); needs `colors`
@@ -58,7 +59,7 @@ struct MapReport {
 // with the given name: the stages count blocks and files.
 //
 // Errors of check_content() are passed on. Error that names the file if it cannot be written, and
-// if the memory does not suffice for the lists of faces and for one block.
+// if the memory does not suffice for samples_per_pixel(), and for the lists of faces and one block.
 MapReport write_maps(const MapFiles& files, const MapContent& content, const WriteOptions& options,
                      const StageProgress& progress = {});
 

@@ -165,6 +165,7 @@ std::vector<std::uint32_t> label_in_one_piece(const Mesh& mesh, std::span<const 
                       sources.progress ? sources.progress("Views of faces") : ProgressSink{},
                       {budget, options.image_bytes});
   return_freed_memory();
+  if (options.take_views) options.take_views(mesh, seen);
   report.outliers = remove_outliers(seen, options.outlier_threshold);
   require_choice(seen, budget);
   return choose_views(seen, pairs, options.labels);

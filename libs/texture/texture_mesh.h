@@ -45,6 +45,9 @@ struct Options {
   // The memory [bytes] that texture_mesh() may use besides `mesh`. The need is estimated by
   // functions of the stages' headers. This limit affects the time, but not the result. 0: no limit.
   std::uint64_t max_bytes = 0;
+  // Takes the mesh after splitting and the views of its faces, as find_face_views() returns them,
+  // before views are removed. Called only if `tiles` is 1. An empty function: nothing is called.
+  std::function<void(const Mesh&, const FaceViews&)> take_views;
   // The largest memory [bytes] that `images` needs while it makes an image, with the image.
   std::uint64_t image_bytes = 0;
   // The memory [bytes] that the caller needs afterwards to write the result, besides the result. An

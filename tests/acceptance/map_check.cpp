@@ -1,75 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compares maps of MapSurface with the true surface of SimulateUnderwater. Usage:
 //
-//     map_check PRESET SEED COARSENESS MAP
+//     map_check PRESET SEED COARSENESS MAP PHOTOGRAPHS
 //
 // The scene was made by SimulateUnderwater --preset PRESET --seed SEED --coarseness COARSENESS, and
-// the maps MAP.dem.tif and MAP.ortho.tif by MapSurface with true poses and --up 0,0,1. Prints:
+// the maps MAP.dem.tif, MAP.ortho.tif and MAP.sigma.tif by MapSurface with true poses and --up
+// 0,0,1 from the folder PHOTOGRAPHS, taken under water through a flat port. Prints:
 //   - the distances of the points of the height map to the true surface [mm]: RMS and median;
 //   - the differences of heights from the highest point of the true surface [mm]: RMS and median;
-//   - the PSNR of the orthomosaic against the true one [dB], which has the colours of the mean of 3
-//   x
-//     3 vertical rays in each pixel;
+//   - the expected errors of these heights: the median of true error / expected error, times 1.48,
+//     so that it is 1 for normally distributed errors as large as expected; then, for each fifth of
+//     the pixels in the order of the expected error, the median expected error and 1.48 times the
+//     median true error [mm];
+//   - the PSNR of the orthomosaic against the true one [dB], which has the colours of the mean of
+//     3 x 3 vertical rays in each pixel;
 //   - the displacement of the orthomosaic: tiles of 64 x 64 pixels are matched with the true one by
-//     phase correlation [px]: RMS of x and y together, mean x, mean y, and the number of tiles.
+//     phase correlation [px]: RMS of x and y together, mean x, mean y, and the number of tiles;
+//   - the ground that no photograph sees and the pixels without colour, as shares of the pixels
+//   with
+//     ground, and where they differ (map_truth.h);
+//   - the edges at depth steps (map_edges.h) of the orthomosaic, and of two maps with doubled edges
+//     that show what the count finds: the mean of the orthomosaic and its copy, 5 px apart, and the
+//     mean of all photographs without visibility.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "evaluate/surface.h"
 #include "map/geotiff.h"
+#include "map_edges.h"
+#include "map_truth.h"
 #include "simulate/presets.h"
 
 namespace {
 
 using namespace axial;
-
-struct Truth {
-  cv::Mat1f heights;  // NaN: no surface
-  cv::Mat3b colors;   // R G B
-  cv::Mat1b known;    // all rays of the pixel meet the surface
-};
-
-Truth true_map(const simulate::TriangleMesh& mesh, const simulate::Preset& preset,
-               const map::MapGrid& grid) {
-  const simulate::RayScene scene(mesh);
-  const simulate::Shader shader = simulate::seabed_shader(mesh, scene, preset.texture);
-  Truth truth{cv::Mat1f(grid.rows, grid.columns, std::nanf("")),
-              cv::Mat3b(grid.rows, grid.columns, cv::Vec3b(0, 0, 0)),
-              cv::Mat1b(grid.rows, grid.columns, std::uint8_t{0})};
-  constexpr double kAbove = 100;  // [m]
-  constexpr int kSide = 3;
-  parallel_for(static_cast<std::size_t>(grid.rows), [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < grid.columns; ++x) {
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      int hits = 0;
-      for (int i = 0; i < kSide * kSide; ++i) {
-        const Eigen::Vector3d from(grid.left + (x + (i % kSide + 0.5) / kSide) * grid.pixel,
-                                   grid.top - (y + (i / kSide + 0.5) / kSide) * grid.pixel, kAbove);
-        const auto hit = scene.first_hit(from, -Eigen::Vector3d::UnitZ());
-        if (!hit) continue;
-        ++hits;
-        const double height = kAbove - hit->distance;
-        if (i == kSide * kSide / 2) truth.heights(y, x) = static_cast<float>(height);
-        sum += shader({{from.x(), from.y(), height}, *hit, grid.pixel});
-      }
-      if (hits < kSide * kSide) continue;
-      truth.known(y, x) = 255;
-      for (int k = 0; k < 3; ++k)
-        truth.colors(y, x)[k] = cv::saturate_cast<std::uint8_t>(255 * sum[k] / (kSide * kSide));
-    }
-  });
-  return truth;
-}
+using namespace map_check;
 
 struct Spread {
   double rms = 0, median = 0;
@@ -87,7 +59,7 @@ Spread spread_of(std::vector<float> errors) {
   return {std::sqrt(squares / static_cast<double>(errors.size())), *middle};
 }
 
-void print_heights(const map::StoredMap& dem, const Truth& truth,
+void print_heights(const map::StoredMap& dem, const TrueMap& truth,
                    const simulate::TriangleMesh& mesh) {
   std::vector<float> differences;
   std::vector<Eigen::Vector3f> points;
@@ -108,7 +80,7 @@ void print_heights(const map::StoredMap& dem, const Truth& truth,
                            1000 * vertical.median);
 }
 
-void print_psnr(const cv::Mat4b& ortho, const Truth& truth) {
+void print_psnr(const cv::Mat4b& ortho, const TrueMap& truth) {
   double squares = 0;
   std::size_t pixels = 0;
   for (int y = 0; y < ortho.rows; ++y)
@@ -123,7 +95,7 @@ void print_psnr(const cv::Mat4b& ortho, const Truth& truth) {
                            pixels);
 }
 
-void print_displacement(const cv::Mat4b& ortho, const Truth& truth) {
+void print_displacement(const cv::Mat4b& ortho, const TrueMap& truth) {
   constexpr int kTile = 64;
   cv::Mat3b colors;
   cv::cvtColor(ortho, colors, cv::COLOR_RGBA2RGB);
@@ -152,27 +124,113 @@ void print_displacement(const cv::Mat4b& ortho, const Truth& truth) {
                            std::sqrt(squares / n), sum_x / n, sum_y / n, tiles);
 }
 
+// Errors of heights by their expectation: fifths of the pixels with growing expected error.
+void print_expected_errors(const map::StoredMap& dem, const map::StoredMap& sigma,
+                           const TrueMap& truth) {
+  struct Error {
+    float expected, seen;
+  };
+  std::vector<Error> errors;
+  for (int y = 0; y < dem.pixels.rows; ++y)
+    for (int x = 0; x < dem.pixels.cols; ++x) {
+      const float expected = sigma.pixels.at<float>(y, x), height = dem.pixels.at<float>(y, x);
+      if (expected == map::kNoHeight || height == map::kNoHeight || std::isnan(truth.heights(y, x)))
+        continue;
+      errors.push_back({expected, std::abs(height - truth.heights(y, x))});
+    }
+  if (errors.empty()) fail("no pixel has an expected error");
+  std::ranges::stable_sort(errors, {}, &Error::expected);
+  const auto median = [](std::vector<float> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return static_cast<double>(*middle);
+  };
+  std::vector<float> ratios;
+  for (const Error& error : errors) ratios.push_back(error.seen / error.expected);
+  constexpr double kToSigma = 1.4826;  // of normally distributed errors
+  std::cout << fmt::format("expected errors: true ones are {:.3f} times as large; fifths:",
+                           kToSigma * median(ratios));
+  constexpr std::size_t kClasses = 5;
+  for (std::size_t k = 0; k < kClasses; ++k) {
+    std::vector<float> expected, seen;
+    for (std::size_t i = k * errors.size() / kClasses; i < (k + 1) * errors.size() / kClasses; ++i)
+      expected.push_back(errors[i].expected), seen.push_back(errors[i].seen);
+    std::cout << fmt::format(" {:.3f} {:.3f}{}", 1000 * median(expected),
+                             1000 * kToSigma * median(seen), k + 1 < kClasses ? "," : " mm\n");
+  }
+}
+
+// Of the ground inside the frames of two photographs, because a mesh needs two.
+void print_hidden_ground(const cv::Mat4b& ortho, const TrueMap& truth) {
+  std::size_t ground = 0, painted[3] = {}, open[3] = {};  // by 0, 1 and more photographs
+  for (int y = 0; y < ortho.rows; ++y)
+    for (int x = 0; x < ortho.cols; ++x) {
+      if (truth.frames(y, x) < 2) continue;
+      ++ground;
+      const std::size_t views = truth.views(y, x);
+      ++(ortho(y, x)[3] == 0 ? open : painted)[views > 2 ? 2 : views];
+    }
+  const auto share = [&](std::size_t pixels) {
+    return 100 * static_cast<double>(pixels) / static_cast<double>(ground);
+  };
+  std::cout << fmt::format(
+      "ground: hidden {:.3f} seen once {:.3f} open {:.3f}; hidden but painted {:.3f} seen once and "
+      "painted {:.3f} seen more often but open {:.3f} % of {} pixels\n",
+      share(painted[0] + open[0]), share(painted[1] + open[1]), share(open[0] + open[1] + open[2]),
+      share(painted[0]), share(painted[1]), share(open[2]), ground);
+}
+
+void print_edges(const char* name, const EdgeCounts& counts) {
+  if (counts.lines == 0) fail("no depth step has contrast");
+  const auto share = [&](std::size_t part) {
+    return 100 * static_cast<double>(part) / static_cast<double>(counts.lines);
+  };
+  std::cout << fmt::format("edges {}: extra {:.2f} missing {:.2f} % of {} lines\n", name,
+                           share(counts.extra), share(counts.missing), counts.lines);
+}
+
+void print_all_edges(const cv::Mat4b& ortho, const TrueMap& truth, const cv::Mat3b& naive) {
+  cv::Mat3b colors;
+  cv::cvtColor(ortho, colors, cv::COLOR_RGBA2RGB);
+  cv::Mat1b usable;
+  cv::extractChannel(ortho, usable, 3);
+  usable &= truth.known;
+  const std::vector<Crossing> crossings = depth_steps(truth, usable);
+  if (crossings.empty()) fail("the map has no depth step");
+  const auto print = [&](const char* name, const cv::Mat3b& map) {
+    print_edges(name, count_edges(map, truth.colors, crossings));
+  };
+  print("of the orthomosaic", colors);
+  print("of the orthomosaic and its copy, 5 px apart", doubled(colors, 4, 3));
+  print("of a map without visibility", naive);
+}
+
 int run(char** argv) {
   simulate::PresetOptions options;
   options.name = argv[1];
   options.seed = static_cast<std::uint32_t>(std::stoul(argv[2]));
   options.coarseness = std::stod(argv[3]);
-  const simulate::Preset preset = simulate::make_preset(options);
-  const simulate::TriangleMesh mesh = simulate::terrain_mesh(preset.terrain);
-  const map::StoredMap dem = map::read_map(std::string(argv[4]) + ".dem.tif");
-  const map::StoredMap ortho = map::read_map(std::string(argv[4]) + ".ortho.tif");
-  const Truth truth = true_map(mesh, preset, dem.grid);
-  print_heights(dem, truth, mesh);
+  SimulatedScene scene{simulate::make_preset(options), {}};
+  scene.mesh = simulate::terrain_mesh(scene.preset.terrain);
+  const std::string map = argv[4];
+  const map::StoredMap dem = map::read_map(map + ".dem.tif");
+  const map::StoredMap ortho = map::read_map(map + ".ortho.tif");
+  const map::StoredMap sigma = map::read_map(map + ".sigma.tif");
+  const TrueMap truth = true_map(scene, dem.grid);
+  print_heights(dem, truth, scene.mesh);
+  print_expected_errors(dem, sigma, truth);
   print_psnr(ortho.pixels, truth);
   print_displacement(ortho.pixels, truth);
+  print_hidden_ground(ortho.pixels, truth);
+  print_all_edges(ortho.pixels, truth, naive_map(scene, dem.grid, truth, argv[5]));
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::cerr << "usage: map_check PRESET SEED COARSENESS MAP\n";
+  if (argc != 6) {
+    std::cerr << "usage: map_check PRESET SEED COARSENESS MAP PHOTOGRAPHS\n";
     return 1;
   }
   try {

@@ -8,16 +8,20 @@ from points import BASE, densified, point
 from support import runs
 from support.runs import BIN, PROGRAMS, measured
 
-SEED = 41
+SEEDS = 41, 42, 43
 HEIGHTS, PSNR, DISPLACEMENT = 1.2, 28, 0.5  # at most, of the mesh's RMS; [dB] at least; [px] at most
+# At most: the difference between ground that fewer than two photographs see and open pixels [% of
+# the ground]; lines across depth steps with an extra edge [%].
+OPEN, EXTRA = 1, 5
+CALIBRATION = 1.5  # at most, between expected and true errors, either way
 CAP = 1000  # [MB]
 
 
-def reef(work):
+def reef(work, seed):
     """The folder of a reef with scene_dense.mvs and mesh.ply, and its truth."""
-    truth = runs.simulated(f"reef-{SEED}", BASE, "--preset", "reef", "--views", 10, "--seed", SEED,
+    truth = runs.simulated(f"reef-{seed}", BASE, "--preset", "reef", "--views", 10, "--seed", seed,
                            tolerance=runs.TOLERANCES["reef"])
-    folder = work / f"reef-{SEED}-water-maps"
+    folder = work / f"reef-{seed}-water-maps"
     densified(folder, truth.data / "sparse", truth.data / "water", truth.housing("water"),
               "--resolution-level", 1)
     if not (folder / "mesh.ply").exists():
@@ -34,27 +38,57 @@ def mapped(folder, name, *options):
     return cost, tuple(map(int, re.search(r"map of (\d+) x (\d+) pixels", log.read_text()).groups()))
 
 
-@point(f"RMS of the heights at most {HEIGHTS} times that of the mesh where views see it; PSNR of the "
-       f"orthomosaic at least {PSNR} dB, its displacement at most {DISPLACEMENT} px")
-def map_quality(work):
-    folder, truth = reef(work)
-    cost, size = mapped(folder, "map")
+def numbers_of(text, line):
+    """The numbers in the line of map_check that begins with `line`."""
+    found = re.search(rf"^{re.escape(line)}(.*)$", text, re.MULTILINE)[1]
+    return [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", found)]
+
+
+def judged_map(folder, truth, seed, size, cost):
+    """The text and the verdict of the map of one reef."""
     checked = folder / "check.log"
-    measured(checked, BIN / "map_check", "reef", SEED, 1, folder / "map")
+    measured(checked, BIN / "map_check", "reef", seed, 1, folder / "map", truth.data / "water")
     said = checked.read_text()
-    number = lambda pattern: float(re.search(pattern, said)[1])
-    heights, psnr, displacement = (number(pattern) for pattern in (
-        r"distances: RMS (\S+)", r"PSNR (\S+)", r"displacement: RMS (\S+)"))
+    heights, (psnr, *_) = numbers_of(said, "distances: ")[0], numbers_of(said, "colours: PSNR ")
+    displacement = numbers_of(said, "displacement: ")[0]
+    ratio, *fifths = numbers_of(said, "expected errors: ")
+    hidden, once, is_open, painted, painted_once, seen_open, _ = numbers_of(said, "ground: ")
+    extra, _, lines = numbers_of(said, "edges of the orthomosaic: ")
+    copy = numbers_of(said, "edges of the orthomosaic and its copy, 5 px apart: ")[0]
+    naive = numbers_of(said, "edges of a map without visibility: ")[0]
     mesh = 1000 * judged(folder, "mesh", truth, "water")["seen"]["accuracy"]["rms"]
-    return (f"{size[0]} x {size[1]} pixels; heights {heights:.2f} mm RMS, mesh {mesh:.2f} mm; PSNR "
-            f"{psnr:.1f} dB; displacement {displacement:.2f} px; {cost['cpu']:.0f} CPU-s, "
-            f"{cost['memory'] / 1e6:.0f} MB",
-            heights <= HEIGHTS * mesh and psnr >= PSNR and displacement <= DISPLACEMENT)
+    text = (f"seed {seed}: {size[0]} x {size[1]} pixels; heights {heights:.2f} mm RMS, mesh {mesh:.2f} "
+            f"mm; PSNR {psnr:.1f} dB; displacement {displacement:.2f} px; hidden {hidden:.2f} %, seen "
+            f"once {once:.2f} %, open {is_open:.2f} %, hidden but painted {painted:.2f} %, seen once "
+            f"and painted {painted_once:.2f} %, seen more often but open {seen_open:.2f} %; extra edges "
+            f"{extra:.1f} % of {lines:.0f} lines (copy {copy:.1f} %, without visibility {naive:.1f} %); "
+            f"true errors {ratio:.2f} times the expected ones, fifths {fifths}; "
+            f"{cost['cpu']:.0f} CPU-s, {cost['memory'] / 1e6:.0f} MB")
+    return text, (heights <= HEIGHTS * mesh and psnr >= PSNR and displacement <= DISPLACEMENT
+                  and abs(is_open - hidden - once) <= OPEN
+                  and extra <= EXTRA < min(copy, naive)  # the count finds maps with doubled edges
+                  and 1 / CALIBRATION <= ratio <= CALIBRATION
+                  and fifths[1] < fifths[-1])  # the true errors of the first and the last fifth
+
+
+@point(f"three seeds: RMS of the heights at most {HEIGHTS} times that of the mesh where views see it; "
+       f"PSNR of the orthomosaic at least {PSNR} dB, its displacement at most {DISPLACEMENT} px; open "
+       f"ground within {OPEN} % of what fewer than two photographs see; extra edges on at most {EXTRA} % "
+       f"of the lines across depth steps; expected errors right within a factor of {CALIBRATION}")
+def map_quality(work):
+    texts, good = [], True
+    for seed in SEEDS:
+        folder, truth = reef(work, seed)
+        cost, size = mapped(folder, "map")
+        text, passed = judged_map(folder, truth, seed, size, cost)
+        texts.append(text)
+        good &= passed
+    return " / ".join(texts), good
 
 
 @point(f"a map of 900 million pixels with --max-memory {CAP}: at most 10 % above the cap")
 def map_memory_cap(work):
-    folder, _ = reef(work)
+    folder, _ = reef(work, SEEDS[0])
     cost, size = mapped(folder, "large", "--gsd", 0.00014, "--max-memory", CAP)
     for file in folder.glob("large.*"):
         if file.suffix != ".log":

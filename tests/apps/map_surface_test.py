@@ -3,6 +3,7 @@
 input."""
 
 import json
+import os
 import re
 
 from geotiff import read_geotiff
@@ -10,7 +11,7 @@ from programs import contents, files_below, main, read, run, write
 from texture_mesh_test import mesh_ply, wall
 from tiny_scene import DISTANCE, TinyScene, texture
 
-MAPS = {"scene_map.dem.tif", "scene_map.ortho.tif", "scene_map.views.tif", "scene_map.jpg"}
+MAPS = {"scene_map.dem.tif", "scene_map.ortho.tif", "scene_map.views.tif", "scene_map.sigma.tif", "scene_map.jpg"}
 
 
 class MapTest(TinyScene):
@@ -33,8 +34,13 @@ class Files(MapTest):
         self.assertEqual(files_below(self.work) - before, MAPS)
         self.succeeds(*self.map("-o", "new/a.v2", "--hillshade", "--contours", "0.1"))
         self.assertLess({"new/a.v2." + end for end in
-                         ("dem.tif", "ortho.tif", "views.tif", "hillshade.tif", "contours.geojson", "jpg")},
+                         ("dem.tif", "ortho.tif", "views.tif", "sigma.tif", "hillshade.tif", "contours.geojson", "jpg")},
                         files_below(self.work))
+
+    def test_without_image_noise_there_are_no_expected_errors(self):
+        before = files_below(self.work)
+        self.succeeds(*self.map("--image-noise", "0"))
+        self.assertEqual(files_below(self.work) - before, MAPS - {"scene_map.sigma.tif"})
 
     def test_any_number_of_threads_gives_the_same_bytes(self):
         found = []
@@ -48,7 +54,7 @@ class Files(MapTest):
         plain = {name: read(self.path("work", name)) for name in MAPS}
         self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured")
         self.succeeds(*self.map("-m", "textured.ply"))
-        for name in ("scene_map.dem.tif", "scene_map.views.tif"):
+        for name in ("scene_map.dem.tif", "scene_map.views.tif", "scene_map.sigma.tif"):
             self.assertEqual(read(self.path("work", name)), plain[name], name)
         one = read_geotiff(plain["scene_map.ortho.tif"]).rows
         two = self.read_map("scene_map.ortho.tif").rows
@@ -84,6 +90,29 @@ class Pixels(MapTest):
         # The photographs show the wall without averaging, in pixels as large as those of the map.
         # A displacement of half a pixel would give an RMS of 12 grey levels.
         self.assertLess((sum(e * e for e in errors) / len(errors)) ** 0.5, 8)
+
+    def test_expected_errors(self):
+        # They are unknown where fewer than two photographs see the place, and otherwise at least a
+        # third of a photograph's pixel, of 1 m / 90.
+        self.succeeds(*self.map("--image-noise", "0.2"))
+        dem, views, sigma = (self.read_map(f"scene_map.{name}.tif")
+                             for name in ("dem", "views", "sigma"))
+        known = 0
+        for a, b, c in zip(dem.rows, views.rows, sigma.rows):
+            for height, count, error in zip(a, b, c):
+                self.assertEqual(error == -9999, height == -9999 or count < 2)
+                if error != -9999:
+                    known += 1
+                    self.assertGreater(error, 0.33 * 0.9 / 90)
+                    self.assertLess(error, 0.1)
+        self.assertGreater(known, 1000)
+
+    def test_the_length_of_up_has_no_effect(self):
+        found = set()
+        for up in ("0,0,-1", "0,0,-1e300", "0,0,-1e-300"):
+            self.succeeds(*self.map("--up", up))
+            found.add(read(self.path("work", "scene_map.dem.tif")))
+        self.assertEqual(len(found), 1)
 
     def test_utm(self):
         write(self.path("work", "scene.geo.json"),
@@ -122,6 +151,9 @@ class WrongInput(MapTest):
                 ("--ground-sample-distance -1: must be from 0", "--ground-sample-distance", "-1"),
                 ("--ground-sample-distance nan", "--gsd", "nan"),
                 ("--ground-sample-distance 1e-08: the map would have", "--gsd", "1e-8"),
+                ("--gsd: is the same as --ground-sample-distance", "--gsd", "0.1",
+                 "--ground-sample-distance", "0.1"),
+                ("--image-noise -1: must be from 0", "--image-noise", "-1"),
                 ("--up 0,0: must be three numbers X,Y,Z", "--up", "0,0"),
                 ("--up 0,0,x: must be three numbers X,Y,Z", "--up", "0,0,x"),
                 ("--up 0,0,0: is no direction", "--up", "0,0,0"),
@@ -146,6 +178,14 @@ class WrongInput(MapTest):
     def test_an_input_is_not_overwritten(self):
         write(self.path("work", "mesh.dem.tif"), read(self.mesh))
         self.refuses_and_keeps("--output-file", *self.map("-m", "mesh.dem.tif", "-o", "mesh"))
+
+    def test_a_texture_of_an_obj_is_not_overwritten(self):
+        self.succeeds("TextureMesh", "-i", self.scene, "-w", self.work, "-o", "textured",
+                      "--export-type", "obj")
+        os.rename(self.path("work", "textured0.png"), self.path("work", "scene_map.jpg"))
+        mtl = self.path("work", "textured.mtl")
+        write(mtl, read(mtl).decode().replace("textured0.png", "scene_map.jpg"))
+        self.refuses_and_keeps("--output-file", *self.map("-m", "textured.obj"))
 
     def test_a_full_disk_leaves_the_old_maps(self):
         self.succeeds(*self.map())

@@ -355,5 +355,24 @@ TEST_F(TexturedMeshTest, WrongMeshesAreNotWritten) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+// Two textures of 32 x 16 pixels in 3 bytes, and the decoding of one of them.
+TEST_F(TexturedMeshTest, TexturesAreFoundAndCountedWithoutReadingThem) {
+  const TexturedMesh mesh = two_squares(2);
+  std::vector<std::uint64_t> bytes;
+  for (const TexturedFormat format :
+       {TexturedFormat::ply, TexturedFormat::obj, TexturedFormat::glb}) {
+    write_textured_mesh(path_, mesh, format);
+    const std::vector<fs::path> written = textured_files(path_, format, 2);
+    const TextureFiles files = texture_files_of(written[0]);
+    std::vector<fs::path> all{written[0]};
+    all.insert(all.end(), files.materials.begin(), files.materials.end());
+    all.insert(all.end(), files.textures.begin(), files.textures.end());
+    EXPECT_EQ(all, written);
+    bytes.push_back(bytes_to_read_textures(written[0]));
+  }
+  const std::uint64_t decoding = bytes_needed(read_image_header(folder_ / "a mesh0.png"));
+  EXPECT_THAT(bytes, testing::Each(2 * 3 * 32 * 16 + decoding));
+}
+
 }  // namespace
 }  // namespace axial::io

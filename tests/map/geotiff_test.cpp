@@ -126,6 +126,23 @@ TEST(GeoTiff, ReducedHeightsLeaveOutPixelsWithoutSurface) {
   EXPECT_EQ(cv::countNonZero(reduced.pixels != 3.0f), 0);
 }
 
+// Pixels of the reduced map are square up to half a pixel of the longer side.
+TEST(GeoTiff, ReducedLongMapsAreNotDistorted) {
+  const auto size = [](int columns, int rows) {
+    return reduced_size({0, 0, 1, columns, rows}, 2048);
+  };
+  EXPECT_EQ(size(2048, 5), cv::Size(2048, 5));
+  EXPECT_EQ(size(4096, 4096), cv::Size(2048, 2048));
+  EXPECT_EQ(size(1'000'000, 3), cv::Size(2048, 1));
+  for (const int shorter : {20, 33, 47, 700, 9999}) {
+    const cv::Size wide = size(10000, shorter);
+    EXPECT_EQ(size(shorter, 10000), cv::Size(wide.height, wide.width));
+    EXPECT_LE(wide.width, 2048);
+    EXPECT_GE(wide.width, 1024);
+    EXPECT_NEAR(wide.width, 10000.0 / shorter * wide.height, 0.501);
+  }
+}
+
 TEST(GeoTiff, ErrorsNameTheFile) {
   const fs::path folder = test::empty_folder();
   EXPECT_THAT(test::error_of([&] { read_map(folder / "none.tif"); }), HasSubstr("none.tif: "));

@@ -51,7 +51,7 @@ TexturedMesh textured(Mesh mesh, int size) {
 }
 
 MapContent content_of(const TexturedMesh& mesh, double pixel) {
-  MapContent content{mesh, {}, frame_with_up({0, 0, 1}, {{5e5, 4.5e6, -30}}), {}};
+  MapContent content{mesh, {}, {}, frame_with_up({0, 0, 1}, {{5e5, 4.5e6, -30}}), {}};
   content.grid = grid_around(mesh.mesh, content.frame, pixel);
   return content;
 }
@@ -116,6 +116,8 @@ TEST(MapBlock, HolesHaveNeitherHeightNorColor) {
   std::vector<std::uint16_t> views(mesh.mesh.faces.size(), 3);
   MapContent content = content_of(mesh, 1.0 / 32);
   content.views = views;
+  const std::vector<float> errors(mesh.mesh.faces.size(), 0.25f);
+  content.errors = errors;
   const MapBlock block = whole(content, 3);
   for (int row = 0; row < 64; ++row)
     for (int column = 0; column < 64; ++column) {
@@ -123,6 +125,7 @@ TEST(MapBlock, HolesHaveNeitherHeightNorColor) {
       EXPECT_EQ(block.heights(row, column) == kNoHeight, in_hole) << row << " " << column;
       EXPECT_EQ(block.colors(row, column) == cv::Vec4b(0, 0, 0, 0), in_hole);
       EXPECT_EQ(block.counts(row, column), in_hole ? kNoCount : 3);
+      EXPECT_EQ(block.errors(row, column), in_hole ? kNoHeight : 0.25f);
       EXPECT_EQ(block.shades(row, column) == 0, in_hole);
     }
 }

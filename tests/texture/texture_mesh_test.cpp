@@ -39,6 +39,23 @@ TEST(TextureMesh, ColoursThroughAPortAreThoseOfTheSurface) {
   EXPECT_LT(report.unseen_faces, mesh.mesh.faces.size() / 4);
 }
 
+// The views are those of the faces of the textured mesh, and they are not found a second time.
+TEST(TextureMesh, GivesTheViewsOfItsFaces) {
+  const test::Room room = test::photograph_room(6);
+  FaceViews taken;
+  Options options;
+  options.take_views = [&](const Mesh& mesh, const FaceViews& views) {
+    EXPECT_EQ(views.faces(), mesh.faces.size());
+    taken = views;
+  };
+  const TexturedMesh mesh = texture_mesh(test::room_mesh(), room.views, room.source(), options);
+  const FaceViews seen = find_face_views(mesh.mesh, room.views, room.source());
+  EXPECT_EQ(taken.begin, seen.begin);
+  ASSERT_EQ(taken.sights.size(), seen.sights.size());
+  for (std::size_t i = 0; i < seen.sights.size(); ++i)
+    EXPECT_EQ(taken.sights[i].view, seen.sights[i].view);
+}
+
 TEST(TextureMesh, ColoursThroughADomeAreThoseOfTheSurface) {
   const test::Room room = test::photograph_room(6, {}, test::room_dome());
   const TexturedMesh mesh = texture_mesh(test::room_mesh(), room.views, room.source());

@@ -221,7 +221,10 @@ cv::Mat3b decode_color_image(const std::string& bytes, const fs::path& name) {
 }
 
 ImageHeader read_image_header(const fs::path& path) {
-  const std::string bytes = read_image_bytes(path);
+  return image_header_of(read_image_bytes(path), path);
+}
+
+ImageHeader image_header_of(const std::string& bytes, const fs::path& path) {
   if (is_jpeg(bytes)) return jpeg_header(bytes, path);
   if (is_png(bytes)) return png_header(bytes, path);
   if (is_tiff(bytes)) return tiff_header(bytes, path);

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/images/image.h"
 #include "io/textured/textured_mesh.h"
+#include "private/images/image_codecs.h"
 #include "private/textured/textured_readers.h"
 
 namespace axial::io {
@@ -62,6 +63,16 @@ class GlbReader {
  public:
   GlbReader(const std::string& bytes, std::string file)
       : file_(std::move(file)), model_(parsed(bytes, file_)) {}
+
+  std::vector<ImageHeader> image_headers() const {
+    std::vector<ImageHeader> headers;
+    for (std::size_t k = 0; k < model_.images.size(); ++k) {
+      const std::span<const unsigned char> bytes = bytes_of(model_.images[k].bufferView);
+      headers.push_back(
+          image_header_of({bytes.begin(), bytes.end()}, fmt::format("{}: image {}", file_, k)));
+    }
+    return headers;
+  }
 
   TexturedMesh read(const std::optional<LocalFrame>& frame) {
     for (const tinygltf::Node& node : model_.nodes) read_node(node);
@@ -226,6 +237,10 @@ class GlbReader {
 };
 
 }  // namespace
+
+std::vector<ImageHeader> image_headers_of_glb(const fs::path& path) {
+  return GlbReader(read_file(path), path.string()).image_headers();
+}
 
 TexturedMesh read_textured_glb(const fs::path& path, const std::optional<LocalFrame>& frame) {
   return GlbReader(read_file(path), path.string()).read(frame);

@@ -15,6 +15,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Calls visit(material, file) for each texture of an MTL file.
+template <class Visit>
+void for_each_texture(const fs::path& mtl, const Visit& visit) {
+  const std::string bytes = read_file(mtl);
+  TextReader reader(bytes, mtl.string());
+  std::string material;
+  while (std::optional<TextLine> line = reader.line()) {
+    if (line->empty()) continue;
+    const std::string_view key = line->word("key");
+    if (key == "newmtl") material = line->rest();
+    if (key == "map_Kd") visit(material, mtl.parent_path() / line->rest());
+  }
+}
+
 class ObjReader {
  public:
   explicit ObjReader(const fs::path& path) : path_(path) {}
@@ -106,18 +120,10 @@ class ObjReader {
   }
 
   void read_materials(const fs::path& path) {
-    const std::string bytes = read_file(path);
-    TextReader reader(bytes, path.string());
-    std::string material;
-    while (std::optional<TextLine> line = reader.line()) {
-      if (line->empty()) continue;
-      const std::string_view key = line->word("key");
-      if (key == "newmtl") material = line->rest();
-      if (key == "map_Kd") {
-        materials_[material] = static_cast<std::uint32_t>(result_.textures.size());
-        result_.textures.push_back(read_color_image(path.parent_path() / line->rest()));
-      }
-    }
+    for_each_texture(path, [&](const std::string& material, const fs::path& texture) {
+      materials_[material] = static_cast<std::uint32_t>(result_.textures.size());
+      result_.textures.push_back(read_color_image(texture));
+    });
   }
 
   fs::path path_;
@@ -133,6 +139,20 @@ class ObjReader {
 
 TexturedMesh read_textured_obj(const fs::path& path, const std::optional<LocalFrame>& frame) {
   return ObjReader(path).read(frame);
+}
+
+TextureFiles texture_files_of_obj(const fs::path& path) {
+  const std::string bytes = read_file(path);
+  TextReader reader(bytes, path.string());
+  TextureFiles files;
+  while (std::optional<TextLine> line = reader.line()) {
+    if (line->empty() || line->word("key") != "mtllib") continue;
+    files.materials.push_back(path.parent_path() / line->rest());
+    for_each_texture(files.materials.back(), [&](const std::string&, const fs::path& texture) {
+      files.textures.push_back(texture);
+    });
+  }
+  return files;
 }
 
 std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,

@@ -91,6 +91,22 @@ TexturedMesh read_textured_glb(const std::filesystem::path& path,
 // malformed header.
 std::vector<std::string> textures_of_ply(const std::filesystem::path& path);
 
+// The files that a reader of a textured mesh reads besides the file of the mesh.
+struct TextureFiles {
+  std::vector<std::filesystem::path> textures;
+  std::vector<std::filesystem::path> materials;  // MTL files of an OBJ
+};
+
+// Returns the files that read_textured_mesh() reads for `path`. A GLB has none, and neither has a
+// PLY without textures. Error that names the file if the mesh or an MTL file cannot be read.
+TextureFiles texture_files_of(const std::filesystem::path& path);
+
+// The memory [bytes] that read_textured_mesh() needs for the textures of `path`, those inside of a
+// GLB included, besides bytes_to_read_mesh() (openmvs/point_source.h). Reads the headers of the
+// images, and a GLB as a whole. Errors as for texture_files_of(), and for a texture or a GLB that
+// cannot be read.
+std::uint64_t bytes_to_read_textures(const std::filesystem::path& path);
+
 // True if `path` names a textured mesh. Files with the extensions .obj and .glb, in upper or lower
 // case, count as textured meshes and are not opened. Other files are PLY, and textured if they have
 // a comment TextureFile. Error that names the file for a PLY with a malformed header.

@@ -127,6 +127,31 @@ bool is_textured_mesh(const std::filesystem::path& path) {
   return !textures_of_ply(path).empty();
 }
 
+TextureFiles texture_files_of(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb") return {};
+  if (extension == ".obj") return texture_files_of_obj(path);
+  TextureFiles files;
+  for (const std::string& texture : textures_of_ply(path))
+    files.textures.push_back(path.parent_path() / texture);
+  return files;
+}
+
+std::uint64_t bytes_to_read_textures(const std::filesystem::path& path) {
+  std::vector<ImageHeader> headers;
+  if (lower_extension(path) == ".glb")
+    headers = image_headers_of_glb(path);
+  else
+    for (const std::filesystem::path& texture : texture_files_of(path).textures)
+      headers.push_back(read_image_header(texture));
+  std::uint64_t bytes = 0, largest = 0;
+  for (const ImageHeader& header : headers) {
+    bytes += 3 * static_cast<std::uint64_t>(header.size.area());
+    largest = std::max(largest, bytes_needed(header));
+  }
+  return bytes + largest;
+}
+
 TexturedMesh read_textured_mesh(const std::filesystem::path& path,
                                 const std::optional<LocalFrame>& frame) {
   const std::string extension = lower_extension(path);

@@ -27,6 +27,9 @@ bool is_tiff(std::string_view bytes);
 void refuse_truncated_jpeg(std::string_view bytes, const std::filesystem::path& path);
 void refuse_truncated_png(std::string_view bytes, const std::filesystem::path& path);
 
+// What read_image_header() returns for a file with these bytes. Errors begin with `path`.
+ImageHeader image_header_of(const std::string& bytes, const std::filesystem::path& path);
+
 ImageHeader jpeg_header(std::string_view bytes, const std::filesystem::path& path);
 ImageHeader png_header(std::string_view bytes, const std::filesystem::path& path);
 // In addition, an Error if the file is shorter than its TIFF directory says.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "io/images/image.h"
+#include "io/textured/textured_mesh.h"
 #include "private/only_for_io.h"
 #include "scene/local_frame.h"
 
@@ -29,5 +31,11 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
                                        std::span<const Eigen::Vector3d> stored,
                                        const std::optional<Eigen::Vector3d>& offset,
                                        const std::string& file);
+
+// texture_files_of() an OBJ.
+TextureFiles texture_files_of_obj(const std::filesystem::path& path);
+
+// The headers of all images of a GLB. Errors as for read_textured_glb().
+std::vector<ImageHeader> image_headers_of_glb(const std::filesystem::path& path);
 
 }  // namespace axial::io
