@@ -71,7 +71,8 @@ def options(script_folder):
                         help="last result to make (default: page, or map if the build has no page; "
                         "with --tiles: texture, because MapSurface and ViewScene need the whole mesh)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
-                        "positions: gives: the cloud is measured against it")
+                        "positions: gives: the cloud is measured against it, and the page shows "
+                        "the distances")
     parser.add_argument("--cluster", choices=["slurm", "local"], default="",
                         help="run the steps as a workflow of Snakemake, with the depth maps in several "
                         "jobs: on a cluster with Slurm, or on this machine (docs/cluster.md)")
@@ -228,9 +229,12 @@ def mesh_steps(given, out):
                    makes=Files(*(out / f"scene_map.{kind}.tif" for kind in ("dem", "ortho", "views"))),
                    reads=reads["map"] + reads["texture"])
     if "page" in wanted:
+        truth = [given.truth] if given.truth else []
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
-                                               *refractive, *options["page"]),
-                   makes=out / "page" / "index.html", reads=reads["page"])
+                                               *refractive, "--sfm-model", out / "refined",
+                                               *(("--truth", *truth) if truth else ()),
+                                               *options["page"]),
+                   makes=out / "page" / "index.html", reads=reads["page"] + truth)
 
 
 def steps(given, out):
