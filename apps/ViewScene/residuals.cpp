@@ -42,8 +42,10 @@ struct Errors {
 
 double rms_of(const Vectors& errors) {
   double sum = 0;
-  for (const Eigen::Vector2d& error : errors) sum += error.squaredNorm();
-  return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
+  std::size_t count = 0;
+  for (const Eigen::Vector2d& error : errors)
+    if (error.allFinite()) sum += error.squaredNorm(), ++count;
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
 Data grid_of(const pose::ResidualPattern& pattern) {
@@ -57,7 +59,8 @@ Data grid_of(const pose::ResidualPattern& pattern) {
 Data errors_of(const Errors& errors) {
   return {{"observations", errors.pixels.size()},
           {"unseen", errors.unseen},
-          {"rms", rounded(rms_of(errors.stated))}};
+          {"rms", rounded(rms_of(errors.stated))},
+          {"rms_freed", rounded(rms_of(errors.freed))}};
 }
 
 Data camera_of(const CameraModel& model, const Errors& errors,

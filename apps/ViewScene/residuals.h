@@ -10,7 +10,7 @@
 namespace axial::apps {
 
 // The part "residuals" of data/scene.js, for the observations of the COLMAP model in `folder`:
-// - observations, unseen (without image), rms [px].
+// - observations, unseen (without image), rms and, with the poses freed, rms_freed [px].
 // - cameras: for each pair of lens and port: its numbers of photographs, errors, the judgement of
 //   pose::ResidualPattern, and its grid. Errors of the grid have the pose of each photograph freed.
 // - photographs: for each its number in "cameras" of the scene, errors, and its grid. Errors are

@@ -149,15 +149,20 @@ void judge(const TrackedPhotographs& sample, const Eigen::MatrixXd& matrix, doub
   trial.cause.share = 1 - systematic_square(sample, left) / systematic;
 }
 
-// Whether the changed numbers can be those of a port or a lens. All but angles and coordinates are
-// positive, and the index of the water is at least that of air.
+// Whether the changed numbers can be those of a port or a lens. Lengths and the index of the water
+// less that of air are positive; one linear step may go a little beyond zero. The thickness of the
+// glass is easy to measure, and a thick glass looks like a distant one: a large change of the
+// thickness is no cause.
 bool is_possible(const Cause& cause) {
+  constexpr double kBeyond = 0.25, kThicker = 3, kMillimetres = 5;
   return std::ranges::all_of(cause.numbers, [](const CauseNumber& number) {
     const double now = number.stated + number.change;
-    if (number.name == kIndexName) return now >= 1;
+    if (number.name == kIndexName) return now >= 1 - kBeyond * (number.stated - 1);
+    if (number.name == kThicknessName && now > kThicker * number.stated + kMillimetres)
+      return false;
     const bool length = number.name == kFocalName || number.name == kDistanceName ||
                         number.name == kThicknessName || number.name == kRadiusName;
-    return !length || now >= 0;
+    return !length || now >= -kBeyond * number.stated;
   });
 }
 

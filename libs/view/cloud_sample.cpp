@@ -48,6 +48,16 @@ void halve(const PointCloud& cloud, Numbers numbers, std::size_t level, std::siz
   halve(cloud, numbers.subspan(half), level, largest, chunks);
 }
 
+void append(const PointCloud& portion, std::size_t i, PointCloud& to) {
+  to.positions.push_back(portion.positions[i]);
+  if (!portion.colors.empty()) to.colors.push_back(portion.colors[i]);
+  if (portion.view_begin.empty()) return;
+  if (to.view_begin.empty()) to.view_begin = {0};
+  const auto seen_by = portion.views_of(i);
+  to.view_images.insert(to.view_images.end(), seen_by.begin(), seen_by.end());
+  to.view_begin.push_back(to.view_images.size());
+}
+
 }  // namespace
 
 void CloudSample::add(const PointCloud& portion, std::size_t all_points) {
@@ -55,20 +65,15 @@ void CloudSample::add(const PointCloud& portion, std::size_t all_points) {
   const double share = static_cast<double>(most_) / static_cast<double>(all_points);
   const bool all = most_ >= all_points;
   const std::uint64_t limit = all ? 0 : static_cast<std::uint64_t>(share * 0x1p64);
-  const bool views = !portion.view_begin.empty();
-  if (views && sample_.view_begin.empty()) sample_.view_begin = {0};
   for (std::size_t i = 0; i < portion.size(); ++i, ++added_) {
-    if (!all && scramble(added_) >= limit) continue;
-    sample_.positions.push_back(portion.positions[i]);
-    if (!portion.colors.empty()) sample_.colors.push_back(portion.colors[i]);
-    if (!views) continue;
-    const auto seen_by = portion.views_of(i);
-    sample_.view_images.insert(sample_.view_images.end(), seen_by.begin(), seen_by.end());
-    sample_.view_begin.push_back(sample_.view_images.size());
+    if (added_ == 0) append(portion, i, first_);
+    if (all || scramble(added_) < limit) append(portion, i, sample_);
   }
 }
 
 PointCloud CloudSample::take() {
+  if (sample_.size() == 0) std::swap(sample_, first_);
+  first_ = {};
   return std::exchange(sample_, {});
 }
 

@@ -25,13 +25,15 @@ class CloudSample {
   // The number of points that were added, in the sample or not.
   std::size_t added() const { return added_; }
 
-  // Returns the sample, in the order of the cloud, and leaves this object empty.
+  // Returns the sample, in the order of the cloud, and leaves this object empty. If no point was
+  // taken by chance, the sample is the first point.
   PointCloud take();
 
  private:
   std::size_t most_;
   std::size_t added_ = 0;
   PointCloud sample_;
+  PointCloud first_;  // the first point of the cloud, in case that the sample stays empty
 };
 
 // A part of a cloud: points of one level that are near each other, in random order.

@@ -58,6 +58,29 @@ class ViewCase(TinyScene):
         return ("ViewScene", "-i", self.scene, "-w", self.work, "-p", self.cloud, "--housing",
                 self.port, "--report", self.report, *arguments)
 
+    def opened(self, *arguments, **window):
+        """The page of a new run of ViewScene, when everything is loaded."""
+        self.succeeds(*self.view(*arguments))
+        browser = self.reopened("globalThis.axial && axial.ready", **window)
+        self.addCleanup(browser.close)
+        return browser
+
+    def reopened(self, ready, **window):
+        """The page in self.report, when the expression `ready` is true."""
+        browser = Browser(pathlib.Path(self.report, "index.html").as_uri(), **window)
+        try:
+            browser.wait_for(ready)
+        except BaseException:
+            browser.close()
+            raise
+        return browser
+
+    def place_of(self, browser, place):
+        """Where the page shows a point. The page's camera is the one thing that is believed."""
+        x, y = browser.value(f"axial.view.screenOf({list(place)})")
+        self.assertTrue(0 < x < 900 and 0 < y < 700)
+        return x, y
+
 
 @unittest.skipUnless(os.path.exists(PAGE), "the page of ViewScene was not built")
 class ViewFolder(ViewCase):
@@ -149,20 +172,6 @@ class WithoutPage(ViewCase):
 @unittest.skipUnless(os.path.exists(PAGE), "the page of ViewScene was not built")
 @unittest.skipUnless(CHROMIUM, "Chromium is not installed")
 class ViewPage(ViewCase):
-    def opened(self, *arguments, **window):
-        self.succeeds(*self.view(*arguments))
-        url = pathlib.Path(self.report, "index.html").as_uri()
-        browser = Browser(url, **window)
-        self.addCleanup(browser.close)
-        browser.wait_for("globalThis.axial && axial.ready")
-        return browser
-
-    def place_of(self, browser, place):
-        """Where the page shows a point. The page's camera is the one thing that is believed."""
-        x, y = browser.value(f"axial.view.screenOf({list(place)})")
-        self.assertTrue(0 < x < 900 and 0 < y < 700)
-        return x, y
-
     def check_photographs(self, browser, place, views):
         """The photographs of the picked point, and its refracted pixels, rounded to 0.1 px."""
         shown = browser.value("[...document.querySelectorAll('#point figcaption')]"
@@ -220,7 +229,8 @@ class ViewPage(ViewCase):
                 break
             page.wait_for("new Promise(resolve => setTimeout(() => resolve(true), 50))")
         header, *rows = read(file).decode().splitlines()
-        self.assertEqual(header, "path,point,x,y,z,segment,length,area,volume_above,volume_below")
+        self.assertEqual(header, "path,point,x,y,z,segment,length,area,volume_above,volume_below,"
+                         "surface,rugosity")
         self.assertEqual(len(rows), len(places))
         length = 0
         for number, (row, place) in enumerate(zip(rows, places)):
@@ -265,6 +275,8 @@ class ViewPage(ViewCase):
         self.assertEqual(volumes["above"], 0)
         self.assertAlmostEqual(volumes["below"], 0.24 * 0.24 / 2 * 0.1, delta=0.00288 * 0.005)
         self.assertEqual(volumes["covered"], 1)
+        self.assertAlmostEqual(volumes["surface"], 0.24 * 0.24 / 2, delta=1e-6)
+        self.assertAlmostEqual(volumes["rugosity"], 1, delta=1e-5)
         self.assertIn("0.00288", page.value("axial.paths.csv()"))
 
     def test_a_narrow_page_works_with_touch_and_keyboard(self):
@@ -276,7 +288,7 @@ class ViewPage(ViewCase):
         before = self.place_of(page, place)
         page.press("ArrowLeft", 37)
         self.assertNotEqual(self.place_of(page, place), before)
-        page.press("r", 82, "r")
+        page.press("R", 82, "R")
         self.assertEqual(self.place_of(page, place), before)
         page.press("4", 52, "4")
         self.assertIn("35 of 35", page.value("document.getElementById('about').innerText"))

@@ -63,6 +63,24 @@ TEST(ChunkData, OfABarePointIsGrey) {
   EXPECT_EQ(data.bytes, std::string("\0\0\0\0\0\0\xa0\xa0\xa0", 9));
 }
 
+TEST(ChunkData, HoldsErrorsBeforeTheColors) {
+  const PointCloud cloud = random_cloud(50);
+  std::vector<float> distances(50);
+  for (std::size_t i = 0; i < distances.size(); ++i) distances[i] = 0.001f * static_cast<float>(i);
+  distances[7] = 1e6;  // beyond 200 times the median
+  const PointErrors errors{distances, error_step(distances)};
+  const ChunkData without = chunk_data(cloud, all_of(cloud), kCameras);
+  const ChunkData data = chunk_data(cloud, all_of(cloud), kCameras, errors);
+  ASSERT_EQ(data.bytes.size(), without.bytes.size() + 100);
+  ByteSource source(data.bytes.substr(data.bytes.size() - 250));
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const double expected = i == 7 ? 65535 * errors.step : distances[i];
+    EXPECT_NEAR(source.take<std::uint16_t>() * errors.step, expected, 0.51 * errors.step);
+  }
+  EXPECT_LT(errors.step, 1e-4);
+  EXPECT_EQ(error_step({}), 0);
+}
+
 TEST(ChunkData, RefusesViewsWithoutACamera) {
   PointCloud cloud = random_cloud(2);
   cloud.view_begin = {0, 1, 2};

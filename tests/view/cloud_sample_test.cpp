@@ -46,6 +46,11 @@ TEST(CloudSample, KeepsASmallCloud) {
   expect_equal(sample_of(cloud, 1000, 300), cloud);
 }
 
+TEST(CloudSample, HasAPointOfEveryCloud) {
+  for (std::size_t points = 2; points < 40; ++points)
+    EXPECT_GE(sample_of(random_cloud(points), 1, 7).size(), 1u);
+}
+
 TEST(CloudSample, DoesNotDependOnThePortions) {
   const PointCloud cloud = random_cloud(5000);
   expect_equal(sample_of(cloud, 700, 5000), sample_of(cloud, 700, 113));

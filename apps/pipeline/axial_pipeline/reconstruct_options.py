@@ -61,7 +61,8 @@ def options(script_folder, description):
                         "reconstruction: find what changed. The positions of both surveys must agree "
                         "to some decimetres (docs/compare.md)")
     parser.add_argument("--truth", default="", help="a true mesh, in the frame that --scale-from "
-                        "positions: gives: the cloud is measured against it")
+                        "positions: gives: the cloud is measured against it, and the page shows "
+                        "the distances")
     parser.add_argument("--cluster", choices=["slurm", "local"], default="",
                         help="run the steps as a workflow of Snakemake, with the depth maps in several "
                         "jobs: on a cluster with Slurm, or on this machine (docs/cluster.md)")

@@ -107,7 +107,8 @@ def words_about_results(given, out):
     again = {word.partition("=")[0] for word in words_of("page", given)}
     kept_maps = not any(word.startswith("--remove-d") for word in words_of("densify", given))
     wanted = wanted_steps(given)
-    words = {"--run": out / RUN_FILE,
+    words = {"--run": out / RUN_FILE, "--sfm-model": out / "refined",
+             **({"--truth": given.truth} if given.truth else {}),
              **({"--map": out / "scene_map"} if "map" in wanted else {}),
              **({"--change": out / "scene_change"} if "compare" in wanted else {}),
              **({"--depth-maps": out} if kept_maps else {})}
@@ -144,7 +145,8 @@ def survey_steps(given, out):
         yield Step("page", programs.view_scene(scene, out / "scene_dense.ply", whole, out / "page",
                                                *refractive, *words_about_results(given, out),
                                                *options["page"]),
-                   makes=out / "page" / "index.html", reads=reads["page"],
+                   makes=out / "page" / "index.html",
+                   reads=[*reads["page"], *([given.truth] if given.truth else [])],
                    before=lambda: write_run_before("page", given, out))
 
 

@@ -92,7 +92,7 @@ function start(scene) {
   const map = startSurvey(scene, place => {
     choose("point");
     state.picked = place;
-    showPoint(scene, place, view.cloud.nearest(place)?.views ?? null);
+    showPoint(scene, { position: place, error: null, views: view.cloud.nearest(place)?.views ?? null });
     view.lookAt(place);
   });
   about(scene);

@@ -10,17 +10,15 @@ const percent = value => `${Math.round(100 * Math.max(value, 0))} %`;
 const many = (number, thing) => `${count(number)} ${thing}${number === 1 ? "" : "s"}`;
 
 const CLEAR = 0.5; // a cause that explains less of the pattern is not named
+const POSES = 1.3; // times the error that the poses could reach: they do not fit
 const NEAR = 0.1; // causes with nearly the share of the best
 
 function listOf(texts) {
   return texts.length < 2 ? texts.join("") : `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}`;
 }
 
-function value(number, unit) {
-  const size = Math.abs(number);
-  const digits = !unit ? 4 : size < 100 ? 2 : 1;
-  return `${number.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
-}
+const LENGTH = /^(distance|thickness|radius|focal)/; // names of numbers that are not negative
+const value = (number, unit) => number.toFixed(unit ? 2 : 4);
 
 export class Residuals {
   constructor(scene) {
@@ -60,19 +58,24 @@ export class Residuals {
 
   /** The judgement, in words. */
   verdict() {
-    const { cameras, observations, unseen, rms } = this.all;
+    const { cameras, observations, unseen, rms, rms_freed: freed } = this.all;
+    const posesFit = rms <= POSES * freed;
     const found = cameras.map((camera, k) => camera.found ? k : -1).filter(k => k >= 0);
     const tells = cameras.filter(camera => camera.tells);
     const parts = [table([["Error (RMS)", pixels(rms)], ["Observations", count(observations)],
                           ...unseen ? [["Without an image", count(unseen)]] : []], "number")];
+    if (!posesFit)
+      parts.unshift(make("p", { class: "verdict bad" }, "The poses do not fit the cameras: with the " +
+        `pose of each photograph free, the error falls from ${pixels(rms)} to ${pixels(freed)}. ` +
+        "They come from other cameras, or were not refined."));
     if (found.length)
       parts.unshift(make("p", { class: "verdict bad" }, `A systematic pattern in ${listOf(found.map(
         k => this.nameOf(k)))}. The errors are not noise alone: a port, a lens or the poses do not fit.`),
                     ...this.causes());
     else if (tells.length)
-      parts.unshift(make("p", { class: "verdict good" }, "No systematic pattern: the errors are " +
+      parts.unshift(make("p", { class: `verdict ${posesFit ? "good" : ""}` }, "No systematic pattern: the errors are " +
         `noise of about ${pixels(Math.max(...tells.map(camera => camera.noise)))} per axis. ` +
-        "Ports and lenses fit the photographs."));
+        (posesFit ? "Ports and lenses fit the photographs." : "")));
     else
       parts.unshift(make("p", { class: "verdict" }, "Too few observations to tell noise from a pattern."));
     return parts;
@@ -105,9 +108,10 @@ export class Residuals {
   /** The numbers that fit. One linear step does not find the numbers of a port that is missing. */
   changes(cause) {
     if (cause.name.startsWith("a port")) return "";
-    return table(cause.numbers.flatMap(({ name, unit, stated, change, sigma }) => [
-      [`${name}, given`, value(stated, unit)],
-      [`${name}, fits`, `${value(stated + change, unit)} ± ${value(sigma, unit)}`]]), "number");
+    return table([["", "given", "fits"], ...cause.numbers.map(
+      ({ name, unit, stated, change, sigma }) => [
+        unit ? `${name} [${unit}]` : name, value(stated, unit),
+        `${value(LENGTH.test(name) ? Math.max(stated + change, 0) : stated + change, unit)} ± ${value(sigma, unit)}`])], "number");
   }
 
   /** Draws the camera or the photograph that is chosen. */
