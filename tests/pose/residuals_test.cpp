@@ -16,12 +16,12 @@ using testing::flat_port;
 using testing::mixed_survey;
 using testing::survey;
 
-using Models = std::vector<CameraModel>;
+using CameraModels = std::vector<CameraModel>;
 
-constexpr double kNoise = 0.5;  // [px]
+constexpr double kPixelNoise = 0.5;  // [px]
 
 // The photographs of `bundle`, with cameras as stated by a user.
-TrackedPhotographs with_cameras(const Bundle& bundle, const Models& cameras) {
+TrackedPhotographs with_cameras(const Bundle& bundle, const CameraModels& cameras) {
   TrackedPhotographs photographs{cameras, bundle.images, {}, bundle.observations};
   for (const BundlePoint& point : bundle.points) photographs.points.push_back(point.position);
   return photographs;
@@ -40,15 +40,15 @@ ResidualPattern pattern_of(const TrackedPhotographs& photographs,
 }
 
 Bundle survey_of(const CameraModel& camera, unsigned seed) {
-  return survey(camera, {0.8, 16, 500, kNoise, seed});
+  return survey(camera, {0.8, 16, 500, kPixelNoise, seed});
 }
 
 Bundle survey_of_two(const CameraModel& first, const CameraModel& second, unsigned seed) {
-  return mixed_survey(first, second, {0.8, 24, 600, kNoise, seed});
+  return mixed_survey(first, second, {0.8, 24, 600, kPixelNoise, seed});
 }
 
 // Truth and statement of a fault of the second of two cameras.
-struct FaultCase {
+struct WrongCamera {
   const char* name;
   CameraModel truth, stated;
   double change;  // of the first number of the cause
@@ -72,7 +72,7 @@ CameraModel with_dome_centre(double x, double z) {
   return camera_behind(port);
 }
 
-std::vector<FaultCase> cases() {
+std::vector<WrongCamera> wrong_cameras() {
   return {
       {"distance of the port", camera_behind(flat_port(0, 0.06)), camera_behind(flat_port(0, 0.03)),
        30},
@@ -95,7 +95,7 @@ TEST(ResidualPattern, IsNotReportedForTheRightCameras) {
     judged += pattern.tells();
     squares += pattern.chi_square;
     degrees += pattern.degrees;
-    EXPECT_NEAR(pattern.noise, kNoise, 0.05 * kNoise);
+    EXPECT_NEAR(pattern.noise, kPixelNoise, 0.05 * kPixelNoise);
   }
   EXPECT_EQ(judged, 40);
   EXPECT_EQ(reported, 0);
@@ -103,7 +103,7 @@ TEST(ResidualPattern, IsNotReportedForTheRightCameras) {
 }
 
 void expect_cause(const TrackedPhotographs& photographs, const ResidualVectors& vectors,
-                  const FaultCase& fault) {
+                  const WrongCamera& fault) {
   const std::vector<std::size_t> suspects{0, 1};
   const std::vector<Cause> causes = residual_causes(photographs, vectors.freed, suspects);
   ASSERT_FALSE(causes.empty());
@@ -114,7 +114,7 @@ void expect_cause(const TrackedPhotographs& photographs, const ResidualVectors& 
 }
 
 TEST(ResidualPattern, IsReportedForTheWrongOneOfTwoCamerasWithItsNumber) {
-  for (const FaultCase& fault : cases()) {
+  for (const WrongCamera& fault : wrong_cameras()) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(fault.name + std::to_string(seed));
       const CameraModel right = camera_behind(flat_port(1, 0.03));
@@ -129,11 +129,11 @@ TEST(ResidualPattern, IsReportedForTheWrongOneOfTwoCamerasWithItsNumber) {
 }
 
 // Refines poses and points with the cameras. The scale is known.
-void refine_with(const Models& cameras, Bundle& bundle) {
+void refine_with(const CameraModels& cameras, Bundle& bundle) {
   for (std::size_t i = 0; i < cameras.size(); ++i)
     bundle.cameras[i].measured = testing::housed(cameras[i]);
   AdjustOptions options;
-  options.pixel_sigma = kNoise;
+  options.pixel_sigma = kPixelNoise;
   const std::size_t last = bundle.images.size() - 1;
   const double length = (bundle.images[last].pose.centre - bundle.images[0].pose.centre).norm();
   options.distances = {{KnownDistance::Between::images, 0, last, length, 1e-4 * length}};
@@ -141,11 +141,11 @@ void refine_with(const Models& cameras, Bundle& bundle) {
 }
 
 TEST(ResidualPattern, IsReportedWithItsNumberIfPosesAndPointsAdaptedToTheWrongCamera) {
-  for (const FaultCase& fault : cases()) {
+  for (const WrongCamera& fault : wrong_cameras()) {
     SCOPED_TRACE(fault.name);
     const CameraModel right = camera_behind(flat_port(1, 0.03));
     Bundle bundle = survey_of_two(right, fault.truth, 1);
-    const Models stated{right, fault.stated};
+    const CameraModels stated{right, fault.stated};
     refine_with(stated, bundle);
     const TrackedPhotographs photographs = with_cameras(bundle, stated);
     const ResidualVectors vectors = residual_vectors(photographs);
@@ -156,7 +156,7 @@ TEST(ResidualPattern, IsReportedWithItsNumberIfPosesAndPointsAdaptedToTheWrongCa
 
 TEST(ResidualPattern, IsNotReportedAfterRefinement) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Models cameras{camera_behind(flat_port(1, 0.03)), camera_behind(dome_port())};
+    const CameraModels cameras{camera_behind(flat_port(1, 0.03)), camera_behind(dome_port())};
     Bundle bundle = survey_of_two(cameras[0], cameras[1], seed);
     testing::disturb(bundle, 0.002, 0.002, seed);
     refine_with(cameras, bundle);
@@ -169,7 +169,7 @@ TEST(ResidualPattern, IsNotReportedAfterRefinement) {
 
 TEST(ResidualPattern, NamesTheIndexOfAllCamerasIfItIsWrongForAll) {
   const CameraModel flat = camera_behind(flat_port(1, 0.03)), dome = with_dome_centre(0, 0.002);
-  Models wrong{flat, dome};
+  CameraModels wrong{flat, dome};
   for (CameraModel& camera : wrong)
     std::visit([](auto& port) { port.n_water = 1.35; }, *camera.port);
   const TrackedPhotographs photographs = with_cameras(survey_of_two(flat, dome, 4), wrong);

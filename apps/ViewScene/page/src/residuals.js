@@ -90,8 +90,9 @@ export class Residuals {
       !cause.numbers.some(number => best.numbers.some(other => other.name === number.name)));
     const also = others.length ? ` The ${[...new Set(others.map(cause => cause.name))].join(" or the ")} ` +
       "would explain it nearly as well." : "";
-    const rows = causes.filter(cause => cause.share > 0.02).map(
-      cause => [`${cause.name}, ${this.nameOf(cause.camera)}`, percent(cause.share)]);
+    const single = this.all.cameras.length === 1;
+    const rows = causes.filter(cause => cause.share > 0.02).map(cause => [
+      single ? cause.name : `${cause.name}, ${this.nameOf(cause.camera)}`, percent(cause.share)]);
     return [make("p", { class: "cause" }, make("b", {}, `Likely cause: ${best.name}, ${this.nameOf(best.camera)}. `),
                  this.explained(best), also), this.changes(best),
             make("details", {}, make("summary", {}, "What single changes would explain"), table(rows, "number"),
