@@ -75,7 +75,7 @@ export class Residuals {
     else if (tells.length)
       parts.unshift(make("p", { class: `verdict ${posesFit ? "good" : ""}` }, "No systematic pattern: the errors are " +
         `noise of about ${pixels(Math.max(...tells.map(camera => camera.noise)))} per axis. ` +
-        (posesFit ? "Ports and lenses fit the photographs." : "")));
+        (posesFit ? "Ports and lenses fit the photographs, as far as tracks can tell." : "")));
     else
       parts.unshift(make("p", { class: "verdict" }, "Too few observations to tell noise from a pattern."));
     return parts;
