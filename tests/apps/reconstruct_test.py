@@ -278,6 +278,12 @@ class Reconstruct(unittest.TestCase):
         for kind in ("dem", "ortho", "views"):
             self.assertTrue((out / f"scene_map.{kind}.tif").read_bytes().startswith(b"II"), kind)
         self.assertEqual((out / "page" / "index.html").exists(), "page" in STEPS)
+        if "page" in STEPS:
+            scene = read(out / "page" / "data" / "scene.js").decode()
+            scene = json.loads(scene.removeprefix("axialData.scene(").removesuffix(");\n"))
+            self.assertLess(scene["residuals"]["rms"], 1)
+            self.assertEqual(len(scene["residuals"]["photographs"]), 6)
+            self.assertEqual(scene["truth"], "mesh.ply")
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"
