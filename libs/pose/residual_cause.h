@@ -43,8 +43,8 @@ struct CauseLimits {
 //
 // Each candidate is judged by one linear step. Poses and points are free in this step, except for
 // the scale (remove_poses_and_points()). A candidate is left out if its numbers would become
-// impossible, such as a clearly negative distance. A candidate with several numbers stands behind its
-// single numbers if it explains hardly more. A sample of images around the image with the most
+// impossible, such as a clearly negative distance. A candidate with several numbers stands behind
+// its single numbers if it explains hardly more. A sample of images around the image with the most
 // observations is used. Empty if the sample has fewer than 3 images or 20 points, or no systematic
 // errors.
 std::vector<Cause> residual_causes(const TrackedPhotographs& photographs,

@@ -363,6 +363,9 @@ class Reconstruct(unittest.TestCase):
             self.assertTrue(step["version"].lower().startswith(program.lower() + " "), step["version"])
         self.assertEqual(len(scene["depth_maps"]), 6)
         self.assertTrue({"ortho", "height", "views"} <= {layer["id"] for layer in scene["map"]["layers"]})
+        self.assertLess(scene["residuals"]["rms"], 1)
+        self.assertEqual(len(scene["residuals"]["photographs"]), 6)
+        self.assertEqual(scene["truth"], "mesh.ply")
 
     def test_says_what_is_missing(self):
         out = pathlib.Path(self.folder.name) / "missing"

@@ -12,6 +12,9 @@ export function ramp(share) {
   return RAMP[k].map((value, axis) => Math.round(value + t * (RAMP[k + 1][axis] - value)));
 }
 
+// The colours of 256 shares, one after the other: a cloud has millions of points.
+const TABLE = new Uint8Array(Array.from({ length: 256 }, (_, k) => ramp(k / 255)).flat());
+
 export const rampColor = share => `rgb(${ramp(share).join(",")})`;
 
 /** A bar with the colours of the ramp between two labels. */
@@ -30,30 +33,43 @@ function quantiles(values, shares) {
   return shares.map(share => values[Math.round(share * (values.length - 1))] ?? 0);
 }
 
-// A sample of value(chunk, i) over the loaded points.
-function sampled(cloud, value) {
+// A sample of measureOf(chunk)(i) over the loaded points.
+function sampled(cloud, measureOf) {
   const values = [], step = Math.max(1, Math.floor(cloud.points / SAMPLES));
-  for (const chunk of cloud.chunks)
-    for (let i = 0; i < chunk.entry.points; i += step) values.push(value(chunk, i));
+  for (const chunk of cloud.chunks) {
+    const value = measureOf(chunk);
+    for (let i = 0; i < chunk.entry.points; i += step) values.push(value(i));
+  }
   return values;
 }
 
-/** The ways to colour the points: a name, whether the scene has the data, and the value of point i
- * of a chunk. `range(cloud)`: the values of the first and the last colour. */
+function heightOf(up, { entry: { low, size }, positions }) {
+  const base = low.reduce((sum, value, k) => sum + value * up[k], 0);
+  const [x, y, z] = size.map((side, k) => side * up[k] / 65535);
+  return i => base + x * positions[3 * i] + y * positions[3 * i + 1] + z * positions[3 * i + 2];
+}
+
+function viewsOf({ views, lists }) {
+  const lengths = lists.map(list => list.length);
+  return i => views ? lengths[views[i]] : 0;
+}
+
+/** The ways to colour the points: a name, whether the scene has the data, and for a chunk the function
+ * from the number of a point to its value. `range(values)`: the values of the first and the last
+ * colour. */
 export const MODES = {
   photographs: { name: "Colours", has: () => true },
   views: {
     name: "Views", title: "photographs that see a point",
     has: scene => scene.chunks.some(chunk => chunk.lists > 0),
-    value: cloud => (chunk, i) => cloud.viewsOf(chunk, i)?.length ?? 0,
+    measureOf: () => viewsOf,
     range: values => [0, Math.max(2, quantiles(values, [0.99])[0])],
     text: value => String(Math.round(value))
   },
   height: {
     name: "Height", title: "height",
     has: () => true,
-    value: (cloud, { view: { up } }) => (chunk, i) =>
-      cloud.position(chunk, i).reduce((sum, v, k) => sum + v * up[k], 0),
+    measureOf: scene => chunk => heightOf(scene.view.up, chunk),
     range: values => quantiles(values, [0.01, 0.99]),
     text: (value, scene) => {
       const height = value + scene.origin.reduce((sum, v, k) => sum + v * scene.view.up[k], 0);
@@ -63,7 +79,7 @@ export const MODES = {
   errors: {
     name: "Errors", title: "distance to the true surface",
     has: scene => Boolean(scene.truth),
-    value: cloud => (chunk, i) => cloud.errorOf(chunk, i),
+    measureOf: () => ({ entry, errors }) => i => entry.error_step * errors[i],
     range: values => [0, Math.max(quantiles(values, [0.95])[0], 1e-9)],
     text: distance
   }
@@ -89,10 +105,10 @@ export class Colours {
     this.range = null;
     const mode = MODES[name];
     const legend = byId("legend");
-    legend.hidden = !mode.value;
-    if (mode.value) {
-      this.value = mode.value(this.cloud, this.scene);
-      this.range = mode.range(sampled(this.cloud, this.value));
+    legend.hidden = !mode.measureOf;
+    if (mode.measureOf) {
+      this.measureOf = mode.measureOf(this.scene);
+      this.range = mode.range(sampled(this.cloud, this.measureOf));
       const [low, high] = this.range.map(value => mode.text(value, this.scene));
       legend.replaceChildren(make("span", {}, mode.title), rampLegend(low, high));
     }
@@ -103,10 +119,14 @@ export class Colours {
   /** Colours the points of a chunk, for example of one that was loaded later. */
   paint(chunk) {
     if (!this.range) return chunk.recolor(null);
-    const [low, high] = this.range;
-    const colors = new Uint8Array(3 * chunk.entry.points);
-    for (let i = 0; i < chunk.entry.points; ++i)
-      colors.set(ramp((this.value(chunk, i) - low) / (high - low || 1)), 3 * i);
+    const [low, high] = this.range, value = this.measureOf(chunk);
+    const colors = new Uint8Array(3 * chunk.entry.points), factor = 255 / (high - low || 1);
+    for (let i = 0; i < chunk.entry.points; ++i) {
+      const at = 3 * Math.round(Math.min(Math.max((value(i) - low) * factor, 0), 255));
+      colors[3 * i] = TABLE[at];
+      colors[3 * i + 1] = TABLE[at + 1];
+      colors[3 * i + 2] = TABLE[at + 2];
+    }
     chunk.recolor(colors);
   }
 }

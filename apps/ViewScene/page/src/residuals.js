@@ -73,9 +73,10 @@ export class Residuals {
         k => this.nameOf(k)))}. The errors are not noise alone: a port, a lens or the poses do not fit.`),
                     ...this.causes());
     else if (tells.length)
-      parts.unshift(make("p", { class: `verdict ${posesFit ? "good" : ""}` }, "No systematic pattern: the errors are " +
-        `noise of about ${pixels(Math.max(...tells.map(camera => camera.noise)))} per axis. ` +
-        (posesFit ? "Ports and lenses fit the photographs." : "")));
+      parts.unshift(make("p", { class: `verdict ${posesFit ? "good" : ""}` },
+        "No systematic pattern: the errors are noise of about " +
+        `${pixels(Math.max(...tells.map(camera => camera.noise)))} per axis. ` +
+        (posesFit ? "Ports and lenses fit the photographs, as far as tracks can tell." : "")));
     else
       parts.unshift(make("p", { class: "verdict" }, "Too few observations to tell noise from a pattern."));
     return parts;
@@ -93,8 +94,9 @@ export class Residuals {
     const single = this.all.cameras.length === 1;
     const rows = causes.filter(cause => cause.share > 0.02).map(cause => [
       single ? cause.name : `${cause.name}, ${this.nameOf(cause.camera)}`, percent(cause.share)]);
-    return [make("p", { class: "cause" }, make("b", {}, `Likely cause: ${best.name}, ${this.nameOf(best.camera)}. `),
-                 this.explained(best), also), this.changes(best),
+    const title = `Likely cause: ${best.name}, ${this.nameOf(best.camera)}. `;
+    return [make("p", { class: "cause" }, make("b", {}, title), this.explained(best), also),
+            this.changes(best),
             make("details", {}, make("summary", {}, "What single changes would explain"), table(rows, "number"),
                  make("p", { class: "hint" }, "Shares of the squared pattern, by one linear step in " +
                    "which poses and points are free and the scale is kept."))];
@@ -102,7 +104,9 @@ export class Residuals {
 
   explained({ name, share }) {
     const part = share > 0.985 ? "nearly all" : percent(share);
-    return name.startsWith("a port") ? `Refraction explains ${part} of the pattern: give the housing.`
+    return name.startsWith("a port")
+      ? `Refraction, or a wrong radial distortion of the lens, explains ${part} of the pattern. ` +
+        "For photographs under water, give the housing."
       : `The change below explains ${part} of the pattern.`;
   }
 
@@ -110,9 +114,11 @@ export class Residuals {
   changes(cause) {
     if (cause.name.startsWith("a port")) return "";
     return table([["", "given", "fits"], ...cause.numbers.map(
-      ({ name, unit, stated, change, sigma }) => [
-        unit ? `${name} [${unit}]` : name, value(stated, unit),
-        `${value(LENGTH.test(name) ? Math.max(stated + change, 0) : stated + change, unit)} ± ${value(sigma, unit)}`])], "number");
+      ({ name, unit, stated, change, sigma }) => {
+        const fits = Math.max(stated + change, LENGTH.test(name) ? 0 : -Infinity);
+        return [unit ? `${name} [${unit}]` : name, value(stated, unit),
+                `${value(fits, unit)} ± ${value(sigma, unit)}`];
+      })], "number");
   }
 
   /** Draws the camera or the photograph that is chosen. */
@@ -132,7 +138,8 @@ export class Residuals {
     this.picture.replaceChildren(
       make("div", { class: "drawing" }, svg), rampLegend("0", pixels(longest)),
       make("p", { class: "hint" }, `Arrows from the projected to the observed pixel, magnified ` +
-        `${magnified < 10 ? magnified.toPrecision(2) : Math.round(magnified)} times. Grey arrows are within two standard errors. ` +
+        `${magnified < 10 ? magnified.toPrecision(2) : Math.round(magnified)} times. Grey arrows are ` +
+        "within two standard errors. " +
         (camera ? "The pose of each photograph is free." : "With the poses of the scene.")),
       table(rows, "number"));
   }
