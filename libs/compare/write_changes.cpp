@@ -130,8 +130,7 @@ void write_changes(const ChangeFiles& files, const Comparison& comparison,
   write_together(files.all(), [&](const std::vector<fs::path>& temporary) {
     write_map(temporary[0], map::MapKind::heights, with_no_height(comparison.difference),
               comparison, facts);
-    write_map(temporary[1], map::MapKind::classes, comparison.changes.classes, comparison,
-              facts);
+    write_map(temporary[1], map::MapKind::classes, comparison.changes.classes, comparison, facts);
     write_map(temporary[2], map::MapKind::heights, with_no_height(comparison.sigma), comparison,
               facts);
     write_atomically(temporary[3], io::to_text(to_json(comparison, facts), 1) + "\n");

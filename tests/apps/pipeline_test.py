@@ -2,8 +2,10 @@
 """The functions of apps/pipeline/axial_pipeline, without the programs and with a stand-in for
 COLMAP."""
 
+import argparse
 import contextlib
 import io
+import json
 import os
 import subprocess
 import sys
@@ -13,7 +15,8 @@ import unittest.mock
 from pipeline_folder import PIPELINE, InFolder
 from programs import main
 
-from axial_pipeline import colmap, files, lens, positions, reconstruct_steps, running, steps
+from axial_pipeline import (colmap, files, lens, positions, reconstruct_steps, run_file, running,
+                            steps)
 from axial_pipeline.failure import Failure
 from axial_pipeline.programs import Programs, default_folder
 
@@ -279,6 +282,30 @@ class Steps(InFolder):
         with self.assertRaisesRegex(Failure, "second: exit code 1"):
             self.said_by(steps.run_all, broken, self.folder)
         self.assertEqual(self.run_all("a"), ["first"])
+
+
+class RunFile(InFolder):
+    def test_a_step_has_the_times_and_warnings_of_its_jobs(self):
+        todo = [steps.Step("import", ["InterfaceCOLMAP"], self.folder),
+                steps.Step("densify", ["DensifyPointCloud", "-i", "a b"], self.folder)]
+        chain = steps.digest(steps.chain_to("densify", todo))
+        for name, of, seconds in (("import", "", 2), ("densify", chain, 5), ("depth-first-1of2", chain, 7),
+                                  ("depth-first-2of2", chain, 8), ("depth-first-3of3", "an older run", 100)):
+            self.write(f"steps/{name}.done.json", json.dumps({"chain": of, "seconds": seconds}))
+            self.write(f"logs/{name}.log", "12:00:00 [DensifyPointCloud] a warning: no\n"
+                       f"12:00:00 [DensifyPointCloud] warning: both\n12:00:00 [X] warning: {name}\n")
+        (self.folder / "logs" / "import.log").unlink()
+        given = argparse.Namespace(images="photographs", lens_model="OPENCV", truth="", tiles=1)
+        run_file.write_run(self.folder / "run.json", given, todo, self.folder)
+        written = json.loads((self.folder / "run.json").read_text())
+        self.assertEqual(written["command"],
+                         ["reconstruct", "--images=photographs", "--lens-model=OPENCV", "--tiles=1"])
+        imported, densified = written["steps"]
+        self.assertEqual((imported["seconds"], imported["warnings"], imported["version"]), (2, [], None))
+        self.assertEqual(densified["seconds"], 20)
+        self.assertEqual(densified["command"], ["DensifyPointCloud", "-i", "a b"])
+        self.assertEqual({warning["text"]: warning["times"] for warning in densified["warnings"]},
+                         {"both": 3, "depth-first-1of2": 1, "depth-first-2of2": 1, "densify": 1})
 
 
 class ProgramCommands(InFolder):
