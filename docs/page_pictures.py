@@ -39,31 +39,68 @@ def measure(browser):
     browser.click_on(".volume")
 
 
-# The name of each picture, the size of its window, and what is done before it.
+def errors(browser):
+    browser.value("axial.colours.select.value = 'errors', axial.colours.select.onchange()")
+
+
+def layer(name):
+    def show(browser):
+        tab(browser, "map")
+        browser.click_on(f"[data-layer={name}]")
+        browser.wait_for("axial.map.image && !axial.map.asked")
+    return show
+
+
+def residuals(browser):
+    tab(browser, "residuals")
+
+
+def steps(browser):
+    tab(browser, "run")
+
+
+# The name of each picture, the size of its window, what is done before it, and the part of the page
+# without which there is no picture.
 PICTURES = {
-    "view_point": (WIDE, point),
-    "view_measure": (WIDE, measure),
-    "view_narrow": (NARROW, point),
+    "view_point": (WIDE, point, "cameras"),
+    "view_measure": (WIDE, measure, "mesh"),
+    "view_errors": (WIDE, errors, "truth"),
+    "view_map": (WIDE, layer("height"), "map"),
+    "view_residuals": (WIDE, residuals, "residuals"),
+    "view_run": (WIDE, steps, "run"),
+    "view_narrow": (NARROW, point, "cameras"),
+    "view_narrow_map": (NARROW, layer("ortho"), "map"),
+    "view_narrow_residuals": (NARROW, residuals, "residuals"),
 }
+
+
+def taken(page, size, prepare, part):
+    """The picture, or None if the page does not have the part."""
+    browser = Browser((page / "index.html").resolve().as_uri(), *size)
+    try:
+        browser.wait_for("globalThis.axial && axial.ready && axial.view.complete")
+        if not browser.value(f"!!axial.scene.{part}"):
+            return None
+        prepare(browser)
+        browser.wait_for("axial.view.complete")
+        picture = browser.send("Page.captureScreenshot", format="jpeg", quality=QUALITY)
+        return base64.b64decode(picture["data"])
+    finally:
+        browser.close()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=pathlib.Path, help="folder that ViewScene wrote")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    parser.add_argument("--only", nargs="*", choices=PICTURES, default=list(PICTURES))
     given = parser.parse_args()
     if not CHROMIUM:
         sys.exit("Chromium is not installed")
-    for name, (size, prepare) in PICTURES.items():
-        browser = Browser((given.page / "index.html").resolve().as_uri(), *size)
-        try:
-            browser.wait_for("globalThis.axial && axial.ready && axial.view.complete")
-            prepare(browser)
-            browser.wait_for("axial.view.complete")
-            picture = browser.send("Page.captureScreenshot", format="jpeg", quality=QUALITY)["data"]
-        finally:
-            browser.close()
-        (given.output / f"{name}.jpg").write_bytes(base64.b64decode(picture))
+    for name in given.only:
+        picture = taken(given.page, *PICTURES[name])
+        if picture:
+            (given.output / f"{name}.jpg").write_bytes(picture)
 
 
 if __name__ == "__main__":

@@ -31,11 +31,14 @@ def compare(demo, before, after, results):
 
 
 def make_page(demo, run, results, housing=None):
-    """Writes the page of `run` to a folder in `results`."""
+    """Writes the page of `run`, with the maps and the comparison in the folder `results`, to a folder
+    in `results`."""
     work, page = demo.work / run, results / f"{run}_page"
     files.clear(page)
     shown(demo.programs.view_scene(work / "scene_dense.mvs", work / "scene_dense.ply",
-                                   work / "textured.glb", page, *refractive(housing)))
+                                   work / "textured.glb", page, "--map", results / f"{run}_map",
+                                   "--change", results / CHANGE, "--truth", demo.truth / "mesh.ply",
+                                   *refractive(housing)))
 
 
 def falsely_changed(results):
@@ -53,7 +56,7 @@ def section(run, results):
              f'(b) have the same ground; CompareSurveys calls {100 * falsely_changed(results):.2f} % of '
              f'the area changed.']
     if (results / f"{run}_page").exists():
-        parts.insert(0, f'{link(f"{run}_page/index.html", "The page of the survey")} shows the cloud, '
-                        f'the mesh, the cameras and the photographs, and measures distances, areas and '
-                        f'volumes.')
+        parts.insert(0, f'{link(f"{run}_page/index.html", "The page of the survey")} shows the cloud '
+                        f'and its errors, the mesh, the photographs, the depth maps, the maps and the '
+                        f'changes, and measures distances, areas and volumes.')
     return f"<p>{' '.join(parts)}</p>"
