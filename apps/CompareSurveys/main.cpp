@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/naming.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/same_file.h"
 #include "compare/write_changes.h"
 #include "io/openmvs/point_source.h"
@@ -44,8 +45,7 @@ bool is_ply(const fs::path& path) {
 
 Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFrame& frame) {
   memory_of(settings).require(io::bytes_to_read_mesh(path), "reading " + path.string());
-  Mesh mesh = is_ply(path) ? io::read_mesh_ply(path, frame)
-                           : std::move(io::read_textured_mesh(path, frame).mesh);
+  Mesh mesh = io::read_shape(path, frame);
   mesh.colors = {};
   naming(path, [&] { check_mesh(mesh); });
   log_info("{}: {} vertices, {} faces", path.string(), mesh.vertices.size(), mesh.faces.size());
@@ -57,7 +57,7 @@ Mesh read_survey(const Settings& settings, const fs::path& path, const LocalFram
 LocalFrame frame_of_survey(const fs::path& path) {
   if (is_ply(path)) return frame_near(io::ply_place(path).first_vertex);
   // Far from the origin these positions are coarse, but exact enough to choose a frame.
-  const Mesh coarse = io::read_textured_mesh(path, LocalFrame{}).mesh;
+  const Mesh coarse = io::read_shape(path, LocalFrame{});
   if (coarse.vertices.empty()) return {};
   return frame_near(coarse.vertices.front().cast<double>());
 }
@@ -137,9 +137,11 @@ int run(int argc, char** argv) {
   const map::MapFrame map_frame = place_map(settings, before, frame);
   facts.is_georeferenced = has_system(settings, frame) && map_frame.axes.isIdentity(0);
   keep_inputs(settings);
-  const compare::Comparison comparison = naming(settings.after, [&] {
-    return compare::compare_surveys(before, after, map_frame, settings.compare);
-  });
+  settings.compare.name_before = settings.before;
+  settings.compare.name_after = settings.after;
+  settings.compare.progress = console_progress;
+  const compare::Comparison comparison =
+      compare::compare_surveys(before, after, map_frame, settings.compare);
   if (settings.compare.align) report_registration(comparison);
   report(comparison);
   const compare::ChangeFiles files = change_files(settings);

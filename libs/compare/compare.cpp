@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/naming.h"
 #include "base/parallel.h"
 #include "compare/height_map.h"
 #include "map/geotiff.h"
@@ -64,6 +65,14 @@ map::MapGrid common_grid(const map::MapGrid& a, const map::MapGrid& b) {
   return {left, top, pixel, static_cast<int>(columns), static_cast<int>(rows)};
 }
 
+// vertex_distance() of a mesh that is one. Errors name the survey.
+double checked_distance(const Mesh& mesh, const std::filesystem::path& name) {
+  return naming(name, [&] {
+    check_mesh(mesh);
+    return vertex_distance(mesh);
+  });
+}
+
 void require_memory(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                     const map::MapGrid& grid, const MemoryAllowance& memory) {
   const std::uint64_t mesh =
@@ -110,6 +119,18 @@ Maps subtract(Comparison& comparison) {
   return maps;
 }
 
+// Fills `before`, and `difference` with the heights of the later survey.
+void fill_heights(const Mesh& before, const Mesh& after, const map::MapFrame& after_frame,
+                  const ProgressSink& progress, Comparison& result) {
+  const auto half = [&](std::size_t first) {
+    return [&progress, first](std::size_t done, std::size_t blocks) {
+      if (progress) progress(first * blocks + done, 2 * blocks);
+    };
+  };
+  result.before = height_map(before, result.frame, result.grid, result.base, 1, half(0));
+  result.difference = height_map(after, after_frame, result.grid, result.base, 1, half(1));
+}
+
 void fill_sigma(const Maps& maps, Comparison& comparison) {
   comparison.sigma = cv::Mat1f(comparison.difference.size(), 0.f);
   for (int y = 0; y < comparison.sigma.rows; ++y)
@@ -146,34 +167,41 @@ Eigen::Vector3d upward_direction(const Mesh& mesh) {
 
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options) {
-  check_mesh(before);
-  check_mesh(after);
-  const double pixel =
-      options.pixel > 0
-          ? options.pixel
-          : map::rounded_width(std::max(vertex_distance(before), vertex_distance(after)));
+  const double distance_before = checked_distance(before, options.name_before),
+               distance_after = checked_distance(after, options.name_after);
+  const double pixel = options.pixel > 0
+                           ? options.pixel
+                           : map::rounded_width(std::max(distance_before, distance_after));
+  const auto sink = [&](const char* stage) {
+    return options.progress ? options.progress(stage) : ProgressSink{};
+  };
   Comparison result;
   result.frame = frame;
   result.base = frame.origin.z();
-  const map::MapGrid of_before = map::grid_around(before, frame, pixel, options.name_of);
+  const map::MapGrid of_before = naming(
+      options.name_before, [&] { return map::grid_around(before, frame, pixel, options.name_of); });
   const auto common = [&](const map::MapFrame& after_frame) {
-    return common_grid(of_before, map::grid_around(after, after_frame, pixel, options.name_of));
+    return naming(options.name_after, [&] {
+      return common_grid(of_before, map::grid_around(after, after_frame, pixel, options.name_of));
+    });
   };
   result.grid = common(frame);
   require_memory(before, after, frame, result.grid, options.memory);
   map::MapFrame after_frame = frame;
   if (options.align) {
     options.memory.require(kRegistrationBytes * before.faces.size(), "the registration");
-    result.registration = register_surveys(before, after, frame, result.grid, options.registration);
+    result.registration = naming(options.name_after, [&] {
+      return register_surveys(before, after, frame, result.grid, options.registration,
+                              sink("Registration"));
+    });
     after_frame = moved(frame, result.registration.motion);
     result.grid = common(after_frame);
     require_memory(before, after, after_frame, result.grid, options.memory);
   }
-  result.before = height_map(before, frame, result.grid, result.base);
-  result.difference = height_map(after, after_frame, result.grid, result.base);
+  fill_heights(before, after, after_frame, sink("Heights"), result);
   Maps maps = subtract(result);
   if (std::ranges::all_of(result.difference, [](float value) { return std::isnan(value); }))
-    fail("the surveys do not overlap");
+    fail("{}: the surveys do not overlap", options.name_after.string());
   const double least = 1e-3 * pixel;  // of float rounding, for surveys without noise
   result.noise = options.sigmas
                      ? given_noise(result.difference, maps.steepness,

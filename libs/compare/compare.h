@@ -2,6 +2,7 @@
 // What changed between two surveys of the same place.
 #pragma once
 
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "compare/noise.h"
 #include "compare/registration.h"
 #include "map/frame.h"
+#include "map/write_maps.h"
 #include "scene/mesh.h"
 
 namespace axial::compare {
@@ -28,6 +30,11 @@ struct CompareOptions {
   // The memory that may be used. The need is checked before the maps are made.
   MemoryAllowance memory = {};
   SettingNames name_of = own_name;  // for the field `pixel`, "ground_sample_distance"
+  // The names of the surveys in errors.
+  std::filesystem::path name_before = "the earlier survey", name_after = "the later survey";
+  // Returns the ProgressSink for a stage with the given name. The stages "Registration" (steps) and
+  // "Heights" (blocks of the map, of both surveys) report their progress.
+  map::StageProgress progress = {};
 };
 
 // The maps have one value for each pixel of `grid`. NaN: not compared, because one of the surveys
@@ -62,8 +69,9 @@ Eigen::Vector3d upward_direction(const Mesh& mesh);
 // registration.
 //
 // Error if a mesh is none (check_mesh()), if the surveys do not overlap, if they cannot be
-// aligned (register_surveys()), if the map has too many pixels (grid_around()), and if the memory
-// does not suffice. The result does not depend on the number of threads.
+// aligned (register_surveys()); these two name the later survey. Error if the map has too many
+// pixels (grid_around()), and if the memory does not suffice. The result does not depend on the
+// number of threads.
 Comparison compare_surveys(const Mesh& before, const Mesh& after, const map::MapFrame& frame,
                            const CompareOptions& options);
 

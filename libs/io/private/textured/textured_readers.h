@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "private/only_for_io.h"
 #include "scene/local_frame.h"
+#include "scene/mesh.h"
 
 namespace axial::io {
 
@@ -29,5 +31,9 @@ std::vector<Eigen::Vector3f> placed_in(const std::optional<LocalFrame>& frame,
                                        std::span<const Eigen::Vector3d> stored,
                                        const std::optional<Eigen::Vector3d>& offset,
                                        const std::string& file);
+
+// read_shape() for OBJ and GLB.
+Mesh read_shape_obj(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
+Mesh read_shape_glb(const std::filesystem::path& path, const std::optional<LocalFrame>& frame);
 
 }  // namespace axial::io
